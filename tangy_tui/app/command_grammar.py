@@ -39,7 +39,8 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.language.stop_sentence import stops
-from tangy_tui.learning.teaching_events import Next, Redo, Undo
+from tangy_tui.learning.remarks import answers_to
+from tangy_tui.learning.teaching_events import Next, Redo, Remark, RemarkAnswer, Settle, Undo
 from tangy_tui.learning.verification import Reply, StopCommand
 
 Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "voice"]
@@ -183,6 +184,25 @@ def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
         case "seen":
             return "shown"
     return Leave() if words in LEAVING else read_inquiry(text)
+
+
+SETTLING: dict[str, RemarkAnswer] = {
+    "this": "this",
+    "earlier": "earlier",
+    "both": "both",
+    **dict.fromkeys(("later", "decide later", "n", "no"), "later"),
+}
+"""Words that answer a remark, beside the numbers."""
+
+
+def read_settling(text: str, remark: Remark) -> Settle | None:
+    """Return the answer to a remark that words are, None if they are none of its answers."""
+    words, answers = text.strip().casefold(), answers_to(remark)
+    if words.isdecimal() and words.isascii() and len(words) <= LONGEST_NUMBER:
+        number = int(words)
+        return Settle(answers[number - 1]) if 1 <= number <= len(answers) else None
+    answer = SETTLING.get(words)
+    return Settle(answer) if answer == "later" or answer in answers else None
 
 
 def read_inquiry(text: str) -> Inquiry | None:

@@ -14,7 +14,14 @@ from typing import Any
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.app.command_grammar import AgainFrom, Inquiry, Leave, read_answer, read_teaching
+from tangy_tui.app.command_grammar import (
+    AgainFrom,
+    Inquiry,
+    Leave,
+    read_answer,
+    read_settling,
+    read_teaching,
+)
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.teaching_events import (
@@ -229,6 +236,9 @@ class TeachingLines:
             return None
         word = read_teaching(text, self._teaching.phrasebook.game)
         answer, question = read_answer(text), self._teaching.question
+        remark = self._teaching.remark
+        if question is None and remark is not None and (settle := read_settling(text, remark)):
+            return settle
         if question is not None and not isinstance(word, StopCommand | Leave):
             typed = self._yes.answer(text)
             if isinstance(typed, str):

@@ -17,14 +17,24 @@ class Contradictions:
     """What was shown before, by situation. Each contradiction is found once."""
 
     def __init__(
-        self, earlier: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
+        self,
+        earlier: Iterable[Demonstration],
+        resolutions: Iterable[Resolution] = (),
+        *,
+        teacher: str = "",
     ) -> None:
-        """Take the demonstrations there are, and what teachers said of their conflicts."""
+        """Take the demonstrations there are, and what teachers said of their conflicts.
+
+        What `teacher` was told of when it was taught is no news any more.
+        """
         self._settled = joined(resolutions)
         self._shown: dict[Situation, dict[str, list[Shown]]] = {}
         self._told: set[tuple[Situation, frozenset[str]]] = set()
-        for shown in shown_steps(earlier):
-            self._add(shown)
+        for shown in sorted(shown_steps(earlier), key=lambda shown: shown.step.id):
+            if shown.teacher == teacher:
+                self.found(shown)
+            else:
+                self._add(shown)
 
     def found(self, now: Shown) -> Shown | None:
         """Take a new step; return the last one that was shown differently, if it is news.
@@ -56,6 +66,22 @@ class Contradictions:
         answers = self._shown.get(situation, {})
         shown = [behaviour for behaviour, steps in answers.items() if steps]
         return tuple(sorted(shown, key=lambda behaviour: -len(answers[behaviour])))
+
+    def resolved(self, situation: Situation, right: tuple[str, ...], *, keep: bool) -> Resolution:
+        """Return the resolution by which these answers are right.
+
+        Args:
+            situation: of what.
+            right: the answers.
+            keep: what was called right before stays so, and nothing is set aside.
+        """
+        if keep:
+            before = self._settled.get(situation)
+            known = () if before is None else before.right
+            return Resolution(situation, tuple(dict.fromkeys((*known, *right))), frozenset())
+        answers = self._shown.get(situation, {})
+        wrong = (s.step.id for b, steps in answers.items() if b not in right for s in steps)
+        return Resolution(situation, right, frozenset(wrong))
 
     def take_back(self, demonstration: str, number: int) -> None:
         """Forget a step that was undone; what it contradicted is news again."""

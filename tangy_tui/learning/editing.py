@@ -23,7 +23,7 @@ from tangy_profiles.teaching_records import (
     Restoration,
     Settlement,
 )
-from tangy_tui.learning.conflicts import Conflict
+from tangy_tui.learning.conflicts import Conflict, Resolution
 from tangy_tui.learning.library import (
     Edit,
     Library,
@@ -118,9 +118,13 @@ class Editor:
         """Say which answers to a situation are right, shown or not; the other steps are wrong."""
         if not right:
             raise NotPossible("Say which answer is right.")
-        for behaviour in right:
+        return self.settle(conflict.resolved(*right))
+
+    def settle(self, resolution: Resolution) -> Edit:
+        """Note what a teacher says of a situation."""
+        for behaviour in resolution.right:
             self.activity.behaviour(behaviour)
-        return self._edit(Settlement(resolution=conflict.resolved(*right)))
+        return self._edit(Settlement(resolution=resolution))
 
     def undo(self) -> Edit:
         """Take back the last edit."""

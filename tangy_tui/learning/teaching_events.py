@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
@@ -49,7 +49,19 @@ class Again:
     kept: int
 
 
-TeacherCommand: TypeAlias = Say | Reply | Undo | Redo | Next | Again
+RemarkAnswer = Literal["this", "earlier", "both", "undo", "later"]
+"""What can be answered to a remark: this step is right, the earlier one, both; take this one back,
+or decide later."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settle:
+    """Answer the remark that was made on the last step."""
+
+    answer: RemarkAnswer
+
+
+TeacherCommand: TypeAlias = Say | Reply | Undo | Redo | Next | Again | Settle
 
 
 # ---------------------------------------------------------------------------- what follows
@@ -76,6 +88,47 @@ class Contradicted:
     earlier: Shown
     own: bool
     """Whether the same teacher has shown it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Overlooked:
+    """Step `number` passed over its stage, in which the behaviour `due` was to come."""
+
+    number: int
+    step: Step
+    due: str | None
+    """None where the rules of the activity name no behaviour."""
+
+
+@dataclass(frozen=True, slots=True)
+class WrongPerson:
+    """Step `number` went to a person who had not asked; `waiting` is who had."""
+
+    number: int
+    step: Step
+    waiting: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class EndedEarly:
+    """Step `number` ended the game before `lacks`, after which games of this activity end."""
+
+    number: int
+    step: Step
+    lacks: str
+
+
+Remark: TypeAlias = Contradicted | Overlooked | WrongPerson | EndedEarly
+"""What is said of a step at once, and can be answered or put off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """A remark was answered; `right` are the behaviours called right in its situation."""
+
+    remark: Remark
+    answer: RemarkAnswer
+    right: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +161,8 @@ TeachingEvent: TypeAlias = (
     | Refused
     | Rejected
     | Executed
-    | Contradicted
+    | Remark
+    | Settled
     | StepUndone
     | Begun
     | Finished

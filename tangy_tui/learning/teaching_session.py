@@ -9,7 +9,6 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
@@ -27,17 +26,20 @@ from tangy_profiles.teaching_records import (
 )
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.conflicts import Shown
-from tangy_tui.learning.contradictions import Contradictions
 from tangy_tui.learning.editing import new_id
+from tangy_tui.learning.game_replay import MakeWorld, replay_game, shown_again
 from tangy_tui.learning.library import read_library
+from tangy_tui.learning.remarks import Remarks
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
-    Contradicted,
     Executed,
     Finished,
     Next,
     Redo,
+    Remark,
+    RemarkAnswer,
+    Settle,
     StepUndone,
     TeacherCommand,
     TeachingEvent,
@@ -57,10 +59,8 @@ from tangy_tui.world import World
 
 _LOG = logging.getLogger(__name__)
 
+NO_REMARK = "There is nothing to settle: the last step raised no question."
 NOTHING_SAID = "(nothing: there are no numbers to say)"
-
-MakeWorld: TypeAlias = Callable[[Demonstration], World]
-"""Make the world of a demonstration (its seed, people, guided), ready at its first state."""
 
 
 class NotAsBefore(Exception):
@@ -109,7 +109,7 @@ class TeachingSession:
         self._make_world = make_world
         self._seed = seed
         self._logged = False
-        self._contradictions: Contradictions | None = None  # read where they are needed first
+        self._remarks = Remarks(activity, teacher, store)
 
     @property
     def people(self) -> tuple[str, ...]:
@@ -132,7 +132,12 @@ class TeachingSession:
         if self.demonstration.finished:
             return ()
         situation = self.world.observe().situation
-        return self._verifier.sayable(self._read_contradictions().usual(situation))
+        return self._verifier.sayable(self._remarks.usual(situation))
+
+    @property
+    def remark(self) -> Remark | None:
+        """What was said of the last step, while it can be answered."""
+        return self._remarks.open
 
     def name(self, person: str) -> str:
         """Return a person's name, or the id of somebody who has none here."""
@@ -195,7 +200,10 @@ class TeachingSession:
     def _heed(self, command: TeacherCommand) -> list[TeachingEvent]:
         match command:
             case Say():
+                self._remarks.open = None  # put off
                 return self._say(command)
+            case Settle(answer):
+                return self._settle(answer)
             case Reply():
                 return self._told(self._verifier.reply(command))
             case Undo():
@@ -203,6 +211,7 @@ class TeachingSession:
             case Redo():
                 return self._redo()
             case Next():
+                self._remarks.open = None  # put off
                 if self.demonstration.finished:
                     return self._begin_new()
                 return [Refused("This demonstration is not finished yet.")]
@@ -238,23 +247,10 @@ class TeachingSession:
 
     def _begin_again(self, again: Again) -> list[TeachingEvent]:
         library = read_library(self._store, self.activity.name)
-        entry = library.find(again.demonstration)
-        source, kept = entry.demonstration, again.kept
-        if entry.hidden not in ("", "deleted"):
-            return [Refused(f"It is not in use ({entry.hidden}): show again what took its place.")]
-        if not source.replayable:
-            return [Refused("It was not shown in one game, so there is no game to go back to.")]
-        if not 0 <= kept < len(source.steps):
-            return [Refused(f"It has {len(source.steps)} steps: there is no step {kept + 1}.")]
-        new = replace(
-            source,
-            id=new_id(),
-            teacher=self.teacher,
-            steps=source.steps[:kept],
-            finished=False,
-            origin="again",
-            of=(source.id,),
-        )
+        try:
+            new = shown_again(library, again, self.teacher)
+        except TangyError as error:
+            return [Refused(str(error))]
         world = self._replay(new)
         if world is None:
             return [Refused("It was made with another simulator: show the whole game anew.")]
@@ -297,13 +293,16 @@ class TeachingSession:
 
         events = self._carry_out(behaviour, verified.target, log)
         self._undone = []
+        remark = self.remark
+        if remark is not None:
+            events.insert(1, remark)
         return events
 
     def _carry_out(
         self, behaviour: Behaviour, target: str | None, log: Callable[[Step], Step]
     ) -> list[TeachingEvent]:
         """Execute a behaviour in the world and log the step; what is not logged did not happen."""
-        contradictions = self._read_contradictions()
+        self._remarks.read()
         before = self.world.observe()
         action = self.activity.action(behaviour, target, None)
         outcome = self.world.execute(action)
@@ -326,19 +325,16 @@ class TeachingSession:
         image = fill(action.image, name, outcome.numbers)
         events: list[TeachingEvent] = [Executed(number, step, action, outcome, speech, image)]
         shown = Shown(self.demonstration.id, self.teacher, number, step)
-        if (earlier := contradictions.found(shown)) is not None:
-            own = earlier.teacher == self.teacher
-            events.append(Contradicted(number, step, earlier, own))
+        self._remarks.notice(shown, over=finished)
         if finished:
             events.append(Finished(self.demonstration))
         return events
 
-    def _read_contradictions(self) -> Contradictions:
-        """Return what was shown before, which is read from the log once."""
-        if self._contradictions is None:
-            library = read_library(self._store, self.activity.name)
-            self._contradictions = Contradictions(library.demonstrations, library.resolutions)
-        return self._contradictions
+    def _settle(self, answer: RemarkAnswer) -> list[TeachingEvent]:
+        if answer == "undo" and self.remark is not None:
+            return self._undo()
+        settled = self._remarks.answer(answer)
+        return [Refused(NO_REMARK)] if settled is None else [settled]
 
     def _log_beginning(self) -> None:
         """Log the demonstration with its first step, so that looking in leaves no empty one."""
@@ -356,12 +352,11 @@ class TeachingSession:
         with self._store.transaction():
             self._log_beginning()
             self._store.append(DemonstrationStepUndone(demonstration=shorter.id, step=number))
+            self._remarks.take_back(shorter.id, number, last)
         self._logged = True
         undone = [*self._undone, last]
         self._enter(shorter, world)
         self._undone = undone
-        if self._contradictions is not None:
-            self._contradictions.take_back(self.demonstration.id, number)
         return [StepUndone(number, last)]
 
     def _redo(self) -> list[TeachingEvent]:
@@ -383,16 +378,10 @@ class TeachingSession:
         except NotAsBefore:
             return [Refused("This step cannot be done again: the simulator has changed since.")]
         self._undone.pop()
+        self._remarks.open = None  # it was said when the step was shown first
         return events
 
     def _replay(self, demonstration: Demonstration) -> World | None:
         """Make the world that a demonstration led to; None if its states come out differently."""
-        world = self._make_world(demonstration)
-        for step in demonstration.steps:
-            behaviour = self.activity.behaviours.get(step.behaviour)
-            if behaviour is None or world.observe() != step.state:
-                return None
-            world.execute(self.activity.action(behaviour, step.target, None))
-            if world.observe() != step.after:
-                return None
-        return world
+        replay = replay_game(self.activity, self._make_world, demonstration)
+        return None if replay is None else replay.world

@@ -7,14 +7,19 @@ from collections.abc import Iterable, Sequence
 from tangy_tui.learning.teaching_events import (
     Begun,
     Contradicted,
+    EndedEarly,
     Executed,
     Finished,
+    Overlooked,
+    Settled,
     StepUndone,
     TeachingEvent,
+    WrongPerson,
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.remarks import remark_lines, settled_words
 from tangy_tui.text.situations import step_words, verification_lines
 
 
@@ -28,8 +33,11 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
                 f"{number}. {step_words(teaching.activity, step, teaching.name)}",
                 f"   Tangy says: {speech}",
             ]
-        case Contradicted():
-            return [f"   ! {contradicted_words(event, teaching)}"]
+        case Contradicted() | Overlooked() | WrongPerson() | EndedEarly():
+            game = teaching.demonstration.id
+            return remark_lines(event, teaching.activity, teaching.name, game)
+        case Settled():
+            return [settled_words(event, teaching.activity)]
         case StepUndone(number, step):
             return [f"Step {number} is undone: {step.behaviour}."]
         case Begun(demonstration, resumed):
@@ -87,23 +95,6 @@ OVER = "The game is over. Press F7 for another game, or F5 to let Tangy learn."
 def new_words(situation: str) -> str:
     """Say that a situation was not shown before."""
     return f"New to Tangy: {situation}."
-
-
-def contradicted_words(event: Contradicted, teaching: TeachingSession) -> str:
-    """Say what was shown differently in this situation before, and what can be done about it."""
-    done = teaching.activity.behaviour(event.earlier.step.behaviour).question
-    number = event.earlier.number
-    here = event.earlier.demonstration == teaching.demonstration.id
-    where = f"step {number}" if here else f"step {number} of another game"
-    if event.own:
-        return (
-            f"You did something else in this situation before: {done} ({where}). "
-            "If this is a slip, undo it."
-        )
-    return (
-        f"{event.earlier.teacher} did something else in this situation: {done} ({where}). "
-        "Which is right? Undo yours, or settle it in the library."
-    )
 
 
 def undone_words(undone: Sequence[StepUndone]) -> str:

@@ -10,9 +10,22 @@ from textual.widgets import Static
 
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, missing_words
-from tangy_tui.learning.teaching_events import Executed, StepUndone
+from tangy_tui.learning.teaching_events import (
+    Begun,
+    Contradicted,
+    EndedEarly,
+    Executed,
+    Finished,
+    Overlooked,
+    Remark,
+    Settled,
+    StepUndone,
+    TeachingEvent,
+    WrongPerson,
+)
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text import teaching as text
+from tangy_tui.text.remarks import remark_words, settled_words
 from tangy_tui.text.situations import state_words, step_words
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
@@ -36,6 +49,22 @@ class TeachingPicture:
         self._teaching = teaching
         self._shown = ShownSoFar(workspace, teaching)
 
+    def tell(self, event: TeachingEvent) -> None:
+        """Show what followed from a command."""
+        match event:
+            case Executed():
+                self.step(event)
+            case Contradicted() | Overlooked() | WrongPerson() | EndedEarly():
+                self.remark(event)
+            case Settled():
+                self._log.write(settled_words(event, self._teaching.activity), "dim")
+            case StepUndone():
+                self._screen.query_one(Transcript).remove_last()
+            case Begun(_, resumed):
+                self.beginning(resumed)
+            case Finished(demonstration):
+                self._log.write(text.complete_words(len(demonstration.steps)), "good")
+
     def step(self, event: Executed) -> None:
         """Show a step that was carried out."""
         activity, situation = self._teaching.activity, event.step.state.situation
@@ -47,6 +76,12 @@ class TeachingPicture:
         self._log.write(event.speech)
         self._screen.query_one(RoomView).say(event.speech)
         self._scene(event.step.state.place)
+
+    def remark(self, remark: Remark) -> None:
+        """Tell of a step that may have overlooked something."""
+        teaching = self._teaching
+        game = teaching.demonstration.id
+        self._log.write(remark_words(remark, teaching.activity, teaching.name, game), "warn")
 
     def undone(self, undone: Sequence[StepUndone]) -> None:
         """Tell of steps that were taken back, the last one first."""
@@ -66,10 +101,6 @@ class TeachingPicture:
         goes_on = resumed or shown.origin == "again"
         words = text.beginning_words(teaching, resumed=resumed)
         self._log.write(words, "good" if goes_on else "dim")
-
-    def finished(self, steps: int) -> None:
-        """Say that the game is over."""
-        self._log.write(text.complete_words(steps), "good")
 
     def state(self) -> None:
         """Show where the game is, and what was shown up to here."""

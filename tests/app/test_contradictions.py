@@ -48,10 +48,7 @@ def test_what_another_teacher_did_in_the_same_situation_is_told(workspace: Works
         "Ada",
         "greeting",
     )
-    (line,) = teaching_lines(told, bea)
-    assert (
-        "Ada did something else in this situation: greet everyone (step 1 of another game)" in line
-    )
+    assert "Ada showed: greet everyone (step 1 of another game)" in teaching_lines(told, bea)[0]
 
 
 def test_what_one_did_oneself_is_told(workspace: Workspace) -> None:
@@ -59,7 +56,7 @@ def test_what_one_did_oneself_is_told(workspace: Workspace) -> None:
     (told,) = do(teaching, "greet everyone", "call number", "tell a joke")
     assert told.own
     assert told.earlier.step.behaviour == "call number"
-    assert "If this is a slip, undo it." in teaching_lines(told, teaching)[0]
+    assert "you showed: call number (step 2)" in teaching_lines(told, teaching)[0]
 
 
 def test_it_is_told_once_and_again_only_after_an_undo(workspace: Workspace) -> None:

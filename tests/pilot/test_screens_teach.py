@@ -316,6 +316,8 @@ async def test_going_where_nobody_asks_is_refused_with_a_way_out(
         assert "go to user 1" in screen_text(pilot.app)
         await pilot.press("end")  # what was typed is still there
         await say(pilot, " 3")
+        await pilot.press("escape")  # nobody asked: that is remarked
+        await pilot.pause()
         assert workspace.store.last("demonstration step") is not None
         assert "Tangy is with User 3" in str(pilot.app.screen.query_one("#now", Static).render())
 

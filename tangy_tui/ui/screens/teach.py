@@ -12,19 +12,18 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 from textual.widgets import Static
-from textual.worker import Worker
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.command_grammar import AgainFrom, Leave, read_teaching
+from tangy_tui.app.command_grammar import AgainFrom, Leave, read_settling, read_teaching
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
-    Contradicted,
     Executed,
-    Finished,
     Next,
     Redo,
+    Remark,
+    Settle,
     StepUndone,
     TeacherCommand,
     TeachingEvent,
@@ -45,14 +44,15 @@ from tangy_tui.text.questions import REJECTED, not_understood_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
+from tangy_tui.ui.dialogs.remark import remark_dialog
 from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
-from tangy_tui.ui.policy_preview import show_why
 from tangy_tui.ui.screens import teach_keys
 from tangy_tui.ui.screens.teach_hearing import TeachHearing
 from tangy_tui.ui.screens.teach_keys import WATCHING
 from tangy_tui.ui.screens.teach_scripted import follow_script
+from tangy_tui.ui.screens.teach_why import TeachWhy
 from tangy_tui.ui.speaking import preference_of, speaker_of
 from tangy_tui.ui.teaching_picture import TeachingPicture
 from tangy_tui.ui.widgets.command_bar import CommandBar
@@ -108,7 +108,7 @@ class TeachScreen(TangyScreen[bool]):
         self._begun = list(begun)
         self._picture = TeachingPicture(self, workspace, teaching)
         self._listener = TeachHearing(self, workspace, teaching, self._apply)
-        self._thinking: Worker[None] | None = None
+        self._why = TeachWhy(self, workspace, teaching)
 
     def compose(self) -> ComposeResult:
         """Lay out status, room, what was said, the trajectory, the situation, the commands."""
@@ -162,6 +162,10 @@ class TeachScreen(TangyScreen[bool]):
         """Put a typed command to Tangy."""
         event.stop()
         self._listener.by_voice = False
+        remark = self._teaching.remark
+        if remark is not None and (settle := read_settling(event.text, remark)) is not None:
+            self._apply(settle)
+            return
         word = read_teaching(event.text, self._teaching.phrasebook.game)
         match word:
             case None | "where" | "what to do" | "faults":
@@ -192,7 +196,7 @@ class TeachScreen(TangyScreen[bool]):
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave a scripted teacher alone: who watches can only look, leave or stop."""
         if action == "think_no_more":
-            return self._thinks
+            return self._why.thinks
         if action == "talk":
             return self._listener.by_key
         alone = ("undo", "redo", "again", "next", "learn")
@@ -274,26 +278,12 @@ class TeachScreen(TangyScreen[bool]):
     def action_why(self) -> None:
         """Tell what Tangy would do in the chosen step's situation, or here, and why."""
         self.query_one(CommandBar).ready()
-        if self._thinks:
-            return
-        present = self._teaching.demonstration
-        number = self.query_one(Transcript).chosen
-        state = (
-            self._teaching.world.observe() if number is None else present.steps[number - 1].state
-        )
-        thinking = show_why(self, self._workspace, present, state.situation)
-        self._thinking = self.run_worker(thinking, name="why")
-
-    @property
-    def _thinks(self) -> bool:
-        """Whether Tangy is thinking over what it would do."""
-        return self._thinking is not None and not self._thinking.is_finished
+        self._why.show(self.query_one(Transcript).chosen)
 
     def action_think_no_more(self) -> None:
         """Give up what is being thought over, and stay here."""
-        if self._thinking is not None:
-            self._thinking.cancel()
-            self._log.write("Cancelled.", "dim")
+        self._why.cancel()
+        self._log.write("Cancelled.", "dim")
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Tell why, for the step that was chosen with Enter."""
@@ -365,24 +355,27 @@ class TeachScreen(TangyScreen[bool]):
                     if heard:
                         self._listener.give_back(heard)
                 case Executed():
-                    self._picture.step(event)
                     preference = preference_of(self._workspace, event.action.target)
                     speaker_of(self.app).interject(event.speech, preference)
-                case Contradicted():
-                    self._log.write(text.contradicted_words(event, self._teaching), "warn")
                 case StepUndone():
-                    self.query_one(Transcript).remove_last()
                     speaker_of(self.app).hush()
-                case Begun(_, resumed):
-                    self._picture.beginning(resumed)
+                case Begun():
                     self._listener.refresh()
-                case Finished(demonstration):
-                    self._picture.finished(len(demonstration.steps))
+            self._picture.tell(event)
         if undone:
             self._picture.undone(undone)
         bar.ready()
         self._picture.state()
-        self._listener.open(True)
+        remark = self._teaching.remark
+        quiet = self._scripted is not None or self._listener.by_voice
+        if remark is not None and remark in events and not quiet:
+            self.run_worker(self._remark(remark), name="remark")
+        else:
+            self._listener.open(True)
+
+    async def _remark(self, remark: Remark) -> None:
+        """Let a remark be answered in place; one on a spoken step is answered by its word."""
+        self._apply(Settle(await self._alone(remark_dialog(remark, self._teaching))))
 
     async def _verify(self, asked: Asked | Offered) -> None:
         """Put the question, and give its answer to the session when its dialog has gone."""

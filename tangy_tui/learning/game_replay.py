@@ -1,0 +1,67 @@
+"""Demonstrated games, played again step by step in worlds of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
+from tangy_tui.learning.editing import new_id
+from tangy_tui.learning.library import Library
+from tangy_tui.learning.teaching_events import Again
+from tangy_tui.world import World
+
+MakeWorld: TypeAlias = Callable[[Demonstration], World]
+"""Make the world of a demonstration (its seed, people, guided), ready at its first state."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayedGame:
+    """The world that a demonstration led to, and the numbers that each step was about."""
+
+    world: World
+    numbers: tuple[tuple[int, ...], ...]
+
+
+def replay_game(
+    activity: Activity, make_world: MakeWorld, demonstration: Demonstration
+) -> ReplayedGame | None:
+    """Play a demonstration again; None if its states come out differently."""
+    world = make_world(demonstration)
+    numbers: list[tuple[int, ...]] = []
+    for step in demonstration.steps:
+        behaviour = activity.behaviours.get(step.behaviour)
+        if behaviour is None or world.observe() != step.state:
+            return None
+        numbers.append(world.execute(activity.action(behaviour, step.target, None)).numbers)
+        if world.observe() != step.after:
+            return None
+    return ReplayedGame(world, tuple(numbers))
+
+
+def shown_again(library: Library, again: Again, teacher: str) -> Demonstration:
+    """Return the demonstration that shows another one again, with the steps that it keeps.
+
+    Raises:
+        TangyError: it cannot be shown again; says why.
+    """
+    entry = library.find(again.demonstration)
+    source, kept = entry.demonstration, again.kept
+    if entry.hidden not in ("", "deleted"):
+        raise TangyError(f"It is not in use ({entry.hidden}): show again what took its place.")
+    if not source.replayable:
+        raise TangyError("It was not shown in one game, so there is no game to go back to.")
+    if not 0 <= kept < len(source.steps):
+        raise TangyError(f"It has {len(source.steps)} steps: there is no step {kept + 1}.")
+    return replace(
+        source,
+        id=new_id(),
+        teacher=teacher,
+        steps=source.steps[:kept],
+        finished=False,
+        origin="again",
+        of=(source.id,),
+    )

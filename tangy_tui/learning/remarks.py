@@ -1,0 +1,195 @@
+"""What a teacher may have overlooked, told as soon as it is taught, each once.
+
+A step that differs from what was shown before, a stage that was passed over, a person who did not
+ask, a game that ends too early: the teacher who knows what is right is there now, and may have gone
+when the demonstrations are learnt from.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from tangy_profiles.activity import Activity, StageRule
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.demonstration import Step
+from tangy_profiles.effects import Effect
+from tangy_profiles.state import FRONT, Situation
+from tangy_profiles.store import Store
+from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.contradictions import Contradictions
+from tangy_tui.learning.editing import Editor
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.teaching_events import (
+    Contradicted,
+    EndedEarly,
+    Overlooked,
+    Remark,
+    RemarkAnswer,
+    Settled,
+    WrongPerson,
+)
+
+Kind = Literal["stage", "person", "end"]
+
+
+def answers_to(remark: Remark) -> tuple[RemarkAnswer, ...]:
+    """Return what can be answered to a remark, in the order of the numbers it is answered by."""
+    match remark:
+        case Contradicted():
+            return ("this", "earlier", "both", "undo")
+        case Overlooked():
+            return ("undo", "this")
+        case WrongPerson() | EndedEarly():
+            return ("undo",)
+
+
+class Remarks:
+    """Looks at each step that is taught; `open` is the remark that can be answered now."""
+
+    def __init__(self, activity: Activity, teacher: str, store: Store) -> None:
+        """Make it for a teacher; what was shown before is read when it is needed first."""
+        self.open: Remark | None = None
+        self._activity = activity
+        self._teacher = teacher
+        self._store = store
+        self._contradictions: Contradictions | None = None
+        self._told: set[tuple[Kind, Situation]] = set()
+        self._settled: dict[int, int] = {}  # by step: the edit that its answer made
+
+    @property
+    def _shown(self) -> Contradictions:
+        """What was shown before; what this teacher was told of it is no news any more."""
+        if self._contradictions is None:
+            library = read_library(self._store, self._activity.name)
+            self._contradictions = Contradictions(
+                library.demonstrations, library.resolutions, teacher=self._teacher
+            )
+        return self._contradictions
+
+    def usual(self, situation: Situation) -> tuple[str, ...]:
+        """Return the behaviours that were shown in a situation, the one shown most often first."""
+        return self._shown.usual(situation)
+
+    def read(self) -> None:
+        """Read what was shown before, unless it is known: a step that is new is not in it yet."""
+        _ = self._shown
+
+    def notice(self, shown: Shown, *, over: bool) -> None:
+        """Take a new step; what is to be said of it, if that is news, is open from then on.
+
+        Args:
+            shown: the step.
+            over: the game is over with it.
+        """
+        known = self.usual(shown.step.state.situation)
+        earlier = self._shown.found(shown)
+        self.open = None
+        if earlier is not None:
+            own = earlier.teacher == self._teacher
+            self.open = Contradicted(shown.number, shown.step, earlier, own)
+        elif not known or self._goes(shown):
+            self.open = self._overlooked(shown, over=over)
+
+    def answer(self, answer: RemarkAnswer) -> Settled | None:
+        """Note what a teacher says of the open remark, as when its conflict is settled later.
+
+        Returns:
+            What was settled; None where there is no remark that could be.
+        """
+        remark, self.open = self.open, None
+        if remark is None:
+            return None
+        situation, done = remark.step.state.situation, remark.step.behaviour
+        other = remark.earlier.step.behaviour if isinstance(remark, Contradicted) else done
+        answers: dict[RemarkAnswer, tuple[str, ...]] = {
+            "this": (done,),
+            "earlier": (other,),
+            "both": (done, other),
+        }
+        right = answers.get(answer, ())
+        if right:
+            said = self._shown.resolved(situation, right, keep=answer == "both")
+            editor = Editor(self._store, self._activity)
+            self._settled[remark.step.id] = editor.settle(said).seq
+            self._contradictions = None  # it is read anew, with what was said
+        return Settled(remark, answer, right)
+
+    def take_back(self, demonstration: str, number: int, step: Step) -> None:
+        """Forget a step that was undone, and its answer; what was said of it is news again."""
+        self.open = None
+        self._told = {(kind, of) for kind, of in self._told if of != step.state.situation}
+        if self._contradictions is not None:
+            self._contradictions.take_back(demonstration, number)
+        settled = self._settled.pop(step.id, None)
+        editor = Editor(self._store, self._activity)
+        if settled is not None and editor.library.done and editor.library.done[-1].seq == settled:
+            editor.undo()
+            self._contradictions = None
+
+    def _goes(self, shown: Shown) -> bool:
+        """Say whether a step goes to a person: the same behaviour may be right for another one."""
+        return self._activity.behaviour(shown.step.behaviour).effect == "go to user"
+
+    def _overlooked(self, shown: Shown, *, over: bool) -> Remark | None:
+        step, activity = shown.step, self._activity
+        state, behaviour = step.state, activity.behaviour(step.behaviour)
+        target = step.target
+        if behaviour.effect == "go to user" and target is not None:
+            if state.user(target).request == "AR" or not self._is_news("person", state.situation):
+                return None
+            return WrongPerson(shown.number, step, state.attended)
+        if activity.expected.get(state.situation) == step.behaviour:
+            return None
+        rule = next(r for r in activity.stage_rules if r.stage == state.stage)
+        if over and rule.condition != "after":
+            ends = [r.behaviour for r in activity.stage_rules if r.condition == "after"]
+            if ends and self._is_news("end", state.situation):
+                return EndedEarly(shown.number, step, ends[0])
+            return None
+        if not self._passes_over(rule, behaviour, shown):
+            return None
+        if not self._is_news("stage", state.situation):
+            return None
+        return Overlooked(shown.number, step, self._due(rule, shown))
+
+    def _passes_over(self, rule: StageRule, behaviour: Behaviour, shown: Shown) -> bool:
+        """Say whether a behaviour lets a stage wait in which something else is due."""
+        step = shown.step
+        match rule.condition:
+            case "before":
+                return behaviour.name != rule.behaviour
+            case "count":
+                return behaviour.name == rule.behaviour  # it goes on as if nothing were due
+            case "beside requester":
+                return not behaviour.attends and behaviour.effect != "go to front"
+            case "requested or away":
+                waits = step.state.situation.request == "AR" or step.state.place != FRONT
+                return waits and behaviour.effect not in ("go to user", "go to front")
+            case "after":
+                return behaviour.effect == "draw"
+            case _:
+                return False
+
+    def _due(self, rule: StageRule, shown: Shown) -> str | None:
+        """Return the behaviour that the rules of the activity name for a stage."""
+        match rule.condition:
+            case "before":
+                return rule.behaviour
+            case "count":
+                return rule.since
+            case "requested or away":
+                asked = shown.step.state.situation.request == "AR"
+                return self._with_effect("go to user" if asked else "go to front")
+            case "after":
+                return self._with_effect("finish")
+            case _:
+                return None
+
+    def _with_effect(self, effect: Effect) -> str | None:
+        found = (b.name for b in self._activity.behaviours.values() if b.effect == effect)
+        return next(found, None)
+
+    def _is_news(self, kind: Kind, situation: Situation) -> bool:
+        news = (kind, situation) not in self._told
+        self._told.add((kind, situation))
+        return news

@@ -1,0 +1,103 @@
+"""Remarks on a step in words: what may have been overlooked, and what can be answered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import assert_never
+
+from tangy_profiles.activity import Activity
+from tangy_tui.learning.remarks import answers_to
+from tangy_tui.learning.teaching_events import (
+    Contradicted,
+    EndedEarly,
+    Overlooked,
+    Remark,
+    RemarkAnswer,
+    Settled,
+    WrongPerson,
+)
+from tangy_tui.text.numbers import listed
+
+Name = Callable[[str], str]
+
+ANSWER_BY_LINE = "Type a number, or just go on: you can decide later."
+NUMBER_OR_ESC = "Press the number of an answer, or Esc."
+LATER = "decide later"
+GO_ON = "go on"
+
+
+def remark_words(remark: Remark, activity: Activity, name: Name, game: str = "") -> str:
+    """Say what may have been overlooked.
+
+    Args:
+        remark: the remark.
+        activity: what is taught.
+        name: gives a person's name for an id.
+        game: the demonstration that is being shown.
+    """
+    done = activity.behaviour(remark.step.behaviour).question
+    match remark:
+        case Contradicted(earlier=earlier, own=own):
+            other = activity.behaviour(earlier.step.behaviour).question
+            elsewhere = "" if earlier.demonstration == game else " of another game"
+            who = "you" if own else earlier.teacher
+            return (
+                f"This time you showed: {done}. In the same situation {who} showed: {other} "
+                f"(step {earlier.number}{elsewhere}). What should Tangy learn?"
+            )
+        case Overlooked(step=step, due=due):
+            where = activity.in_words(step.state.situation)
+            better = "" if due is None else f" A host might {activity.behaviour(due).question}."
+            return f"Something may be overlooked here: {where}.{better} You showed: {done}."
+        case WrongPerson(step=step, waiting=waiting):
+            to = name(step.target or "")
+            others = "Nobody did." if waiting is None else f"{name(waiting)} is waiting."
+            return f"{to} did not ask for help. {others}"
+        case EndedEarly(lacks=lacks):
+            return f"The game ended early: nobody got to “{activity.behaviour(lacks).question}”."
+        case _:
+            assert_never(remark)
+
+
+def answer_words(remark: Remark, activity: Activity) -> tuple[str, ...]:
+    """Say what each answer means, in the order of their numbers."""
+    return tuple(_answer(remark, answer, activity) for answer in answers_to(remark))
+
+
+def _answer(remark: Remark, answer: RemarkAnswer, activity: Activity) -> str:
+    done = activity.behaviour(remark.step.behaviour).question
+    match answer:
+        case "this":
+            return f"this step: {done}" if isinstance(remark, Contradicted) else "it is right so"
+        case "earlier" if isinstance(remark, Contradicted):
+            return f"the earlier one: {activity.behaviour(remark.earlier.step.behaviour).question}"
+        case "both":
+            return "both are fine"
+        case "undo":
+            return "a slip: undo this step"
+        case _:
+            return LATER
+
+
+def later_words(remark: Remark) -> str:
+    """Say what comes of leaving a remark unanswered."""
+    return LATER if isinstance(remark, Contradicted) else GO_ON
+
+
+def remark_lines(remark: Remark, activity: Activity, name: Name, game: str = "") -> list[str]:
+    """Put a remark into lines, with what can be answered."""
+    numbered = enumerate(answer_words(remark, activity), 1)
+    return [
+        f"   ! {remark_words(remark, activity, name, game)}",
+        *(f"     {number}  {words}" for number, words in numbered),
+        f"   {ANSWER_BY_LINE}",
+    ]
+
+
+def settled_words(settled: Settled, activity: Activity) -> str:
+    """Say what came of the answer to a remark."""
+    if not settled.right:
+        return "Left open. Before Tangy learns, it asks again which is right."
+    right = listed((activity.behaviour(b).question for b in settled.right), "and")
+    are = "is" if len(settled.right) == 1 else "are both"
+    return f"{activity.in_words(settled.remark.step.state.situation)}: {right} {are} right."

@@ -1,0 +1,111 @@
+"""A remark on the last step, in the place of the command bar: a number answers it, esc waits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.content import Content
+from textual.widgets import Static
+
+from tangy_tui.learning.remarks import answers_to
+from tangy_tui.learning.teaching_events import Remark, RemarkAnswer
+from tangy_tui.learning.teaching_session import TeachingSession
+from tangy_tui.text.questions import TOO_EARLY
+from tangy_tui.text.remarks import NUMBER_OR_ESC, answer_words, later_words, remark_words
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
+
+
+class RemarkDialog(Dialog[RemarkAnswer]):
+    """Says what may have been overlooked; a number answers it, esc leaves it for later."""
+
+    DEFAULT_CSS = """
+    RemarkDialog { align: left bottom; background: transparent; }
+    RemarkDialog > .box {
+        width: 100%; max-width: 100%; border: none; padding: 0 1; background: $surface;
+    }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("1", "nothing", "The answer of this number", key_display="1-4"),
+        Binding("escape", "nothing", "Decide later"),
+    ]
+    HELP = (
+        "Your step differs from what was shown before, or something may have been overlooked. The "
+        "number of an answer gives it, and Tangy learns by that. Esc leaves it open: you are asked "
+        "once more before Tangy learns, and not again while you teach."
+    )
+
+    def __init__(
+        self,
+        sentence: str,
+        answers: Sequence[tuple[RemarkAnswer, str]],
+        later: str,
+        *,
+        clock: Clock | None = None,
+    ) -> None:
+        """Make the dialog.
+
+        Args:
+            sentence: the remark.
+            answers: what can be answered, with its words; the first one by 1.
+            later: what esc does, in words.
+            clock: seconds, on the scale of `time.monotonic` (default: the app's).
+        """
+        super().__init__("later")
+        self._sentence = clean(sentence)
+        self._answers = {str(n): (a, clean(words)) for n, (a, words) in enumerate(answers, 1)}
+        self._later = later
+        self._clock = clock
+        self._keys = FreshKeys()
+        self._told = ""
+
+    def compose(self) -> ComposeResult:
+        """Lay out the sentence and the answers."""
+        yield Static(self._content(), id="remark", classes="box")
+
+    def on_mount(self) -> None:
+        """Take note of the moment from which keys count."""
+        self._keys.watch(self, self._clock)
+
+    def on_key(self, event: events.Key) -> None:
+        """Answer by a number or esc, if the remark was seen by then."""
+        known = event.key == "escape" or event.key in self._answers
+        if not self._keys.take(event):
+            if known:
+                self._tell(TOO_EARLY)
+        elif event.key == "escape":
+            self.answer("later")
+        elif known:
+            self.answer(self._answers[event.key][0])
+        elif event.is_printable and event.key != "question_mark":
+            self._tell(NUMBER_OR_ESC)
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+
+    def _tell(self, sentence: str) -> None:
+        if sentence != self._told:
+            self._told = sentence
+            self.query_one("#remark", Static).update(self._content())
+
+    def _content(self) -> Content:
+        parts: list[str | tuple[str, str] | Content] = [(self._sentence, "$warning"), "\n"]
+        for number, (_, words) in self._answers.items():
+            parts += [(number, "$primary bold"), f" {words}   "]
+        parts += [("esc", "$primary bold"), f" {self._later}"]
+        if self._told:
+            parts += ["\n", (self._told, "$warning")]
+        return Content.assemble(*parts)
+
+
+def remark_dialog(remark: Remark, teaching: TeachingSession) -> RemarkDialog:
+    """Make the dialog for a remark of a session."""
+    activity, game = teaching.activity, teaching.demonstration.id
+    answers = zip(answers_to(remark), answer_words(remark, activity), strict=True)
+    sentence = remark_words(remark, activity, teaching.name, game)
+    return RemarkDialog(sentence, list(answers), later_words(remark))

@@ -1,0 +1,236 @@
+"""What a teacher may have overlooked is told at once, once, and can be answered or put off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.teaching_records import DemonstrationsEdited, Settlement
+from tangy_tui.app.command_grammar import read_settling
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.teaching import TeachingLines
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.remarks import answers_to
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.teaching_events import (
+    Contradicted,
+    EndedEarly,
+    Overlooked,
+    Remark,
+    Settle,
+    Settled,
+    StepUndone,
+    TeachingEvent,
+    Undo,
+    WrongPerson,
+)
+from tangy_tui.learning.teaching_session import TeachingSession
+from tangy_tui.learning.verification import Reply, Say
+
+REMARKS = (Contradicted, Overlooked, WrongPerson, EndedEarly)
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Iterator[Workspace]:
+    """A data folder without a game in it."""
+    opened = Workspace(tmp_path)
+    yield opened
+    opened.close()
+
+
+def session(workspace: Workspace, teacher: str = "Ada", seed: int = 1) -> TeachingSession:
+    teaching = workspace.teaching(teacher, seed)
+    teaching.begin(resume=False)
+    return teaching
+
+
+def show(teaching: TeachingSession, phrase: str) -> list[TeachingEvent]:
+    """Give a command, and say yes."""
+    teaching.apply(Say(phrase))
+    return teaching.apply(Reply(yes=True))
+
+
+def remarks(events: list[TeachingEvent]) -> list[Remark]:
+    return [event for event in events if isinstance(event, REMARKS)]
+
+
+def do(teaching: TeachingSession, *phrases: str) -> list[Remark]:
+    """Give commands, and return what was remarked on them."""
+    return [remark for phrase in phrases for remark in remarks(show(teaching, phrase))]
+
+
+def same(told: Remark, later: list[Remark]) -> list[Remark]:
+    """Return what was remarked in the same situation."""
+    return [r for r in later if r.step.state.situation == told.step.state.situation]
+
+
+def until(teaching: TeachingSession, stage: str) -> None:
+    """Teach as it is expected, up to a stage."""
+    script = ScriptedTeacher(teaching)
+    while teaching.world.observe().stage != stage:
+        command = script.command()
+        assert isinstance(command, Say)
+        assert not do(teaching, command.text)
+
+
+def unasked(teaching: TeachingSession) -> str:
+    """Return the phrase that goes to somebody who does not ask."""
+    users = teaching.world.observe().users
+    number = next(n for n, user in enumerate(users, 1) if user.request == "ANR")
+    return f"go to user {number}"
+
+
+# ------------------------------------------------------------------ five kinds of wrong teaching
+
+
+def test_a_stage_that_is_passed_over_is_told_once_with_what_was_due(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    until(teaching, "socialize")
+    (remark,) = do(teaching, "call number")
+    assert isinstance(remark, Overlooked)
+    assert remark.due == "joke"
+    assert same(remark, do(teaching, *["call number"] * 3)) == []
+
+
+def test_a_contradiction_to_oneself_is_told_once(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    (remark,) = do(teaching, "greet everyone", "call number", "tell a joke")
+    assert isinstance(remark, Contradicted)
+    assert remark.own
+    assert same(remark, do(teaching, "call number", "tell a joke")) == []
+    another = session(workspace, seed=2)
+    assert same(remark, do(another, "greet everyone", "tell a joke", "call number")) == []
+
+
+def test_a_contradiction_to_another_is_told_once_to_each_teacher(workspace: Workspace) -> None:
+    do(session(workspace, "Ada"), "greet everyone", "call number")
+    (remark,) = do(session(workspace, "Bea"), "greet everyone", "tell a joke")
+    assert isinstance(remark, Contradicted)
+    assert remark.earlier.teacher == "Ada"
+    bea = session(workspace, "Bea", 2)
+    assert same(remark, do(bea, "greet everyone", "tell a joke")) == []
+    (back,) = do(session(workspace, "Ada", 3), "greet everyone", "call number")
+    assert isinstance(back, Contradicted)
+    assert back.earlier.teacher == "Bea"
+
+
+def test_going_to_who_did_not_ask_is_told_once(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    until(teaching, "navigate")
+    waiting = teaching.world.observe().attended
+    assert waiting is not None
+    (remark,) = do(teaching, unasked(teaching))
+    assert isinstance(remark, WrongPerson)
+    assert remark.waiting == waiting
+    assert remarks(show(teaching, unasked(teaching))) == []
+
+
+def test_a_game_that_ends_before_its_end_is_told_with_what_lacks(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    do(teaching, "greet everyone")
+    (remark,) = do(teaching, "say goodbye")
+    assert isinstance(remark, EndedEarly)
+    assert remark.lacks == "celebrate"
+    assert [type(event) for event in teaching.apply(Settle("undo"))] == [StepUndone]
+    assert not teaching.demonstration.finished
+
+
+@pytest.mark.parametrize("seed", range(1, 9))
+@pytest.mark.parametrize("guided", [False, True])
+def test_a_faultless_teacher_hears_nothing(workspace: Workspace, seed: int, guided: bool) -> None:
+    teaching = workspace.teaching("Ada", seed, guided=guided)
+    teaching.begin(resume=False)
+    told = list(ScriptedTeacher(teaching).demonstrate())
+    assert teaching.demonstration.finished
+    assert remarks(told) == []
+
+
+# ------------------------------------------------------------------------------- the answers
+
+
+def contradict(workspace: Workspace) -> TeachingSession:
+    """Let Bea show something else than Ada did."""
+    do(session(workspace, "Ada"), "greet everyone", "call number")
+    teaching = session(workspace, "Bea", 2)
+    assert do(teaching, "greet everyone", "tell a joke")
+    return teaching
+
+
+@pytest.mark.parametrize(
+    ("answer", "right"),
+    [
+        ("this", {"joke"}),
+        ("earlier", {"call number"}),
+        ("both", {"joke", "call number"}),
+    ],
+)
+def test_the_answer_is_logged_as_a_settled_conflict(
+    workspace: Workspace, answer: str, right: set[str]
+) -> None:
+    teaching = contradict(workspace)
+    assert read_library(workspace.store, "bingo").all_conflicts
+    settle = read_settling(answer, teaching.remark) if teaching.remark else None
+    assert settle is not None
+    (settled,) = teaching.apply(settle)
+    assert isinstance(settled, Settled)
+    assert set(settled.right) == right
+    (event,) = workspace.store.events(DemonstrationsEdited)
+    assert isinstance(event.record.edit, Settlement)
+    assert set(event.record.edit.resolution.right) == right
+    assert not read_library(workspace.store, "bingo").all_conflicts
+    assert same(settled.remark, do(teaching, "call number", "tell a joke")) == []
+
+
+def test_what_is_put_off_stays_a_conflict_and_is_not_asked_again(workspace: Workspace) -> None:
+    teaching = contradict(workspace)
+    (settled,) = teaching.apply(Settle("later"))
+    assert isinstance(settled, Settled)
+    assert settled.right == ()
+    assert read_library(workspace.store, "bingo").all_conflicts
+    assert same(settled.remark, do(teaching, "tell a joke")) == []
+
+
+def test_going_on_puts_it_off(workspace: Workspace) -> None:
+    teaching = contradict(workspace)
+    teaching.apply(Say("call number"))
+    assert teaching.remark is None
+
+
+def test_undoing_the_step_takes_its_answer_back(workspace: Workspace) -> None:
+    teaching = contradict(workspace)
+    teaching.apply(Settle("this"))
+    teaching.apply(Undo())
+    library = read_library(workspace.store, "bingo")
+    assert not library.resolutions
+    assert len(do(teaching, "tell a joke")) == 1
+
+
+def test_a_passed_over_stage_can_be_called_right_for_good(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    until(teaching, "socialize")
+    do(teaching, "call number")
+    teaching.apply(Settle("this"))
+    (said,) = read_library(workspace.store, "bingo").resolutions
+    assert said.right == ("call number",)
+    assert said.wrong == frozenset()
+
+
+def test_numbers_and_words_answer_what_can_be_answered(workspace: Workspace) -> None:
+    remark = contradict(workspace).remark
+    assert remark is not None
+    read = [read_settling(text, remark) for text in ("1", "2", "3", "4", "5", "later", "hello")]
+    answers = [None if settle is None else settle.answer for settle in read]
+    assert answers == [*answers_to(remark), None, "later", None]
+
+
+async def test_a_remark_is_answered_by_lines(workspace: Workspace) -> None:
+    do(session(workspace, "Ada"), "greet everyone", "call number")
+    lines = iter(["greet everyone", "y", "tell a joke", "y", "2"])
+    said: list[str] = []
+    teaching = workspace.teaching("Bea", 2)
+    await TeachingLines(teaching, lambda: next(lines, None), said.append).run()
+    (conflict,) = read_library(workspace.store, "bingo").resolutions
+    assert conflict.right == ("call number",)
+    assert not teaching.remark, "it is asked once"

@@ -1,0 +1,93 @@
+"""A remark on a step stands in the place of the command line, and is answered by its number."""
+
+from __future__ import annotations
+
+import pytest
+from textual.pilot import Pilot
+
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.dialogs.remark import RemarkDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import Run, StillClock, screen_text
+
+
+def program(workspace: Workspace) -> Program:
+    """Make the program: Ada has called a number where Bea is about to tell a joke."""
+
+    async def start(started: Program) -> None:
+        ada = workspace.teaching("Ada", 1)
+        ada.begin()
+        for phrase in ("greet everyone", "call number"):
+            ada.apply(Say(phrase))
+            ada.apply(Reply(yes=True))
+        await started.push_screen(TeachScreen(workspace, workspace.teaching("Bea", 2)))
+
+    return Program(workspace, start, clock=StillClock())
+
+
+async def contradict(pilot: Pilot[None]) -> RemarkDialog:
+    """Teach as Bea, and return what is remarked."""
+    for phrase in ("greet everyone", "tell a joke"):
+        await pilot.press(*phrase, "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        await pilot.press("y")
+        await pilot.pause()
+    assert isinstance(pilot.app.screen, RemarkDialog)
+    return pilot.app.screen
+
+
+@pytest.mark.parametrize(
+    ("key", "right"), [("1", ("joke",)), ("2", ("call number",)), ("3", ("joke", "call number"))]
+)
+async def test_a_contradiction_is_answered_in_place(
+    run: Run, workspace: Workspace, key: str, right: tuple[str, ...]
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await contradict(pilot)
+        assert "Ada showed: call number" in " ".join(screen_text(pilot.app).split())
+        await pilot.press(key)
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        (said,) = read_library(workspace.store, "bingo").resolutions
+        assert said.right == right
+
+
+async def test_escape_puts_it_off_and_letters_type_the_next_command(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await contradict(pilot)
+        await pilot.press("x", "y", "enter")  # none of these answers
+        assert isinstance(pilot.app.screen, RemarkDialog)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert not read_library(workspace.store, "bingo").resolutions
+        await pilot.press(*"call")
+        assert pilot.app.screen.query_one(CommandBar).text == "call"
+
+
+async def test_a_slip_is_taken_back_from_there(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await contradict(pilot)
+        await pilot.press("4")
+        await pilot.pause()
+        assert pilot.app.screen.query_one(Transcript).count == 1
+
+
+async def test_a_remark_that_was_put_off_is_answered_by_no_later_number(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await contradict(pilot)
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("1", "enter")
+        await pilot.pause()
+        assert not read_library(workspace.store, "bingo").resolutions
