@@ -1,0 +1,60 @@
+"""A test that hangs fails, by its name, and holds up no other.
+
+pytest-timeout interrupts a test after the seconds of `timeout` in pyproject.toml, which says where
+it hung. What cannot be interrupted (a thread that is joined, a call that never returns, a clean-up
+that waits) would hold up the whole run even so: there the process is ended `GRACE` seconds later.
+Its stacks are written, and pytest-xdist names the test and goes on in another process.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+from typing import Any
+
+import pytest
+
+SLOW_SECONDS = 900
+"""How long a slow test may take that does not say so itself."""
+
+GRACE = float(os.environ.get("TANGY_TEST_GRACE", "60"))
+"""Seconds that an interrupted test has to clean up."""
+
+_STDERR = pytest.StashKey[int]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Keep the real standard error: while a test runs, what is written there is captured."""
+    capture = config.pluginmanager.getplugin("capturemanager")
+    with capture.global_and_fixture_disabled():
+        config.stash[_STDERR] = os.dup(2)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Give slow tests the time that they need."""
+    for item in items:
+        if item.get_closest_marker("slow") and not item.get_closest_marker("timeout"):
+            item.add_marker(pytest.mark.timeout(SLOW_SECONDS))
+
+
+def _end_process_after(item: pytest.Item, seconds: float) -> None:
+    faulthandler.dump_traceback_later(seconds, exit=True, file=item.config.stash[_STDERR])
+
+
+@pytest.hookimpl(wrapper=True, optionalhook=True)
+def pytest_timeout_set_timer(item: pytest.Item, settings: Any) -> Any:
+    """End the process where interrupting the test does not."""
+    _end_process_after(item, settings.timeout + GRACE)
+    return (yield)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_exception_interact(node: pytest.Item | pytest.Collector) -> None:
+    """Guard the clean-up of a test that failed: pytest and the plugin end their watch with it."""
+    if isinstance(node, pytest.Item):
+        _end_process_after(node, GRACE)
+
+
+def pytest_runtest_logfinish() -> None:
+    """Let the process live: the test is over."""
+    faulthandler.cancel_dump_traceback_later()
