@@ -273,10 +273,20 @@ def draw() -> Callable[[App[Any]], str]:
 
 
 @pytest.fixture
+def looks(snapshot: SnapshotAssertion) -> Callable[[App[Any]], None]:
+    """Compare what can be read on the screen, cell by cell, with what is kept of it."""
+
+    def compare(app: App[Any]) -> None:
+        assert screen_text(app) == snapshot
+
+    return compare
+
+
+@pytest.fixture
 def picture(
     snapshot: SnapshotAssertion, draw: Callable[[App[Any]], str]
 ) -> Callable[[App[Any]], None]:
-    """Compare the screen with its SVG picture, which is also there to be looked at."""
+    """Compare the screen with its SVG picture: for the few whose colours say something."""
     pictures = snapshot.use_extension(SVGImageSnapshotExtension)
 
     def compare(app: App[Any]) -> None:

@@ -386,9 +386,9 @@ async def test_how_asking_looks(
     workspace: Workspace,
     gappy: Policy,
     size: tuple[int, int],
-    picture: Callable[[App[None]], None],
+    looks: Callable[[App[None]], None],
 ) -> None:
     async with run(app=playing(workspace, gappy), size=size) as pilot:
         await asked(pilot)
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)

@@ -141,11 +141,11 @@ async def test_how_asking_with_ears_looks(
     workspace: Workspace,
     gappy: Policy,
     size: tuple[int, int],
-    picture: Callable[[App[None]], None],
+    looks: Callable[[App[None]], None],
 ) -> None:
     ears = FakeEars()
     async with run(app=playing(workspace, gappy, ears), size=size) as pilot:
         await asked(pilot)
         ears.be("speaking", "call the", 0.4)
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)

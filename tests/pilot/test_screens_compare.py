@@ -184,18 +184,18 @@ async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_comparing_looks(
-    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:
         await compare_teachers(pilot)
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_a_policy_looks(
-    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:
         await pilot.press("o")
         await shown(pilot, PolicyScreen)
-        picture(pilot.app)
+        looks(pilot.app)

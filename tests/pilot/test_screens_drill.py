@@ -132,7 +132,7 @@ async def test_rounds_as_they_look(
     run: Run,
     make: Callable[..., DrillScreen],
     clock: StillClock,
-    picture: Callable[[App[Any]], None],
+    looks: Callable[[App[Any]], None],
     seed: int,
     wrong: bool,
 ) -> None:
@@ -142,7 +142,7 @@ async def test_rounds_as_they_look(
         await pilot.press("enter")
         await pilot.pause()
         if not wrong:
-            picture(pilot.app)
+            looks(pilot.app)
             return
         while not drill.over:
             clock.advance(7)
@@ -152,7 +152,7 @@ async def test_rounds_as_they_look(
                 await pilot.pause()
             await pilot.press("enter")
             await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_leaving_half_way_is_asked_about_and_kept_unfinished(

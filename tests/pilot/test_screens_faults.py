@@ -101,13 +101,13 @@ async def test_how_standing_still_looks(
     workspace: Workspace,
     policy: Policy,
     size: tuple[int, int],
-    picture: Callable[[App[None]], None],
+    looks: Callable[[App[None]], None],
 ) -> None:
     async with run(app=playing(workspace, policy), size=size) as pilot:
         await halting(pilot, "laser-disconnected")
         await pilot.press("a")
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 @pytest.mark.parametrize("size", [SMALL, MIDDLE], ids=["small", "middle"])
@@ -116,7 +116,7 @@ async def test_how_banner_and_list_look(
     workspace: Workspace,
     policy: Policy,
     size: tuple[int, int],
-    picture: Callable[[App[None]], None],
+    looks: Callable[[App[None]], None],
 ) -> None:
     async with run(app=playing(workspace, policy), size=size) as pilot:
         game, world = game_of(pilot)[1:]
@@ -129,4 +129,4 @@ async def test_how_banner_and_list_look(
             await pilot.pause()
         await pilot.press("6")
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)

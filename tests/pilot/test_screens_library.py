@@ -391,37 +391,37 @@ async def test_a_key_typed_before_the_conflict_was_seen_settles_nothing(
 
 @SIZES
 async def test_how_the_list_looks(
-    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
         await press(pilot, "i", "space", "down", "space")
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 @SIZES
 async def test_how_a_demonstration_looks(
-    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
         await press(pilot, "i", "tab", "home", "down", "enter")
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 @SIZES
 async def test_how_a_conflict_looks(
-    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
         await press(pilot, "i", "c")
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_how_settled_conflicts_look(
-    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "c", "1")
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL])

@@ -197,7 +197,7 @@ async def test_how_it_looks(
     make: Callable[[], SensorsScreen],
     link: SeeingLink,
     draw: Callable[[App[Any]], str],
-    picture: Callable[[App[Any]], None],
+    looks: Callable[[App[Any]], None],
 ) -> None:
     why = "Nothing can be seen in the picture."
     # in the middle of what is rounded to a minute, however slowly this goes on
@@ -210,4 +210,4 @@ async def test_how_it_looks(
         await shown(pilot, "covered for 13 min")
         await shown(pilot, "covered, 3 min old")
         await settled(pilot, lambda: draw(pilot.app))  # a bar comes a moment after long words
-        picture(pilot.app)
+        looks(pilot.app)

@@ -273,10 +273,10 @@ async def test_every_key_is_told_at_80_columns(run: Run, workspace: Workspace) -
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_it_looks(
-    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(PeopleScreen(workspace), size=size) as pilot:
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_how_it_looks_in_the_light_theme_with_a_prior(
@@ -294,12 +294,12 @@ async def test_how_it_looks_in_the_light_theme_with_a_prior(
 
 
 async def test_how_the_choice_of_a_method_looks(
-    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("m", "1")
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_in_ascii_every_line_is_ascii(run: Run, workspace: Workspace) -> None:
@@ -310,12 +310,12 @@ async def test_in_ascii_every_line_is_ascii(run: Run, workspace: Workspace) -> N
 
 @pytest.mark.parametrize("keys", [("v",), ("down", "f"), ("x",)], ids=["void", "answer", "switch"])
 async def test_how_the_questions_look(
-    run: Run, workspace: Workspace, keys: tuple[str, ...], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, keys: tuple[str, ...], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press(*keys)
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_eight_people_are_reached_where_four_are_seen(run: Run, tmp_path: Path) -> None:

@@ -148,11 +148,11 @@ async def test_what_cannot_be_said_aloud_is_told(run: Run, workspace: Workspace)
 
 
 async def test_at_the_smallest_size_it_is_drawn(
-    run: Run, screen: PhrasesScreen, picture: Callable[[App[Any]], None]
+    run: Run, screen: PhrasesScreen, looks: Callable[[App[Any]], None]
 ) -> None:
     async with run(screen) as pilot:
         await looked_up(pilot)
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_the_palette_leads_to_it_and_esc_back(run: Run, workspace: Workspace) -> None:

@@ -70,13 +70,13 @@ async def test_it_says_what_goes_on_and_how_to_leave_it_off(
     run: Run,
     workspace: Workspace,
     policy: Policy,
-    picture: Callable[[App[Any]], None],
+    looks: Callable[[App[Any]], None],
     size: tuple[int, int],
 ) -> None:
     robot = Robot(workspace)
     async with run(app=program(workspace, policy, robot), size=size) as pilot:
         await switching(pilot, robot)
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 @pytest.mark.parametrize("key", ["escape", "ctrl+x"])

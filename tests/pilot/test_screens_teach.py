@@ -414,23 +414,23 @@ async def test_how_it_looks_in_mid_game(
 
 
 async def test_how_it_looks_to_see_what_is_missing(
-    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 14)
         await pilot.press("f8")
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_how_a_question_looks(
-    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 11)
         await pilot.press(*"go to usr", "enter")
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_the_picture_in_the_readme_shows_the_question_as_it_is_asked(

@@ -499,7 +499,7 @@ async def test_how_hearing_looks(
     workspace: Workspace,
     size: tuple[int, int],
     shows: str,
-    picture: Callable[[App[None]], None],
+    looks: Callable[[App[None]], None],
 ) -> None:
     ears = FakeEars(answers=shows == "no answer")
     async with run(app=teaching(workspace, ears), size=size) as pilot:
@@ -521,4 +521,4 @@ async def test_how_hearing_looks(
         if shows == "no answer":
             ears.tell("I heard something, but no yes, no or stop.")
             await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)

@@ -129,13 +129,13 @@ async def test_what_was_never_shown_says_so_and_where_the_trees_guess_from(
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_it_looks(
-    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     why = why_of(workspace, persuading(workspace))
     async with run(size=size) as pilot:  # above an empty screen, so that it alone is compared
         await pilot.app.push_screen(WhyDialog(workspace, why, a_choice(workspace)))
         await pilot.pause()
-        picture(pilot.app)
+        looks(pilot.app)
 
 
 async def test_it_can_be_read_in_plain_letters(run: Run, workspace: Workspace) -> None:
