@@ -229,7 +229,7 @@ def test_whoever_has_a_full_line_of_marks_asks() -> None:
     for seed in range(40):
         world = GuidedWorld(BINGO, IDS[:4], seed=seed)
         for t in play(world):
-            for player in world._players.values():
+            for player in world.players.values():
                 assert not BINGO.deck.wins(player.marked) or player.id in t.asking
 
 
@@ -256,8 +256,8 @@ def test_the_same_seed_and_actions_give_the_same_states_and_looking_changes_noth
 def test_the_cards_are_those_of_the_game_that_is_not_guided() -> None:
     plain, guided_one = (made(BINGO, IDS, seed=5) for made in (SimulatedWorld, GuidedWorld))
     for person in IDS:
-        assert plain._players[person].numbers == guided_one._players[person].numbers
-    assert sorted(guided_one._order) == list(BINGO.deck.numbers)
+        assert plain.players[person].numbers == guided_one.players[person].numbers
+    assert sorted(guided_one.order) == list(BINGO.deck.numbers)
 
 
 def test_another_game_in_the_same_world_is_another_one_and_shows_all_again() -> None:

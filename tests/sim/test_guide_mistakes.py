@@ -77,7 +77,7 @@ def test_a_teacher_who_only_calls_numbers_sees_no_win_and_one_request(users: int
         assert [len(t.outcome.numbers) for t in called] == [1] * 75 + [0] * 5
         for before, after in pairwise(called):
             assert before.asking <= after.asking
-        assert not any(BINGO.deck.wins(p.marked) for p in world._players.values())
+        assert not any(BINGO.deck.wins(p.marked) for p in world.players.values())
         list(play(world))  # and even now the game can be brought to an end
 
 
@@ -110,9 +110,9 @@ def test_who_waits_long_still_shows_what_they_asked_about(users: int) -> None:
         for _ in range(30):
             world.execute(call)
         (asking,) = world.scene().requests
-        assert world._cue is not None
-        card = world._players[asking]
-        assert card.judged(BINGO.card_states) == world._cue.shows.name
+        assert world.cue is not None
+        card = world.players[asking]
+        assert card.judged(BINGO.card_states) == world.cue.shows.name
         assert not BINGO.deck.wins(card.called)
 
 

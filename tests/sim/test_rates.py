@@ -27,7 +27,7 @@ def test_a_called_number_is_missed_as_often_as_the_model_says() -> None:
         world.execute(action("greeting"))
         for _ in range(75):
             world.execute(action("call number"))
-        for player in world._players.values():
+        for player in world.players.values():
             called += player.called.bit_count()
             missed += (player.called & ~player.marked).bit_count()
             assert not player.marked & ~player.called
@@ -41,9 +41,9 @@ def test_an_uncalled_number_is_marked_as_often_as_the_model_says() -> None:
     slips, calls = 0, 20
     for _ in range(200):
         for _ in range(calls):
-            before = [player.marked & ~player.called for player in world._players.values()]
+            before = [player.marked & ~player.called for player in world.players.values()]
             world.execute(action("call number"))
-            for player, wrong in zip(world._players.values(), before, strict=True):
+            for player, wrong in zip(world.players.values(), before, strict=True):
                 now = player.marked & ~player.called
                 slips += (now & ~wrong).bit_count()
                 assert not player.called & ~player.marked, "marked early is right once it is called"
@@ -55,9 +55,9 @@ def test_a_slip_marks_a_number_that_was_not_called() -> None:
     world = SimulatedWorld(BINGO, IDS, seed=35, users=replace(USERS, miss=1, slip=1))
     for _ in range(20):
         for _ in range(12):
-            before = [player.marked for player in world._players.values()]
+            before = [player.marked for player in world.players.values()]
             world.execute(action("call number"))
-            for player, marked in zip(world._players.values(), before, strict=True):
+            for player, marked in zip(world.players.values(), before, strict=True):
                 new = player.marked & ~marked
                 assert new.bit_count() == 1
                 assert not new & player.called
@@ -69,7 +69,7 @@ def test_nobody_marks_the_free_centre_for_it_is_marked_already() -> None:
     world = SimulatedWorld(
         replace(BINGO, deck=deck), IDS, seed=36, users=replace(USERS, miss=0, slip=0)
     )
-    centres = {player.id: player.numbers[12] for player in world._players.values()}
+    centres = {player.id: player.numbers[12] for player in world.players.values()}
     for _ in range(75):
         (number,) = world.execute(action("call number")).numbers
         for person, centre in centres.items():
@@ -93,7 +93,7 @@ def test_help_is_asked_for_as_often_as_the_model_says_and_more_with_an_error(
         world.tracker.queue.clear()
         for _ in range(20):
             world.execute(action("call number"))
-            full = {p.id for p in world._players.values() if deck.wins(p.marked)}
+            full = {p.id for p in world.players.values() if deck.wins(p.marked)}
             asked += len(set(world.tracker.queue) - full)
             waited += 8
             world.tracker.queue.clear()

@@ -47,7 +47,7 @@ def dealt(made: SimulatedWorld, games: int) -> list[object]:
     """Play games and return, for each, the calling order and everybody's numbers."""
     found: list[object] = []
     for _ in range(games):
-        found.append((made._order, [player.numbers for player in made._players.values()]))
+        found.append((made.order, [player.numbers for player in made.players.values()]))
         game(made)
         made.begin()
     return found
@@ -97,9 +97,9 @@ def test_how_people_play_does_not_change_the_cards_of_any_game(other: UserModel)
 
 def test_more_people_do_not_change_the_numbers_called_nor_the_first_cards() -> None:
     few, many = world(3, 2), world(3, 8)
-    assert few._order == many._order
+    assert few.order == many.order
     for person in IDS[:2]:
-        assert few._players[person].numbers == many._players[person].numbers
+        assert few.players[person].numbers == many.players[person].numbers
 
 
 def test_whom_they_comply_with_does_not_change_what_happens() -> None:

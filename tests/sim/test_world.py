@@ -109,7 +109,7 @@ def test_whoever_has_a_full_line_of_marks_asks_for_help() -> None:
     made = world(11)
     for _ in range(60):
         for _ in game(made):
-            for player in made._players.values():
+            for player in made.players.values():
                 if any(player.marked & line == line for line in BINGO.deck.lines):
                     assert player.id in made.scene().requests
         made.begin()
@@ -139,7 +139,7 @@ def test_what_people_are_asked_about_is_what_is_wrong_and_then_it_is_right() -> 
                 assert outcome.numbers == tuple(
                     n for c, n in enumerate(card.numbers) if errors >> c & 1
                 )
-                player = made._players[card.person]
+                player = made.players[card.person]
                 assert player.marked == card.marked ^ errors
                 assert outcome.response is not None
                 assert outcome.response.person == card.person
@@ -227,14 +227,14 @@ def test_any_behaviours_in_any_order_leave_a_world_that_can_be_seen(
 
 def test_a_new_game_begins_at_the_start_with_new_cards() -> None:
     made = world(19)
-    first = [player.numbers for player in made._players.values()]
+    first = [player.numbers for player in made.players.values()]
     list(game(made))
     assert made.over
     state = made.begin()
     assert not made.over
     assert (state.step, state.place, state.stage) == (0, FRONT, "start")
     assert made.scene().called == ()
-    assert [player.numbers for player in made._players.values()] != first
+    assert [player.numbers for player in made.players.values()] != first
 
 
 def test_nothing_in_the_world_knows_bingo(

@@ -30,7 +30,7 @@ class OddWorld(FaultyWorld):
     def execute(self, action: Action) -> Outcome:
         """Carry it out; count who is asked to mend what is right."""
         wrong = action.behaviour.effect == "clear wrong marks"
-        player = self._players.get(self.tracker.place)
+        player = self.players.get(self.tracker.place)
         if player is not None and (wrong or action.behaviour.effect == "set missing marks"):
             marked, called = player.marked, player.called
             self.accused += not (marked & ~called if wrong else called & ~marked)
@@ -52,9 +52,9 @@ class OddWorld(FaultyWorld):
 class OddCards(OddWorld):
     """A world in which single readings of cards are odd."""
 
-    def _read_card(self) -> None:
+    def read_card(self) -> None:
         before = self.tracker.seen
-        super()._read_card()
+        super().read_card()
         seen = self.tracker.seen
         if seen is not None and self.is_odd():
             new = {LATE: before, UNREADABLE: None, MISREAD: self.misread(seen)}

@@ -131,7 +131,7 @@ class FaultyWorld(SimulatedWorld):
         """Say whether a behaviour would close the request of the person beside the robot."""
         if behaviour.closes != "when correct":
             return behaviour.closes == "always" and self.tracker.seen == self._settled
-        player = self._players[self.tracker.place]
+        player = self.players[self.tracker.place]
         wrong, missing = player.marked & ~player.called, player.called & ~player.marked
         left = missing if behaviour.effect == "clear wrong marks" else wrong
         mended = wrong if behaviour.effect == "clear wrong marks" else missing
@@ -250,7 +250,8 @@ class FaultyWorld(SimulatedWorld):
     def _go_to_front(self, action: Action) -> tuple[int, ...] | None:
         return super()._go_to_front(action) if self._drives() else None
 
-    def _read_card(self) -> None:
+    def read_card(self) -> None:
+        """Take one look at the card beside the robot, which a fault may hide."""
         hidden = self.present.get("card-out-of-sight")
         if hidden is not None and hidden.person is None:
             hidden.person = self.tracker.place
@@ -259,7 +260,7 @@ class FaultyWorld(SimulatedWorld):
             self._in_view = False
             self.tracker.seen = None
         else:
-            super()._read_card()
+            super().read_card()
 
     def _refuses(self) -> bool:
         fault = self.present.get("never-complies")
@@ -276,7 +277,7 @@ class FaultyWorld(SimulatedWorld):
     def _correct(self, errors: Callable[[SimulatedUser], int], verb: str) -> tuple[int, ...] | None:
         if self.tracker.seen is None or not self._refuses():
             return super()._correct(errors, verb)
-        player = self._players[self.tracker.place]
+        player = self.players[self.tracker.place]
         return player.cells(errors(player)) or None
 
     def _respond(self, beside: str, action: Action) -> Response | None:
@@ -368,7 +369,7 @@ class FaultyWorld(SimulatedWorld):
         self.lift(kind)
         tracker = self.tracker
         if kind == "card-out-of-sight" and tracker.place in tracker.queue:
-            self._read_card()
+            self.read_card()
         elif kind == "request-stuck" and person in tracker.queue:
             self._set_aside(person)
 

@@ -55,7 +55,7 @@ class GuidedWorld(SimulatedWorld):
         self.plan = GuidedPlan(self.activity, self._guide)
         self._next_ask = 0.0  # people are looked at after every behaviour
         self._beats = self._played = 0  # calls, with or without a number; those acted upon
-        self._cue: Cue | None = None
+        self.cue: Cue | None = None
         self._next = self.plan.gap(0, self._guide())
         self._favourite = self._prepare_line().id
         self._turns = Counter({self._favourite: 1})  # how often each asked: others come first
@@ -74,24 +74,24 @@ class GuidedWorld(SimulatedWorld):
     def _prepare_line(self) -> SimulatedUser:
         """Put all but one number of somebody's line among the first: a win can come in time."""
         deck, uniform = self.activity.deck, self._guide
-        player = self._pick(tuple(self._players.values()))
+        player = self._pick(tuple(self.players.values()))
         numbers = list(player.cells(self._pick(deck.lines) & ~deck.free))
         if numbers:
             numbers.remove(self._pick(numbers))
-        order = [n for n in self._order if n not in numbers]
+        order = [n for n in self.order if n not in numbers]
         for number in numbers:
             order.insert(int(uniform() * max(self.plan.span - FEWEST, 1)), number)
-        self._order = order
+        self.order = order
         return player
 
     def _draw(self, _: Action) -> tuple[int, ...]:
         self._beats += 1
         self._give_cue()
-        if self._calls >= len(self._order):
+        if self._calls >= len(self.order):
             return ()
         number = self._choose()
-        self._order.remove(number)
-        self._order.insert(self._calls, number)
+        self.order.remove(number)
+        self.order.insert(self._calls, number)
         self._calls += 1
         for player, cell in self._holders[number]:
             overlooked = self._overlooks(player, cell)
@@ -103,9 +103,9 @@ class GuidedWorld(SimulatedWorld):
 
     def _choose(self) -> int:
         """Choose the number that the plan needs, or else the next one that endangers nothing."""
-        left, wished = self._order[self._calls :], self._wished()
-        asking = {*self.tracker.queue, *([self._cue.person] if self._cue else [])}
-        safe = {player.id for player in self._players.values() if not self._has_line(player)}
+        left, wished = self.order[self._calls :], self._wished()
+        asking = {*self.tracker.queue, *([self.cue.person] if self.cue else [])}
+        safe = {player.id for player in self.players.values() if not self._has_line(player)}
 
         def cost(number: int) -> tuple[int, int, int]:
             """Count the cards with a line now called: of who asks, of all; and marks made right."""
@@ -121,10 +121,10 @@ class GuidedWorld(SimulatedWorld):
 
     def _wished(self) -> tuple[int, ...]:
         """Return the numbers, some not called yet, one of which the cue needs to be called now."""
-        cue = self._cue
+        cue = self.cue
         if cue is None or cue.asked:
             return ()
-        player = self._players[cue.person]
+        player = self.players[cue.person]
         open_cells = ~(player.called | player.marked)
         if cue.shows.checker == LINE and self._beats >= cue.asks_at:
             return player.cells(self._nearest_line(player) & ~player.called)
@@ -135,7 +135,7 @@ class GuidedWorld(SimulatedWorld):
 
     def _overlooks(self, player: SimulatedUser, cell: int) -> bool:
         """Say whether a person misses the number that is called: by the plan, or not to win yet."""
-        cue = self._cue
+        cue = self.cue
         if cue is not None and cue.person == player.id and not cue.asked:
             if cue.shows.checker == "missing marks" and not self._shows(cue):
                 return True
@@ -147,11 +147,11 @@ class GuidedWorld(SimulatedWorld):
 
     def _give_cue(self) -> None:
         """Tell somebody what to show next, as soon as it is time and nobody asks."""
-        cue, tracker = self._cue, self.tracker
+        cue, tracker = self.cue, self.tracker
         if cue is not None and cue.asked and cue.person not in tracker.queue:
-            self._cue = None
+            self.cue = None
             self._next = self._beats - 1 + self.plan.gap(self._beats - 1, self._guide())
-        if self._cue or tracker.queue or self._beats < self._next - 1:
+        if self.cue or tracker.queue or self._beats < self._next - 1:
             return
         if not tracker.begun() or self.plan.ended(tracker):
             return
@@ -162,7 +162,7 @@ class GuidedWorld(SimulatedWorld):
             hidden = self.plan.hides(self._guide(), self.users.occluded)
             person = self._choose_person(shows)
             self.plan.tried[shows.name] += 1
-            self._cue = Cue(person.id, shows, hidden, max(self._next, self._beats + wait))
+            self.cue = Cue(person.id, shows, hidden, max(self._next, self._beats + wait))
 
     def _let_people_ask(self) -> None:
         """After every behaviour: let those act, and then ask, whose cue it is."""
@@ -171,12 +171,12 @@ class GuidedWorld(SimulatedWorld):
             self._give_cue()
         if self.plan.ended(self.tracker):
             self._ask_at_the_end()
-        elif self._beats > self._played and self._cue is not None and not self._cue.asked:
-            self._act(self._cue)
+        elif self._beats > self._played and self.cue is not None and not self.cue.asked:
+            self._act(self.cue)
         self._played = self._beats
 
     def _act(self, cue: Cue) -> None:
-        player = self._players[cue.person]
+        player = self.players[cue.person]
         if not self._shows(cue):
             self._bring_about(cue, player)
         ready = self._shows(cue) or self._spent() or not self.plan.drawing
@@ -234,10 +234,10 @@ class GuidedWorld(SimulatedWorld):
     def _go_to_user(self, action: Action) -> tuple[int, ...]:
         tracker = self.tracker
         target = action.target or (tracker.queue[0] if tracker.queue else None)
-        if target in self._players:
+        if target in self.players:
             tracker.arrive(target)
             self._in_view = False
-            hidden = self._cue is not None and self._cue.hidden and self.plan.lacks_hidden
+            hidden = self.cue is not None and self.cue.hidden and self.plan.lacks_hidden
             if not hidden and target in tracker.queue:
                 self._look_at_card()
         return ()
@@ -246,7 +246,7 @@ class GuidedWorld(SimulatedWorld):
 
     def _choose_person(self, shows: CardState | None) -> SimulatedUser:
         """Choose who has the next turn: who is nearest to a line, or has asked least so far."""
-        players, turns = tuple(self._players.values()), self._turns
+        players, turns = tuple(self.players.values()), self._turns
         if shows is not None and shows.checker == LINE:
             return min(players, key=lambda p: (self._left_of_line(p), p.id != self._favourite))
         able = [p for p in players if not self._has_line(p)] or players
@@ -254,7 +254,7 @@ class GuidedWorld(SimulatedWorld):
         return self._pick([p for p in able if turns[p.id] == fewest])
 
     def _shows(self, cue: Cue) -> bool:
-        return self._players[cue.person].judged(self.activity.card_states) == cue.shows.name
+        return self.players[cue.person].judged(self.activity.card_states) == cue.shows.name
 
     def _nearest_line(self, player: SimulatedUser) -> int:
         lines = self.activity.deck.lines
@@ -277,7 +277,7 @@ class GuidedWorld(SimulatedWorld):
 
     def _spent(self) -> bool:
         """Say whether nothing can be shown any more but wins."""
-        return self._calls >= len(self._order) or all(map(self._has_line, self._players.values()))
+        return self._calls >= len(self.order) or all(map(self._has_line, self.players.values()))
 
     def _pick(self, choices: Sequence[Some]) -> Some:
         return choices[int(self._guide() * len(choices))]

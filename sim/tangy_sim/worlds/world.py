@@ -32,7 +32,9 @@ AGREEING, MOST_LOOKS = 3, 5
 class SimulatedWorld:
     """One room with a simulated group. `begin` starts each game; `execute` runs a behaviour.
 
-    The same seed gives the same games on every machine.
+    The same seed gives the same games on every machine. `players` are the people with their cards,
+    by id, and `order` is that of the numbers of this game: who watches a simulation sees both, the
+    robot does not.
     """
 
     played_in: GameWorld = SIMULATED
@@ -62,17 +64,17 @@ class SimulatedWorld:
         activity, deck, cards = self.activity, self.activity.deck, self._cards.random
         self.over = False
         self.tracker = Tracker(activity, self.people)
-        self._order = deck.shuffled(cards)
+        self.order = deck.shuffled(cards)
         self._calls = 0
         self._now = 0.0
-        self._players = {p: SimulatedUser(p, deck, deck.deal(cards)) for p in self.people}
+        self.players = {p: SimulatedUser(p, deck, deck.deal(cards)) for p in self.people}
         self._holders: dict[int, list[tuple[SimulatedUser, int]]] = {n: [] for n in deck.numbers}
-        for player in self._players.values():
+        for player in self.players.values():
             for number, cell in player.cell.items():
                 if not deck.free >> cell & 1:
                     self._holders[number].append((player, cell))
             player.slips_at = waiting_calls(self._uniform, self.users.slip)
-        self._next_slip = min(p.slips_at for p in self._players.values())
+        self._next_slip = min(p.slips_at for p in self.players.values())
         self._next_ask = 1e18
         self._in_view = False  # whether the card beside the robot can be read
         self._opened = False
@@ -120,7 +122,7 @@ class SimulatedWorld:
         tracker = self.tracker
         asking = set(tracker.queue)
         doing: dict[str, str] = {}
-        for player in self._players.values():
+        for player in self.players.values():
             step, verb, number = player.did
             if step >= tracker.step - 1:
                 doing[player.id] = f"{verb} {self.activity.deck.label(number)}" if number else verb
@@ -128,9 +130,9 @@ class SimulatedWorld:
                 doing[player.id] = "asks for help" if player.id in asking else "watches"
         card: CardView | None = None
         if tracker.seen is not None:
-            beside = self._players[tracker.place]
+            beside = self.players[tracker.place]
             card = CardView(beside.id, beside.numbers, beside.marked, beside.called)
-        called = tuple(self._order[: self._calls])
+        called = tuple(self.order[: self._calls])
         return Scene(tracker.place, tuple(tracker.queue), doing, called, card)
 
     def health(self) -> Health:
@@ -166,9 +168,9 @@ class SimulatedWorld:
                 assert_never(forgotten)
 
     def _draw(self, _: Action) -> tuple[int, ...] | None:
-        if self._calls >= len(self._order):
+        if self._calls >= len(self.order):
             return ()
-        number = self._order[self._calls]
+        number = self.order[self._calls]
         self._calls += 1
         step, uniform, miss = self.tracker.step, self._uniform, self.users.miss
         for player, cell in self._holders[number]:
@@ -185,7 +187,7 @@ class SimulatedWorld:
         return (number,)
 
     def _let_people_slip(self) -> None:
-        for player in self._players.values():
+        for player in self.players.values():
             if self._calls >= player.slips_at:
                 player.slips_at = self._calls + waiting_calls(self._uniform, self.users.slip)
                 slip = player.slip(self._uniform)
@@ -194,27 +196,27 @@ class SimulatedWorld:
                     player.did = (self.tracker.step, "marks", number)
                     if filled:
                         self._ask(player)
-        self._next_slip = min(p.slips_at for p in self._players.values())
+        self._next_slip = min(p.slips_at for p in self.players.values())
 
     def _open(self) -> None:
         """Nobody asks before the game is opened; from then on everybody may."""
         self._opened = True
         rate = self.users.ask * self.users.ask_with_error
-        for player in self._players.values():
+        for player in self.players.values():
             player.asks_at = self._now + waiting_time(self._uniform, rate)
-        self._next_ask = min(p.asks_at for p in self._players.values())
+        self._next_ask = min(p.asks_at for p in self.players.values())
 
     def _let_people_ask(self) -> None:
         """Requests come at the higher rate of a card with an error, and are thinned without one."""
         users, uniform = self.users, self._uniform
         rate = users.ask * users.ask_with_error
-        for player in self._players.values():
+        for player in self.players.values():
             while self._now >= player.asks_at:
                 player.asks_at += waiting_time(uniform, rate)
                 asks = uniform() * users.ask_with_error < 1.0 or player.has_error
                 if asks and self._ask(player):
                     player.did = (self.tracker.step, "asks for help", 0)
-        self._next_ask = min(p.asks_at for p in self._players.values())
+        self._next_ask = min(p.asks_at for p in self.players.values())
 
     def _ask(self, player: SimulatedUser) -> bool:
         """Let a person ask for help; say whether that is seen, and new."""
@@ -233,7 +235,7 @@ class SimulatedWorld:
     def _go_to_user(self, action: Action) -> tuple[int, ...] | None:
         tracker = self.tracker
         target = action.target or (tracker.queue[0] if tracker.queue else None)
-        if target in self._players:
+        if target in self.players:
             tracker.arrive(target)
             self._in_view = False
             if self._uniform() >= self.users.occluded and target in tracker.queue:
@@ -261,7 +263,7 @@ class SimulatedWorld:
         """Let the person beside the robot mend what is seen on the card, if anything."""
         if self.tracker.seen is None:
             return None
-        player = self._players[self.tracker.place]
+        player = self.players[self.tracker.place]
         mask = errors(player)
         if not mask:
             return None
@@ -275,19 +277,20 @@ class SimulatedWorld:
         return ()
 
     def _did(self, verb: str) -> None:
-        self._players[self.tracker.place].did = (self.tracker.step, verb, 0)
+        self.players[self.tracker.place].did = (self.tracker.step, verb, 0)
 
     def _look_at_card(self) -> None:
         """Read the card beside the robot until looks agree: one may be late, or misread."""
         looks: Counter[str | None] = Counter()
         for _ in range(MOST_LOOKS):
-            self._read_card()
+            self.read_card()
             looks[self.tracker.seen] += 1
             if looks[self.tracker.seen] == AGREEING:
                 return
         self.tracker.seen = looks.most_common(1)[0][0]
 
-    def _read_card(self) -> None:
+    def read_card(self) -> None:
+        """Take one look at the card beside the robot."""
         self._in_view = True
-        card = self._players[self.tracker.place]
+        card = self.players[self.tracker.place]
         self.tracker.seen = card.judged(self.activity.card_states)
