@@ -13,6 +13,7 @@ from functools import cache
 from itertools import count
 from pathlib import Path
 from subprocess import CompletedProcess
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -24,6 +25,10 @@ from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
 from tests.support.laws import AT_LENGTH, FEW
+
+if TYPE_CHECKING:
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.learning.policy import Policy
 
 # The same examples in every run; HYPOTHESIS_PROFILE=explore looks for new ones.
 settings.register_profile(
@@ -56,6 +61,11 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 pytest_plugins = ["tests.support.hangs"]
 
 TESTS = Path(__file__).parent
+
+MEMORY, ROOM = Path("/dev/shm"), 4_000_000_000  # noqa: S108 - a disk in memory, bytes free there
+if MEMORY.is_dir() and shutil.disk_usage(MEMORY).free >= ROOM:
+    # The log waits for the disk after every event, and tests write ten thousands of them.
+    os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(MEMORY))
 
 
 @cache
@@ -164,6 +174,37 @@ def _taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def taught(_taught: Path, tmp_path: Path) -> Path:
     """A data folder in which three demonstrations were given and learnt from."""
     return Path(shutil.copytree(_taught, tmp_path / "taught"))
+
+
+@pytest.fixture(scope="session")
+def learnt(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Policy:
+    """The policy of the taught folder, fitted once for all tests."""
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.learning.policies import load_policy
+
+    workspace = Workspace(
+        Path(shutil.copytree(_taught, tmp_path_factory.mktemp("learnt") / "data"))
+    )
+    try:
+        return load_policy(workspace.store, workspace.activity)[0]
+    finally:
+        workspace.close()
+
+
+@pytest.fixture
+def data_folder(tmp_path: Path) -> Path:
+    """The data folder of `workspace`; tests that begin with something in it give another."""
+    return tmp_path / "data"
+
+
+@pytest.fixture
+def workspace(data_folder: Path) -> Iterator[Workspace]:
+    """A workspace with a data folder of its own, in which nothing was learnt yet."""
+    from tangy_tui.app.workspace import Workspace
+
+    opened = Workspace(data_folder)
+    yield opened
+    opened.close()
 
 
 @pytest.fixture

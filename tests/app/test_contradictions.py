@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 
 from tangy_tui.app.workspace import Workspace
@@ -13,14 +10,6 @@ from tangy_tui.learning.teaching_events import Contradicted, TeachingEvent, Undo
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.text.teaching import teaching_lines
-
-
-@pytest.fixture
-def workspace(tmp_path: Path) -> Iterator[Workspace]:
-    """A data folder without a game in it."""
-    opened = Workspace(tmp_path)
-    yield opened
-    opened.close()
 
 
 def do(teaching: TeachingSession, *phrases: str) -> list[Contradicted]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +23,9 @@ LAST = "# the last line"
 
 
 @pytest.fixture
-def workspace(taught: Path) -> Iterator[Workspace]:
-    opened = Workspace(taught)
-    yield opened
-    opened.close()
+def data_folder(taught: Path) -> Path:
+    """A folder in which three demonstrations were given and learnt from."""
+    return taught
 
 
 def told(

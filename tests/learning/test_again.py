@@ -36,13 +36,6 @@ def opened(folder: Path, users: int = 4) -> Iterator[Workspace]:
         workspace.close()
 
 
-@pytest.fixture
-def workspace(tmp_path: Path) -> Iterator[Workspace]:
-    """A workspace with an empty data folder."""
-    with opened(tmp_path / "data") as made:
-        yield made
-
-
 def begun(
     workspace: Workspace, teacher: str = "Ada", again: Again | None = None
 ) -> TeachingSession:

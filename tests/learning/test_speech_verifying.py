@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Callable, Iterator
-from pathlib import Path
 
 import pytest
 
@@ -212,13 +211,6 @@ class Session:
         )
         asyncio.run(asyncio.wait_for(session.run(), 10))
         return self.written
-
-
-@pytest.fixture
-def workspace(tmp_path: Path) -> Iterator[Workspace]:
-    opened = Workspace(tmp_path / "data")
-    yield opened
-    opened.close()
 
 
 GREET = Say("greet everyone", 0.9, (command("greeting"),))

@@ -15,12 +15,12 @@ at run time a module called conftest may be any folder's.
 from __future__ import annotations
 
 import asyncio
+import gc
 import re
 from collections.abc import AsyncIterator, Callable, Hashable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 from time import monotonic, process_time
 from typing import Any
 
@@ -219,6 +219,18 @@ def _style_sheets() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _garbage() -> Iterator[None]:
+    """Let no game that begins freeze all objects, as the program does: it plays one, and we many.
+
+    What was frozen is never freed, and each time all of it is looked through first.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gc, "freeze", lambda: None)
+        patch.setattr(gc, "collect", lambda *_: 0)
+        yield
+
+
 Run = Callable[..., AbstractAsyncContextManager[TangyPilot]]
 
 
@@ -293,14 +305,6 @@ def picture(
         assert draw(app) == pictures
 
     return compare
-
-
-@pytest.fixture
-def workspace(tmp_path: Path) -> Iterator[Workspace]:
-    """A workspace with a data folder of its own, in which nothing was learnt yet."""
-    opened = Workspace(tmp_path / "data")
-    yield opened
-    opened.close()
 
 
 @pytest.fixture

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from textual.app import App
@@ -12,7 +13,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.demo import learn
 from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import Policy
-from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program
@@ -30,17 +31,23 @@ from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
 
 
 @pytest.fixture
-def policy(workspace: Workspace) -> Policy:
-    """A policy learnt from three scripted demonstrations."""
-    teaching = workspace.teaching(SCRIPTED, 1)
-    teacher = ScriptedTeacher(teaching)
-    teaching.begin()
-    for number in range(3):
-        if number:
-            teaching.apply(teacher.command())
-        for _ in teacher.demonstrate():
-            pass
-    return learn(workspace)
+def data_folder(taught: Path) -> Path:
+    """A folder in which three demonstrations were given and learnt from."""
+    return taught
+
+
+@pytest.fixture
+def policy(learnt: Policy) -> Policy:
+    """The policy that was learnt there."""
+    return learnt
+
+
+@pytest.fixture
+def untaught(tmp_path: Path) -> Iterator[Workspace]:
+    """A workspace in which nothing was shown yet."""
+    opened = Workspace(tmp_path / "untaught")
+    yield opened
+    opened.close()
 
 
 def playing(workspace: Workspace, policy: Policy, *, speed: float = 1, games: int = 1) -> Program:
@@ -176,9 +183,9 @@ async def test_the_room_alone_leaves_nothing_of_the_screen_empty(
 
 
 async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
-    run: Run, workspace: Workspace
+    run: Run, untaught: Workspace
 ) -> None:
-    teaching = workspace.teaching("ann", 1)
+    teaching = untaught.teaching("ann", 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()
     for _ in range(4):
@@ -187,9 +194,9 @@ async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
     from tangy_tui.learning.policy import learn_policy
 
     poor = learn_policy(
-        workspace.activity, read_demonstrations(workspace.store, workspace.activity.name)
+        untaught.activity, read_demonstrations(untaught.store, untaught.activity.name)
     )
-    async with run(app=playing(workspace, poor), size=LARGE) as pilot:
+    async with run(app=playing(untaught, poor), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
         await pilot.press("e")
         while not isinstance(pilot.app.screen, MessageDialog):
@@ -215,21 +222,21 @@ async def test_how_playing_looks(
         picture(pilot.app)
 
 
-async def test_the_policy_screen_says_what_was_never_shown(run: Run, workspace: Workspace) -> None:
-    teaching = workspace.teaching("ann", 1)
+async def test_the_policy_screen_says_what_was_never_shown(run: Run, untaught: Workspace) -> None:
+    teaching = untaught.teaching("ann", 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()
     for _ in teacher.demonstrate():
         pass
-    policy = learn(workspace)
-    unseen = [row for row in policy_rows(workspace.activity, policy) if not row.seen]
+    policy = learn(untaught)
+    unseen = [row for row in policy_rows(untaught.activity, policy) if not row.seen]
     assert unseen, "this game was to leave something out"
 
     async def start(program: Program) -> None:
-        effects = effects_of(workspace.store, workspace.activity, policy)
-        await program.push_screen(PolicyScreen(workspace, policy, effects))
+        effects = effects_of(untaught.store, untaught.activity, policy)
+        await program.push_screen(PolicyScreen(untaught, policy, effects))
 
-    async with run(app=Program(workspace, start, clock=StillClock()), size=LARGE) as pilot:
+    async with run(app=Program(untaught, start, clock=StillClock()), size=LARGE) as pilot:
         shown = screen_text(pilot.app)
         assert f"{11 - len(unseen)} of 11 situations were shown" in shown
         assert "never shown" in shown
@@ -260,9 +267,9 @@ async def test_home_leads_everywhere_and_back(
 
 
 async def test_playing_before_learning_is_answered_with_what_to_do(
-    run: Run, workspace: Workspace
+    run: Run, untaught: Workspace
 ) -> None:
-    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+    async with run(app=Program(untaught, clock=StillClock())) as pilot:
         await pilot.press("p")
         while not isinstance(pilot.app.screen, MessageDialog):
             await pilot.pause(0.02)

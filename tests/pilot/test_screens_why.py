@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -30,11 +30,9 @@ TINY = (60, 18)
 
 
 @pytest.fixture
-def workspace(taught: Path) -> Iterator[Workspace]:
-    """A workspace in which three demonstrations were given and learnt from."""
-    opened = Workspace(taught)
-    yield opened
-    opened.close()
+def data_folder(taught: Path) -> Path:
+    """A folder in which three demonstrations were given and learnt from."""
+    return taught
 
 
 def why_of(workspace: Workspace, behaviour: str) -> Why:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from subprocess import CompletedProcess
@@ -45,13 +45,6 @@ def told(
     session = TeachingLines(teaching, lambda: next(typed, None), said.append)
     asyncio.run(session.run(resume=resume))
     return said
-
-
-@pytest.fixture
-def workspace(tmp_path: Path) -> Iterator[Workspace]:
-    opened = Workspace(tmp_path / "data")
-    yield opened
-    opened.close()
 
 
 def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -13,13 +13,6 @@ from tangy_hw.navigation.occupancy import OccupancyMap, map_of_room
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.robot_opening import check_map
 from tangy_tui.app.workspace import Workspace
-
-
-@pytest.fixture
-def workspace(tmp_path: Path) -> Iterator[Workspace]:
-    workspace = Workspace(tmp_path / "data", activity="bingo", users=4)
-    yield workspace
-    workspace.close()
 
 
 def refusal(workspace: Workspace, map_: Path) -> str:

@@ -8,7 +8,6 @@ import re
 import signal
 import subprocess
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -30,10 +29,9 @@ pytestmark = [pytest.mark.xdist_group("robot"), pytest.mark.slow]
 
 
 @pytest.fixture
-def workspace(folder: Path) -> Iterator[Workspace]:
-    workspace = Workspace(folder)
-    yield workspace
-    workspace.close()
+def data_folder(folder: Path) -> Path:
+    """A folder in which one guided game was shown and learnt from."""
+    return folder
 
 
 def games(workspace: Workspace, world: BenchedWorld) -> Supervision:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import hypot
 from pathlib import Path
 
@@ -17,13 +16,6 @@ from tangy_tui.app.workspace import Workspace
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 FOUND = 0.15  # metres by which it may be off
-
-
-@pytest.fixture
-def workspace(tmp_path: Path) -> Iterator[Workspace]:
-    workspace = Workspace(tmp_path / "data")
-    yield workspace
-    workspace.close()
 
 
 @pytest.mark.parametrize("seed", [5, 9])
