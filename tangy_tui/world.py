@@ -28,6 +28,11 @@ class World(Protocol):
         """The world's own time, in s; where it began to count is its own matter."""
         ...
 
+    @property
+    def pauses(self) -> tuple[int, float]:
+        """How often the robot has waited for late data in this game, and for how many s."""
+        ...
+
     def begin(self) -> ActivityState:
         """Begin a new game and return its first state."""
         ...

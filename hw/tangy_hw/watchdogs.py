@@ -47,6 +47,18 @@ class Watchdogs:
         else:
             self._silenced[device] = state
 
+    def ages(self) -> dict[str, float]:
+        """Return how old the data is by which the robot drives, in s."""
+        return {name: self._reading(name).age for name in DRIVES_BY if name in self._reports}
+
+    def late(self) -> dict[str, float]:
+        """Return the age, in s, of the data by which the robot drives and that is too old."""
+        return {
+            name: reading.age
+            for name in DRIVES_BY
+            if name in self._reports and self.state(reading := self._reading(name)) == STALE
+        }
+
     def hazard(self) -> str:
         """Say why the robot must not drive now, "" if it may."""
         for name in DRIVES_BY:
@@ -56,16 +68,17 @@ class Watchdogs:
             state = self.state(reading)
             if state in (ERROR, STALE):
                 said = "says nothing" if state == STALE else "has an error"
-                return f"{self._label(name)} {said}"
+                return f"{self.label(name)} {said}"
             if reading.facts.get("latched"):
-                return f"{self._label(name)} is pressed"
+                return f"{self.label(name)} is pressed"
             if _measured(reading, "near_share", 0.0) > DARK:
-                return f"{self._label(name)} is covered"
+                return f"{self.label(name)} is covered"
             if _measured(reading, "variety", 1.0) < BLIND:
-                return f"{self._label(name)} sees nothing new"
+                return f"{self.label(name)} sees nothing new"
         return ""
 
-    def _label(self, name: str) -> str:
+    def label(self, name: str) -> str:
+        """Return what a device is called."""
         device = self._robot.devices.get(name)
         return name if device is None else device.label
 

@@ -74,11 +74,16 @@ class GameStep(EventRecord):
 
 @kind("game ended")
 class GameEnding(EventRecord):
-    """A game ended; `stopped` says why before its end, if it was."""
+    """A game ended; `stopped` says why before its end, if it was.
+
+    `pauses` is how often the robot waited for late data, and `paused_seconds` for how long.
+    """
 
     game: str
     steps: Count
     stopped: str | None
+    pauses: Sparse[Count] = 0
+    paused_seconds: Sparse[float] = 0.0
 
 
 Criticality = Literal["critical", "non-critical"]

@@ -57,6 +57,20 @@ def state_of(device: DeviceProfile | None, reading: Reading) -> DeviceState:
     return reading.state if math.isfinite(reading.age) and reading.age <= oldest else STALE
 
 
+def lasting_state(device: DeviceProfile | None, reading: Reading) -> DeviceState:
+    """Return the state of a device as `state_of` does, but let late data be late for a while.
+
+    Data that is too old and not lost yet is a pause: the device counts as it was. A device whose
+    data is young and that says itself that it has none is believed.
+    """
+    state = state_of(device, reading)
+    if device is None or state != STALE:
+        return state
+    if not device.stale_after < reading.age <= device.lost_after:
+        return STALE
+    return OK if reading.state == STALE else reading.state
+
+
 def device_state(told: object) -> DeviceState | None:
     """Return the state that another process or a file tells; None: there is no such state."""
     return next((one for one in STATES if one == told), None)

@@ -10,6 +10,7 @@ from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import ProfileError
+from tangy_profiles.liveness import PAUSING, Liveness, read_liveness
 from tangy_profiles.reading import Table, nearest, plain, read_toml
 
 LOOKS_AT = ("cards",)
@@ -21,6 +22,9 @@ LINK = "link"
 
 FROZEN = "frozen"
 """What the link tells of the robot's own program: for how many s it stood still."""
+
+PAUSES, LOST = "pauses", "lost"
+"""What the link tells of pauses: how often they come, and the share of time lost to them."""
 
 LINK_STALE_SECONDS = 0.25
 LONGEST_SECONDS = 1e6
@@ -70,6 +74,8 @@ class Measure:
 class DeviceProfile:
     """A device of the robot: its data is stale after so many s; `facts` are what it measures.
 
+    Data that is older than `fault_after` s is a fault; what is younger makes the robot wait.
+
     Of each fact the profile says in words of the staff what it is, and which values it can have.
     `source` is where the pictures of a camera come from, "" where that is said elsewhere or it is
     no camera: 0 or /dev/video0, http://..., rtsp://..., or a file or folder, which may be relative
@@ -82,6 +88,12 @@ class DeviceProfile:
     facts: Mapping[str, Measure]
     source: str = ""
     looks_at: str = ""
+    fault_after: float = 0.0
+
+    @property
+    def lost_after(self) -> float:
+        """The age in s from which its data is taken to be lost."""
+        return max(self.stale_after, self.fault_after)
 
 
 @dataclass(frozen=True)
@@ -129,6 +141,7 @@ class Robot:
     drivers: Mapping[str, Driver] = field(default_factory=dict)
     gaze: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     expert: Contact | None = None
+    liveness: Liveness = field(default_factory=Liveness)
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -191,7 +204,8 @@ def read_robot(top: Table, path: Path) -> Robot:
                     )
         entry.close()
         postures[posture] = MappingProxyType(angles)
-    devices = _devices(top)
+    liveness = read_liveness(top)
+    devices = _devices(top, liveness)
     robot = Robot(
         top.text("name"),
         top.text("title"),
@@ -204,6 +218,7 @@ def read_robot(top: Table, path: Path) -> Robot:
         MappingProxyType(_drivers(top, devices)),
         MappingProxyType(_gaze(top, limbs)),
         _contact(top, "expert"),
+        liveness,
     )
     top.close()
     return robot
@@ -229,31 +244,43 @@ def _face_models(top: Table, folder: Path) -> FaceModels | None:
     return models
 
 
-def _devices(top: Table) -> dict[str, DeviceProfile]:
+def _devices(top: Table, liveness: Liveness) -> dict[str, DeviceProfile]:
     devices: dict[str, DeviceProfile] = {}
     for entry in top.tables("devices"):
         name = entry.text("name")
         if name in devices:
             raise entry.wrong("name", "was used before: every device has its own.")
         facts = entry.table("facts", optional=True)
+        stale_after = entry.number("stale_after", 0.05, 60)
         devices[name] = DeviceProfile(
             name,
             entry.text("label"),
-            entry.number("stale_after", 0.05, 60),
+            stale_after,
             MappingProxyType({fact: _measure(facts, fact) for fact in facts}),
             entry.text("source", ""),
             entry.choice("looks_at", LOOKS_AT, ""),
+            entry.number("fault_after", stale_after, 600, max(stale_after, liveness.fault_after)),
         )
         facts.close()
         entry.close()
-    return _with_link(devices)
+    return _with_link(devices, liveness)
 
 
-def _with_link(devices: Mapping[str, DeviceProfile]) -> dict[str, DeviceProfile]:
+def _with_link(
+    devices: Mapping[str, DeviceProfile], liveness: Liveness
+) -> dict[str, DeviceProfile]:
     """Return devices with the link, which every robot has, whether its file tells of it or not."""
-    link = devices.get(LINK) or DeviceProfile(LINK, "link to the robot", LINK_STALE_SECONDS, {})
-    says = "seconds for which the robot's own program stood still"
-    facts = {FROZEN: Measure(says, low=0.0, high=LONGEST_SECONDS), **link.facts}
+    link = devices.get(LINK) or DeviceProfile(
+        LINK, "link to the robot", LINK_STALE_SECONDS, {}, fault_after=liveness.fault_after
+    )
+    facts = {
+        FROZEN: Measure(
+            "seconds for which the robot's own program stood still", low=0.0, high=LONGEST_SECONDS
+        ),
+        PAUSES: Measure("how often the robot had to wait for data", PAUSING),
+        LOST: Measure("share of the last minute spent waiting for data", low=0.0, high=1.0),
+        **link.facts,
+    }
     known = {LINK: replace(link, facts=MappingProxyType(facts))}
     return {**devices, **known} if LINK in devices else {**known, **devices}
 

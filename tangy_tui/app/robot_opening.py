@@ -218,7 +218,12 @@ def _linked(
     book: FaultBook | None,
     cancellation: Cancellation,
 ) -> Iterator[W]:
-    link = RobotLink(setup, log=workspace.store.folder / LOG, cancellation=cancellation)
+    link = RobotLink(
+        setup,
+        log=workspace.store.folder / LOG,
+        cancellation=cancellation,
+        patience=workspace.robot.liveness.fault_after,
+    )
     try:
         link.start()
         link.beat()  # a game begins by what the robot says of itself

@@ -356,5 +356,13 @@ class Facilitation:
 
     def _end(self, reason: str | None) -> GameEnded:
         self.over = True
-        self._store.append(GameEnding(game=self._game, steps=self.steps, stopped=reason))
-        return GameEnded(self._game, self.steps, reason)
+        count, seconds = self.world.pauses
+        ending = GameEnding(
+            game=self._game,
+            steps=self.steps,
+            stopped=reason,
+            pauses=count,
+            paused_seconds=seconds,
+        )
+        self._store.append(ending)
+        return GameEnded(self._game, self.steps, reason, (count, seconds))

@@ -86,11 +86,15 @@ class DoneOnce:
 
 @dataclass(frozen=True, slots=True)
 class GameEnded:
-    """The game is over: played to its end, or stopped for a reason that a person can read."""
+    """The game is over: played to its end, or stopped for a reason that a person can read.
+
+    `pauses` is how often the robot waited for late data in it, and for how many s.
+    """
 
     game: str
     steps: int
     stopped: str | None
+    pauses: tuple[int, float] = (0, 0.0)
 
 
 GameEvent: TypeAlias = GameBegun | Acted | BeliefUpdated | Unsure | Taught | DoneOnce | GameEnded

@@ -39,6 +39,9 @@ class Tally:
 
     `step` is None for one that did not come about.
     """
+    pauses: int = 0
+    paused_seconds: float = 0.0
+    """How often robots waited for late data, and for how long."""
     _done: Counter[tuple[Situation, str]] = field(default_factory=Counter)
     _right: Counter[tuple[Situation, str]] = field(default_factory=Counter)
 
@@ -57,6 +60,8 @@ class Tally:
                     self.answers += 1
                 case GameEnded():
                     self.games += 1
+                    self.pauses += event.pauses[0]
+                    self.paused_seconds += event.pauses[1]
                     if event.stopped is not None:
                         self.stopped.append((self.games, event.stopped))
                 case Unsure():
@@ -136,4 +141,5 @@ class Tally:
             "finished": self.finished,
             "stopped": [{"game": game, "reason": reason} for game, reason in self.stopped],
             "asked": self.asked,
+            "pauses": {"count": self.pauses, "seconds": round(self.paused_seconds, 2)},
         }

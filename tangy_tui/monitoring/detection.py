@@ -13,7 +13,18 @@ from collections.abc import Mapping, Sequence
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Evidence
-from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Fact, Health, Reading, state_of
+from tangy_profiles.health import (
+    ERROR,
+    OK,
+    STALE,
+    STATES,
+    WARN,
+    Fact,
+    Health,
+    Reading,
+    lasting_state,
+    state_of,
+)
 from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState, Outcome, Variable
 from tangy_tui.interaction.facilitation import refused
@@ -25,7 +36,11 @@ OWED_BY_PEOPLE = ("what was asked about", "request")
 no fault of the robot's."""
 
 
+AWAITED_SECONDS = 0.125
+"""s before the link counts as lost in which what is reached by it is waited for."""
 AWAITS_SECONDS = 0.1  # s, as long as a scanner's data may be older than the link's
+LATE = "WAITS"
+"""How a robot is while the data of a device is late, and not lost."""
 OTHERS: Variable = "others' requests"
 FEWER = "fewer"
 
@@ -85,7 +100,14 @@ class Detector:
         seen = self.watch(health)
         states = [(str(seen[f"{d.name}.state"]), d.label) for d in self._robot.devices.values()]
         state, label = max(states, key=lambda one: STATES.index(one[0]), default=(OK, ""))
+        late = next((self._robot.devices[r.device].label for r in health if self._is_late(r)), "")
+        if state == OK and late:
+            return LATE, late
         return state, label if state != OK else ""
+
+    def _is_late(self, reading: Reading) -> bool:
+        device = self._robot.devices.get(reading.device)
+        return state_of(device, reading) == STALE != lasting_state(device, reading)
 
     def compare(
         self, acted: Acted, *, explained: bool = False
@@ -191,8 +213,8 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
     awaited = _link_is_awaited(robot, health)
     for reading in health:
         device = robot.devices.get(reading.device)
-        state = state_of(device, reading)
-        just = device is not None and reading.age <= device.stale_after + AWAITS_SECONDS
+        state = lasting_state(device, reading)
+        just = device is not None and reading.age <= device.lost_after + AWAITS_SECONDS
         found[f"{reading.device}.state"] = WARN if awaited and just and state == STALE else state
         if math.isfinite(reading.age):
             found[f"{reading.device}.age"] = reading.age
@@ -210,9 +232,9 @@ def _link_is_awaited(robot: Robot, health: Health) -> bool:
     """
     device = robot.devices.get(LINK)
     reading = next((one for one in health if one.device == LINK), None)
-    if device is None or reading is None or state_of(device, reading) == STALE:
+    if device is None or reading is None or lasting_state(device, reading) == STALE:
         return False
-    return reading.age > device.stale_after / 2
+    return reading.age > device.lost_after - AWAITED_SECONDS
 
 
 def symptoms(evidence: Evidence) -> set[str]:

@@ -13,3 +13,6 @@ ALSO_WRONG = "Also wrong"
 DONE_WHEN = "What was done, and when"
 HOW_KNOWN = "How Tangy knows"
 WHAT_TO_DO = "What should I do?"
+
+WAITS = "waits for the "
+"""What comes before the device whose late data the robot waits for."""

@@ -12,6 +12,7 @@ from tangy_profiles.health import ERROR, STALE, Fact, Health
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import DeviceProfile, Robot
 from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_tui.monitoring.detection import LATE
 from tangy_tui.monitoring.diagnosis import narrows
 from tangy_tui.monitoring.evidence import STATES, mismatch_words, written
 from tangy_tui.monitoring.fault import (
@@ -24,6 +25,7 @@ from tangy_tui.monitoring.fault import (
     RecoveryEvent,
 )
 from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.numbers import listed, ordinal
 from tangy_tui.text.times import clock
 
@@ -100,6 +102,8 @@ def status_words(status: tuple[str, str]) -> str:
     word, cause = status
     if not cause:
         return word
+    if word == LATE:
+        return f"{WAITS}{cause}"
     if word == STALE:
         return f"{word}: {STATES[STALE]} from the {cause}"
     if word == ERROR:

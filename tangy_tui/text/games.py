@@ -67,10 +67,21 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
             ]
         case DoneOnce(_, instead):
             return [f"   {once_words(instead)}"]
-        case GameEnded(_, steps, stopped):
-            if stopped is not None:
-                return [f"The game stopped after {steps} steps. {stopped}"]
-            return [f"The game is over after {steps} steps."]
+        case GameEnded(pauses=pauses):
+            return [ended_words(event), *paused_lines(*pauses)]
+
+
+def ended_words(ended: GameEnded) -> str:
+    """Say how a game ended, and why where it was before its end."""
+    if ended.stopped is None:
+        return f"The game is over after {ended.steps} steps."
+    return f"The game stopped after {ended.steps} steps. {ended.stopped}"
+
+
+def paused_lines(count: int, seconds: float) -> list[str]:
+    """Say how often the robot waited for late data, and for how many s, where it did."""
+    times = "once" if count == 1 else f"{count} times"
+    return [f"It waited for late data {times}, for {seconds:.1f} s in all."] if count else []
 
 
 def belief_lines(supervision: Supervision, name: Name) -> list[str]:

@@ -10,6 +10,7 @@ from tangy_tui.app.live_games import News
 from tangy_tui.app.seats import Seated
 from tangy_tui.interaction.game_events import Acted, GameEnded
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text.games import ended_words, paused_lines
 
 Name = Callable[[str], str]
 
@@ -37,10 +38,8 @@ def event_words(event: Event, name: Name) -> str:
             whom = "" if action.target is None else f" ({name(action.target)})"
             done = "" if outcome.completed else "  not carried out"
             return f"{number:4} {action.behaviour.name}{whom}: {speech}{done}"
-        case GameEnded(steps=steps, stopped=None):
-            return f"The game is over after {steps} steps."
-        case GameEnded(steps=steps, stopped=str(why)):
-            return f"The game stopped after {steps} steps. {why}"
+        case GameEnded(pauses=pauses):
+            return " ".join([ended_words(event), *paused_lines(*pauses)])
     return ""
 
 

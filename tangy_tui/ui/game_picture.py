@@ -19,6 +19,7 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.games import begun_words, broken_off_words, over_words, response_words
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.situations import lesson_words, once_words
@@ -114,7 +115,7 @@ class GamePicture:
                 game=self._game,
                 step=self._step,
                 note=note,
-                alarm=robot != "OK",
+                alarm=robot != "OK" and not robot.startswith(WAITS),
             )
         )
 

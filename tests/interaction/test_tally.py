@@ -64,7 +64,7 @@ def test_the_document_has_just_the_keys_that_were_agreed(tally: Tally, activity:
     assert json.loads(json.dumps(document)) == document
     assert list(document) == [
         "games", "steps", "behaviours", "rows", "interactions_per_user_game", "beliefs", "faults",
-        "finished", "stopped", "asked",
+        "finished", "stopped", "asked", "pauses",
     ]  # fmt: skip
     assert document["behaviours"] == {"call number": 3, "joke": 2}
     assert list(document["rows"][0]) == [

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import pytest
 
+from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import Evidence
-from tangy_profiles.health import STALE, Reading
+from tangy_profiles.health import OK, STALE, DeviceState, Reading
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.devices import READINGS, WELL
 from tangy_sim.worlds.faulty_world import FaultyWorld
@@ -17,7 +18,7 @@ from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.detection import Detector, device_evidence, symptoms
+from tangy_tui.monitoring.detection import LATE, Detector, device_evidence, symptoms
 from tests.monitoring.conftest import Supervise
 from tests.support.games import acts, codes, moves, play, until, world_of
 
@@ -193,8 +194,28 @@ def test_what_falls_silent_just_before_the_link_does_is_not_blamed() -> None:
         health = tuple(Reading(name, ages.get(name, 0.01)) for name in robot.devices)
         return device_evidence(robot, health)
 
-    assert of(0.03, 0.3)["laser.state"] == STALE  # the link is well: it is the scanner
-    assert of(0.2, 0.3)["laser.state"] != STALE  # that will be known in a moment
-    assert of(0.2, 0.4)["laser.state"] == STALE  # that has been long enough
-    both = of(0.26, 0.34)
+    lost = robot.devices["link"].lost_after
+    assert lost == robot.devices["laser"].lost_after
+    assert of(0.03, lost + 0.05)["laser.state"] == STALE  # the link is well: it is the scanner
+    assert of(lost - 0.05, lost + 0.05)["laser.state"] != STALE  # that will be known in a moment
+    assert of(lost - 0.05, lost + 0.15)["laser.state"] == STALE  # that has been long enough
+    both = of(lost + 0.01, lost + 0.09)
     assert both["link.state"] == both["laser.state"] == STALE
+
+
+def test_data_that_is_late_is_told_and_is_no_symptom_before_it_counts_as_lost() -> None:
+    robot = load_robot()
+    detector = Detector(load_activity("bingo"), robot, Effects({}))
+
+    def laser(age: float, state: DeviceState = OK) -> tuple[object, tuple[str, str]]:
+        health = tuple(
+            Reading(name, age if name == "laser" else 0.01, state if name == "laser" else OK)
+            for name in robot.devices
+        )
+        return device_evidence(robot, health)["laser.state"], detector.worst(health)
+
+    assert laser(0.2) == (OK, (OK, ""))
+    assert laser(0.3) == laser(0.3, STALE) == (OK, (LATE, "laser scanner"))
+    assert laser(1.4) == (OK, (LATE, "laser scanner"))
+    assert laser(1.6) == (STALE, (STALE, "laser scanner"))
+    assert laser(0.05, STALE) == (STALE, (STALE, "laser scanner"))  # it says so itself

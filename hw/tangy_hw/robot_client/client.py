@@ -38,6 +38,8 @@ CHILD = (sys.executable, "-P", "-m", "tangy_hw.robot_process")
 BEAT_SECONDS = 0.05
 SILENT_SECONDS = 0.6
 """Without a word from it for so long, the robot process hangs; its end is known at once."""
+LATE_SECONDS = 0.25
+"""s without a word from it after which what it said last has grown old; it speaks ten times a s."""
 SILENT_STEPPED = 10.0  # on a bench in a hurry, where a busy machine may take its time
 HANGS_SECONDS = 2.0
 """A screen that has not said for so long that it lives hangs: staff could not stop the robot."""
@@ -65,6 +67,7 @@ class RobotLink:
         *,
         log: Path | None = None,
         cancellation: Cancellation | None = None,
+        patience: float | None = None,
     ) -> None:
         """Prepare it.
 
@@ -72,6 +75,7 @@ class RobotLink:
             setup: what robot it is.
             log: takes what the process writes beside its lines.
             cancellation: of the opening that it is part of.
+            patience: for how many s nothing may be heard from the process.
         """
         self.setup = setup
         self.screen = ""
@@ -79,6 +83,7 @@ class RobotLink:
         self.code = ""
         """The code by which a tablet is paired there."""
         self._log = log
+        self._patience = patience
         self._cancellation = cancellation or Cancellation()
         self._starting = threading.Lock()
         self._over = False  # it is closed for good
@@ -193,9 +198,14 @@ class RobotLink:
         """Why nothing is heard from the robot process, "" as long as it is."""
         if self._how:
             return _ended(self._how)
-        patience = SILENT_STEPPED if self.setup.stepped else SILENT_SECONDS
-        quiet = time.monotonic() - self._heard
-        return "the robot process does not answer" if quiet > patience else ""
+        patience = self._patience or SILENT_SECONDS
+        patience = SILENT_STEPPED if self.setup.stepped else patience
+        return "the robot process does not answer" if self._quiet > patience else ""
+
+    @property
+    def _quiet(self) -> float:
+        """For how many s nothing was heard."""
+        return time.monotonic() - self._heard
 
     @property
     def _how(self) -> str:
@@ -208,12 +218,19 @@ class RobotLink:
         return 0.0 if self._worker is None else self._worker.heard
 
     def health(self) -> Health:
-        """Return the newest reading of each device; all are stale where the process is silent."""
+        """Return the newest reading of each device; all are stale where the process is silent.
+
+        They grow older while its next word is late.
+        """
         health = self._told.state.health
-        if not self.silent:
+        if self.silent:
+            return tuple(
+                r._replace(age=r.age + self._quiet, state=STALE, rate=None) for r in health
+            )
+        quiet = self._quiet
+        if self.setup.stepped or quiet <= LATE_SECONDS:
             return health
-        quiet = time.monotonic() - self._heard
-        return tuple(r._replace(age=r.age + quiet, state=STALE, rate=None) for r in health)
+        return tuple(r._replace(age=r.age + quiet) for r in health)
 
     # ------------------------------------------------------------------------- what it is told
 

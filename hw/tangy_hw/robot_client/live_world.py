@@ -87,6 +87,7 @@ class LiveWorld:
         self._pace = pace
         self._knows_faces = knows_faces
         self._order = Random(f"{seed}/calls")
+        self._paused = (0, 0.0)  # the pauses before this game
         self._begin()
 
     def _begin(self) -> None:
@@ -105,6 +106,7 @@ class LiveWorld:
     def begin(self) -> ActivityState:
         """Begin a new game and return its first state."""
         self._begin()
+        self._paused = self.link.state.pauses
         self.over = False
         with suppress(DeviceError):  # where it cannot, the first behaviour tries again
             self._remedies.go_back(knows_place=not self.lost)
@@ -360,6 +362,12 @@ class LiveWorld:
             tuple(self.called),
             view if view is not None and view.person == tracker.place else None,
         )
+
+    @property
+    def pauses(self) -> tuple[int, float]:
+        """How often the robot has waited for late data in this game, and for how many s."""
+        (count, seconds), (before, until) = self.link.state.pauses, self._paused
+        return max(0, count - before), round(max(0.0, seconds - until), 2)
 
     @property
     def seconds(self) -> float:

@@ -18,7 +18,8 @@ class RobotState:
     `asks` are (seat, since); `hazard` says why it stands still, `stopped` who stopped it, and
     `failed` what has failed of its control, for which only another robot process helps. `frozen` is
     for how many s its control stood still, until staff have seen to that; `held` is what it does
-    about who drives it by hand: "" as told, "slow", or "stands".
+    about who drives it by hand: "" as told, "slow", or "stands". `waits` says which data is late,
+    while it stands for that; `pauses` is how often it has, and for how many s.
     """
 
     number: int = 0
@@ -35,6 +36,8 @@ class RobotState:
     failed: str = ""
     frozen: float = 0.0
     held: str = ""
+    waits: str = ""
+    pauses: tuple[int, float] = (0, 0.0)
 
     @classmethod
     def from_json(cls, body: dict[str, Any]) -> RobotState:
@@ -54,6 +57,8 @@ class RobotState:
             body["failed"],
             body["frozen"],
             body["held"],
+            body["waits"],
+            (body["pauses"][0], body["pauses"][1]),
         )
 
 

@@ -24,6 +24,7 @@ from tangy_hw.robot_process.control_loop import ControlLoop
 from tangy_hw.robot_process.device_diagnostics import device_diagnostics
 from tangy_hw.robot_process.drive_monitor import DriveMonitor
 from tangy_hw.robot_process.hand_drive import HandDrive
+from tangy_hw.robot_process.pause_watch import PauseWatch
 from tangy_hw.robot_process.performer import Performer
 from tangy_hw.robot_process.stop_latch import FAULT, STAFF, Preempted, StopLatch
 from tangy_hw.robot_process.tick_watchdog import TickWatch
@@ -38,6 +39,7 @@ SPIN_SECONDS = 60.0
 BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
 HAZARD_SECONDS = 1.0
 """That it may have to stand still, or be left alone, before it gives up what it does."""
+OVER = ("arrived", "failed", "idle")
 WATCH_SECONDS = 0.02  # between two looks at whether it may still drive
 
 
@@ -82,7 +84,7 @@ class LiveRobot:
         self._stepped = stepped
         limits = MotionLimits(speed=robot.speed)
         self.hand = HandDrive(limits)
-        self.watch = TickWatch()
+        self.watch = TickWatch(late=robot.liveness.fault_after)
         self._wheels = Wheels(body.base, limits)
         self._stops = StopLatch()
         self._alone_since: float | None = None
@@ -100,11 +102,13 @@ class LiveRobot:
             lambda: self._ticks.rate(clock.now()),
             failed=lambda: self.failed,
             frozen=lambda: self.watch.frozen,
+            pauses=lambda: self.pauses,
             senses=senses,
             requests=requests,
             stepped=stepped,
         )
         self.watchdogs = Watchdogs(robot, reports)
+        self.pauses = PauseWatch(robot.liveness, limits, self.watchdogs.label)
         self._tasks: list[asyncio.Task[None]] = []
 
     # ------------------------------------------------------------------------ on and off
@@ -150,7 +154,7 @@ class LiveRobot:
 
     @property
     def at_hand(self) -> dict[str, str]:
-        """What staff need once it is on (see `Body.at_hand`)."""
+        """What staff need once it is on: see `Body`."""
         return self._body.at_hand
 
     @property
@@ -182,7 +186,7 @@ class LiveRobot:
     @property
     def hazard(self) -> str:
         """Why it stands still, "" if it may drive."""
-        return self.stopped or self.alone() or self.watchdogs.hazard()
+        return self.stopped or self.alone() or self.watchdogs.hazard() or self.pauses.why
 
     # ------------------------------------------------------------------------ what it does
 
@@ -286,13 +290,14 @@ class LiveRobot:
         """Watch from now on that no tick comes much too late, unless time stands still between."""
         if not self._stepped:
             self.watch.begin()
+            self.pauses.begin()
 
     def seen_to(self) -> None:
         """Take it that staff know that its control was frozen; it stands until it is released."""
         self.watch.frozen = 0.0
 
     def fail(self, device: str, state: DeviceState) -> None:
-        """Take a device for broken, whatever it says, to try what follows; "OK" takes it back."""
+        """Take a device for broken, whatever it says; "OK" takes it back."""
         self.watchdogs.fail(device, state)
 
     async def restart(self, device: str) -> None:
@@ -311,26 +316,21 @@ class LiveRobot:
 
     async def _drive(self, seconds: float) -> bool:
         """Let the navigator drive until it has arrived, or cannot; or the robot must not."""
-        navigator, now = self.navigator, self._clock.now()
+        navigator, since = self.navigator, dict.fromkeys(("blocked", "hazard"), self._clock.now())
         self._evidence.begin()
-        since = {"blocked": now, "hazard": now}
+
+        def lasts(what: str, there: bool) -> float:
+            since[what] = since[what] if there else self._clock.now()
+            return self._clock.now() - since[what]
 
         def over() -> bool:
-            now = self._clock.now()
-            if navigator.state != "blocked":
-                since["blocked"] = now
-            if not self.hazard:
-                since["hazard"] = now
-            return (
-                bool(self.stopped)
-                or navigator.state in ("arrived", "failed", "idle")
-                or now - since["blocked"] > BLOCKED_SECONDS
-                or now - since["hazard"] > HAZARD_SECONDS
-            )
+            patience = self.pauses.patience(self.watchdogs.late()) or HAZARD_SECONDS
+            blocked = lasts("blocked", navigator.state == "blocked") > BLOCKED_SECONDS
+            waited = lasts("hazard", self.hazard != "") > patience or blocked
+            return waited or self.stopped != "" or navigator.state in OVER
 
         await self.passing.until(over, seconds)
-        arrived = navigator.state == "arrived"
-        hazard = self.hazard
+        arrived, hazard = navigator.state == "arrived", self.hazard
         self._was = navigator.state
         self._evidence.keep()
         if not arrived:
@@ -360,7 +360,7 @@ class LiveRobot:
             command = STILL
             self._stand()
         elif command != STILL or not self._wheels.stand:
-            self._wheels.send(command)
+            self._wheels.send(self.pauses.limited(command))
         return command != STILL or self.going != ""
 
     def _was_frozen(self) -> None:
@@ -387,7 +387,8 @@ class LiveRobot:
             self._wheels.send(STILL)
 
     def _mind(self) -> None:
-        """Hold the arms and be quiet, once, when nobody has held the reins for a while."""
+        """Wait for late data; hold the arms and be quiet, once, when left alone for a while."""
+        self.pauses.look(self.watchdogs.ages(), self.watchdogs.late())
         why, now = self.alone(), self._clock.now()
         if not why:
             self._alone_since, self._left_alone = None, False

@@ -10,9 +10,11 @@ from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import RequestSource
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.drive_monitor import DriveMonitor
+from tangy_hw.robot_process.pause_watch import PauseWatch
 from tangy_hw.watchdogs import Report
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Reading, state_of
-from tangy_profiles.robot import FROZEN, LINK, Robot
+from tangy_profiles.liveness import SELDOM
+from tangy_profiles.robot import FROZEN, LINK, LOST, PAUSES, Robot
 
 FILMED_PATIENCE = 4.0
 """How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
@@ -27,6 +29,7 @@ def device_diagnostics(
     *,
     failed: Callable[[], str] = str,
     frozen: Callable[[], float] = float,
+    pauses: Callable[[], PauseWatch | None] = lambda: None,
     senses: CardAndFacePerception | None = None,
     requests: RequestSource | None = None,
     stepped: bool = False,
@@ -41,6 +44,7 @@ def device_diagnostics(
         rate: how often a second it does.
         failed: what of its control has failed, "" if nothing has.
         frozen: for how many s its control was frozen, until staff have seen to that.
+        pauses: how often it waits for late data.
         senses: what reads pictures, if anything does.
         requests: who asks for help, if anybody can.
         stepped: time stands still while nobody waits for it; cameras film in real time.
@@ -69,7 +73,10 @@ def device_diagnostics(
     linked = reports.get(LINK, lambda: Reading(LINK))
 
     def link() -> Reading:
-        reading, seconds = linked(), frozen()
+        reading, seconds, watch = linked(), frozen(), pauses()
+        if watch is not None and (level := watch.level) != SELDOM:
+            told = {PAUSES: level, LOST: round(watch.lost, 3)}
+            reading = reading._replace(facts={**reading.facts, **told})
         if not seconds:
             return reading
         return reading._replace(state=ERROR, facts={**reading.facts, FROZEN: seconds})

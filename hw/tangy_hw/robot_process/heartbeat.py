@@ -31,6 +31,8 @@ def beat_of(robot: LiveRobot, number: int) -> dict[str, Any]:
         "failed": robot.failed,
         "frozen": round(robot.watch.frozen, 1),
         "held": robot.hand.held,
+        "waits": robot.pauses.why,
+        "pauses": [robot.pauses.count, round(robot.pauses.seconds, 2)],
     }
 
 

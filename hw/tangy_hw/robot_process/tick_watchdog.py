@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-LATE_SECONDS = 1.0
+LATE_SECONDS = 1.5
 """From one tick to the next: a busy machine makes them late by a few tenths; what takes longer has
 left a robot without control, and the room is not as it was."""
 
@@ -20,10 +20,14 @@ def time_awake_and_asleep() -> float:
 class TickWatch:
     """Watches how long after one another ticks come, once it is begun."""
 
-    def __init__(self, clock: Callable[[], float] = time_awake_and_asleep) -> None:
+    def __init__(
+        self, clock: Callable[[], float] = time_awake_and_asleep, late: float = LATE_SECONDS
+    ) -> None:
+        """Prepare; a tick that comes more than `late` s after the last is much too late."""
         self.frozen = 0.0
         """For how many s control was frozen, until staff have seen to it."""
         self._clock = clock
+        self._late = late
         self._last: float | None = None
 
     def begin(self) -> None:
@@ -33,7 +37,7 @@ class TickWatch:
     @property
     def overdue(self) -> bool:
         """Whether the next tick is much too late already: what is known is from before."""
-        return self._last is not None and self._clock() - self._last > LATE_SECONDS
+        return self._last is not None and self._clock() - self._last > self._late
 
     def tick(self) -> bool:
         """Take note of a tick; return whether control was frozen before it."""
@@ -41,7 +45,7 @@ class TickWatch:
             return False
         now = self._clock()
         late, self._last = now - self._last, now
-        if late <= LATE_SECONDS:
+        if late <= self._late:
             return False
         self.frozen = max(self.frozen, late)
         return True

@@ -9,7 +9,7 @@ from tangy_profiles.health import ERROR, OK, DeviceState, Fact, Health, Reading
 
 READINGS: Mapping[str, Mapping[str, Fact]] = MappingProxyType(
     {
-        "link": {"frozen": 0.0},
+        "link": {"frozen": 0.0, "pauses": "seldom", "lost": 0.0},
         "stop_button": {"latched": False},
         "laser": {"near_share": 0.04, "variety": 0.35},
         "base": {"still": 0.0, "slip": 0.02},

@@ -59,6 +59,11 @@ class SimulatedWorld:
         self._compliance = Random(f"{seed}/compliance")
         self.begin()
 
+    @property
+    def pauses(self) -> tuple[int, float]:
+        """How often, and for how many s, the robot waited for late data: never."""
+        return 0, 0.0
+
     def begin(self) -> ActivityState:
         """Deal new cards and begin a game; return its first state."""
         activity, deck, cards = self.activity, self.activity.deck, self._cards.random

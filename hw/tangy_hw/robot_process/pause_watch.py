@@ -1,0 +1,137 @@
+"""Pauses: a robot stands for late data, goes on by itself when it is fresh, and slowly at first."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+
+from tangy_hw.device_protocols import Twist
+from tangy_hw.navigation.limits import MotionLimits
+from tangy_profiles.liveness import OFTEN, PAUSING, SELDOM, TOO_OFTEN, Liveness, Pausing
+
+CONTROL = "control"
+"""What is late where the robot's own control was held up."""
+
+LATE_LOOK = 0.25
+"""s from one look to the next after which control was held up."""
+
+GIVES_UP_SECONDS = 0.5
+"""After late data has become a fault: that is diagnosed, and breaks a drive off before."""
+
+SLOW_TURN = 0.4  # rad/s, at which a robot turns while it goes on slowly
+
+
+class PauseWatch:
+    """Keeps what a robot stands for, and how much time that has taken. `begin` it when it is on."""
+
+    def __init__(
+        self,
+        liveness: Liveness,
+        limits: MotionLimits,
+        label: Callable[[str], str] = str,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            liveness: how late data may be.
+            limits: how the robot may drive otherwise.
+            label: what a device is called.
+            clock: tells real time, in s.
+        """
+        self.count = 0
+        """The pauses that are over, without those that became a fault."""
+        self.seconds = 0.0
+        """How long they took."""
+        self.longest = 0.0
+        self._liveness = liveness
+        self._slow = MotionLimits(speed=min(liveness.slow_speed, limits.speed), turn=SLOW_TURN)
+        self._label = label
+        self._clock = clock
+        self._looked: float | None = None
+        self._since = 0.0
+        self._by = ""  # what was late first
+        self._wanted: dict[str, int] = {}  # how many new readings each is still to give
+        self._ages: dict[str, float] = {}
+        self._lost: deque[tuple[float, float]] = deque()  # when a pause was over, and its s
+        self._slow_until = 0.0
+        self._level: Pausing = SELDOM
+
+    def begin(self) -> None:
+        """Watch from now on."""
+        self._looked = self._clock()
+
+    @property
+    def why(self) -> str:
+        """Why the robot waits for fresh data, "" where it does not."""
+        return f"{self._label(self._by)} is late" if self._wanted else ""
+
+    def look(self, ages: Mapping[str, float], late: Mapping[str, float]) -> None:
+        """Take in how old the data of the devices is, in s, and which of it is too old."""
+        if self._looked is None:
+            return
+        now, before = self._clock(), self._looked
+        if now <= before:
+            return
+        self._looked = now
+        missed = list(late)
+        if now - before > LATE_LOOK:
+            missed.append(CONTROL)
+        if missed and not self._wanted:
+            self._by = missed[-1]
+            self._since = now - max(0.0, now - before - LATE_LOOK)
+        fresh = int(self._liveness.fresh_readings)
+        for name in list(self._wanted):
+            if name == CONTROL or ages.get(name, 0.0) <= self._ages.get(name, 0.0):
+                self._wanted[name] -= 1
+        self._wanted |= dict.fromkeys(missed, fresh)
+        over = bool(self._wanted) and not any(left > 0 for left in self._wanted.values())
+        self._wanted = {name: left for name, left in self._wanted.items() if left > 0}
+        self._ages = dict(ages)
+        if over:
+            self._end(now)
+
+    def _end(self, now: float) -> None:
+        took = now - self._since
+        self._slow_until = now + self._liveness.slow_seconds
+        if took > self._liveness.fault_after + GIVES_UP_SECONDS:
+            return  # that was a fault, and staff saw to it
+        self.count += 1
+        self.seconds += took
+        self.longest = max(self.longest, took)
+        self._lost.append((now, took))
+
+    def patience(self, late: Mapping[str, float]) -> float:
+        """Return for how many s a drive may wait for late data, 0 where none is late."""
+        waits = bool(late) or bool(self._wanted)
+        return self._liveness.fault_after + GIVES_UP_SECONDS if waits else 0.0
+
+    def limited(self, command: Twist) -> Twist:
+        """Return a command as slow as it has to be for a while after a pause."""
+        slow = self._looked is not None and self._clock() < self._slow_until
+        return self._slow.clamped(command) if slow else command
+
+    @property
+    def lost(self) -> float:
+        """The share of the last while that was lost to pauses."""
+        now, window = self._clock(), self._liveness.window_seconds
+        while self._lost and self._lost[0][0] < now - window:
+            self._lost.popleft()
+        return min(1.0, sum(took for _, took in self._lost) / window)
+
+    @property
+    def level(self) -> Pausing:
+        """How much time is lost; less is believed only at half of what it took to say more."""
+        lost, kept = self.lost, self._level
+        shares: dict[Pausing, float] = {
+            TOO_OFTEN: self._liveness.fault_share,
+            OFTEN: self._liveness.warn_share,
+        }
+        self._level = SELDOM
+        for level, share in shares.items():
+            was_so = PAUSING.index(kept) >= PAUSING.index(level)
+            if lost > (share / 2 if was_so else share):
+                self._level = level
+                break
+        return self._level
