@@ -7,23 +7,25 @@ nothing here or above names one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.resources import files
+from itertools import product
 from os.path import isdir
 from pathlib import Path
 from types import MappingProxyType
 
 from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
 from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
+from tangy_profiles.declared.vocabulary import declares
 from tangy_profiles.defaults import PRESSING_STRATEGIES
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.extensions import activity_files
 from tangy_profiles.persuading import PAPER, PersuasionConfig, read_persuading
 from tangy_profiles.phones import read_pronunciations
 from tangy_profiles.reading import Table, nearest, plain, read_toml
-from tangy_profiles.state import Situation
+from tangy_profiles.state import Outcome, Request, Situation
 
 LISTENING = ("tiers", "paper")
 """How spoken words are matched: in tiers by how sure they are, or by n-gram and keywords alone."""
@@ -144,6 +146,21 @@ class Activity:
                     found.append(Situation(rule.stage, "ANR", self.unread))
         return tuple(dict.fromkeys(found))
 
+    def imaginable(self) -> Iterable[Situation]:
+        """Yield every situation that the policy has an answer to, reachable or not."""
+        requests: tuple[Request, ...] = ("ANR", "AR")
+        for stage, request, state in product(self.stages, requests, self.user_states):
+            yield Situation(stage, request, state.name)
+
+    @property
+    def teams(self) -> tuple[str, ...]:
+        """The teams that take turns, where people do not play each for themselves."""
+        return ()
+
+    def whom_expected(self, situation: Situation) -> str | None:
+        """Return the selector of whom a behaviour is expected to be for, where one is named."""
+        return None
+
     def leaves_request(self, rule: StageRule) -> bool:
         """Whether an `after` stage begins beside somebody whose request stays open (a winner)."""
         behaviour = self.behaviours[rule.behaviour]
@@ -173,6 +190,16 @@ class Activity:
             behaviour.speech[chosen],
             behaviour.image,
             behaviour.place,
+        )
+
+    def words_of(
+        self, action: Action, outcome: Outcome, name: Callable[[str], str]
+    ) -> tuple[str, str]:
+        """Return what was said and shown by an action, "" where it lacks its numbers."""
+        called = name(action.target) if action.target is not None else ""
+        return (
+            self.fill(action.speech, called, outcome.numbers),
+            self.fill(action.image, called, outcome.numbers),
         )
 
     def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
@@ -223,6 +250,10 @@ def read_activity(path: Path) -> Activity:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
     top = read_toml(path)
+    if declares(top):
+        from tangy_profiles.declared.activity import read_declared
+
+        return read_declared(path)
     strategies = _strategies(top.table("strategies"))
     plain_strategy = top.choice("plain_strategy", strategies)
     states = _user_states(top)

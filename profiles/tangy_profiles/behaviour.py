@@ -44,11 +44,13 @@ class Behaviour:
     needs: tuple[str, ...]
     phrases: tuple[str, ...]
     keywords: tuple[tuple[str, ...], ...]
+    to: tuple[str, ...] = ()
+    """Of an activity that is declared by facts: the selectors of whom it may be for."""
 
     @property
     def attends(self) -> bool:
-        """Whether it is directed at the attended person rather than at the group."""
-        return self.place == "attended"
+        """Whether it is directed at one person rather than at the group."""
+        return self.place == "attended" or bool(self.to)
 
 
 @dataclass(frozen=True)

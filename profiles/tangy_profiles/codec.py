@@ -112,13 +112,16 @@ def keys_of(kind: Any) -> frozenset[str]:
 
 @cache
 def fields_of(kind: Any) -> tuple[Field, ...]:
-    """Return the fields of a record that its table has; a named tuple needs each of its keys."""
+    """Return the fields of a record of its table; a named tuple needs each but sparse keys."""
     tuples = dict.fromkeys(getattr(kind, "_fields", ()), MISSING)
+    usual = getattr(kind, "_field_defaults", {})
     hints, found = get_type_hints(kind, include_extras=True), []
     for name, default in (tuples or {one.name: _default(one) for one in fields(kind)}).items():
         hint, marks = _unpacked(hints[name])
         key = next((mark for mark in marks if isinstance(mark, Key)), Key())
         others = tuple(mark for mark in marks if not isinstance(mark, Key))
+        if key.sparse and name in usual:
+            default = usual[name]
         if not key.unlogged:
             hint = Annotated[(hint, *others)] if others else hint
             found.append(Field(name, key._replace(name=key.name or name), hint, default))

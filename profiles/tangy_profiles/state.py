@@ -8,10 +8,15 @@ from __future__ import annotations
 
 from typing import Any, Literal, NamedTuple, get_args
 
-from tangy_profiles.codec import Count
+from tangy_profiles.codec import Count, Sparse
 
 Request = Literal["ANR", "AR"]
 """The assistance request state s_h: assistance not required, or required."""
+
+FACTS = "; "
+"""Between the facts of a situation, where an activity is declared by facts."""
+EVERYBODY = "everybody"
+"""Whom a command is for that names the whole group."""
 
 FRONT = "front"
 """The place in front of the group; every other place is the id of the person the robot is with."""
@@ -66,6 +71,10 @@ class ActivityState(NamedTuple):
     attended: str | None
     users: tuple[UserState, ...]
     closed: str | None = None
+    facts: Sparse[tuple[tuple[str, str], ...]] = ()
+    """Of an activity that is declared by facts: each fact with its value."""
+    whom: Sparse[tuple[tuple[str, str], ...]] = ()
+    """Of such an activity: each selector that names a person now, with the person."""
 
     @property
     def stage(self) -> str:
@@ -99,6 +108,8 @@ class ActivityState(NamedTuple):
             The state, or None where the codec must look closely.
         """
         try:
+            if "facts" in value or "whom" in value:
+                return None
             stage, request, activity = value["situation"]
             users, ids = [], set()
             for user in value["users"]:
@@ -145,10 +156,13 @@ class Outcome(NamedTuple):
     """What became of an executed action.
 
     `numbers` are the numbers it was about: the one that was called, or those a person was asked
-    to mark or to clear. `seconds` is how long it took in the world's own time.
+    to mark or to clear. `seconds` is how long it took in the world's own time. `speech` and `image`
+    are the words that a world chose itself ("": those of the action), with people by their ids.
     """
 
     completed: bool
     seconds: float
     numbers: tuple[int, ...]
     response: Response | None
+    speech: str = ""
+    image: str = ""

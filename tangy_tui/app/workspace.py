@@ -91,6 +91,8 @@ class Workspace:
         self.robot.check(self.activity)
         self.room: Room = load_room()
         self._sample = load_people(users)
+        if self.activity.teams:
+            self._sample = tuple(Person(team, team) for team in self.activity.teams)
         self.store = Store.open(folder, write=write, now=now)
         self._logging = ExitStack()
         if write:
@@ -252,12 +254,9 @@ class Workspace:
 
     def teaching_world(self, shown: Demonstration) -> World:
         """Make the simulated world of a demonstration, in which people ask more often."""
-        from tangy_sim.worlds.guidance import GuidedWorld
-        from tangy_sim.worlds.users import load_users
-        from tangy_sim.worlds.world import SimulatedWorld
+        from tangy_tui.app.simulated_worlds import teaching_world
 
-        kind = GuidedWorld if shown.guided else SimulatedWorld
-        return kind(self.activity, shown.people, seed=shown.seed, users=load_users().teaching())
+        return teaching_world(self.activity, shown)
 
     def supervision(
         self,
@@ -283,8 +282,8 @@ class Workspace:
             TangyError: one of the injections is none, or the fault rules have a mistake.
         """
         from tangy_profiles.fault_file import load_faults
-        from tangy_sim.worlds.faulty_world import FaultyWorld
         from tangy_sim.worlds.injection import read_injection
+        from tangy_tui.app.simulated_worlds import game_world
         from tangy_tui.monitoring.accepted import expected_effects
         from tangy_tui.monitoring.supervision import Supervision
 
@@ -294,7 +293,7 @@ class Workspace:
         if world is not None:
             pass
         elif live is None:
-            world = FaultyWorld(self.activity, people, seed=seed, injections=to_come)
+            world = game_world(self.activity, people, seed, to_come)
         else:
             from tangy_tui.app.partly_live_world import PartlyLiveWorld
 
@@ -317,10 +316,10 @@ class Workspace:
             seed: of the random generators.
             asks: somebody is there to say what to do where Tangy is not sure.
         """
-        from tangy_sim.worlds.world import SimulatedWorld
+        from tangy_tui.app.simulated_worlds import game_world
 
         seed = self.game_seed(seed)
-        world = SimulatedWorld(self.activity, list(self.names), seed=seed)
+        world = game_world(self.activity, list(self.names), seed, None)
         return self._facilitation(world, policy, seed, asks)
 
     def game_seed(self, seed: int | None) -> int:

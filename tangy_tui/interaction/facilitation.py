@@ -30,12 +30,13 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.interaction.observation import Observation
 from tangy_tui.interaction.persuasion import Persuasion
-from tangy_tui.interaction.uncertainty import remedy_for, why_not
+from tangy_tui.interaction.uncertainty import remedy_for, which_of, why_not
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.teaching_session import NOTHING_SAID
 from tangy_tui.learning.verification import Verifier
+from tangy_tui.learning.whom import Addressee, addressee
 from tangy_tui.world import World
 
 _LOG = logging.getLogger(__name__)
@@ -167,12 +168,25 @@ class Facilitation:
             return [self.question]
         behaviour = self._activity.behaviours[decision.behaviour]
         target = state.attended if behaviour.attends else None
+        if behaviour.to:
+            found = addressee(self.policy.whom, behaviour, state)
+            target = found.person
+            if not found.sure:
+                return [self._ask_whom(state, decision, found)]
         if not self.permits(decision, target):
             return []
         acted = self._act(state, decision, behaviour, target)
         with self._store.transaction():
             ended = self._log(acted, "")
         return self._told(acted, ended)
+
+    def _ask_whom(self, state: ActivityState, decision: Decision, found: Addressee) -> GameEvent:
+        """Ask whom a behaviour is for; where nobody can be asked, end the game."""
+        reason = which_of(decision.behaviour, found.others, self._names)
+        if self._answers is None:
+            return self._end(reason)
+        self.question = Unsure(state, decision, reason, remedy_for(decision))
+        return self.question
 
     def look(self) -> ActivityState:
         """Observe the state before a behaviour."""
@@ -305,7 +319,9 @@ class Facilitation:
         elif refused(behaviour, state, outcome, after):
             self._refused = target
         expected = activity.expected.get(state.situation, behaviour.name)
-        name = self._names.get(target, target) if target is not None else ""
+        speech, image = activity.words_of(
+            action, outcome, lambda person: self._names.get(person, person)
+        )
         return Acted(
             self.steps,
             state,
@@ -314,9 +330,8 @@ class Facilitation:
             action,
             outcome,
             after,
-            activity.fill(action.speech, name, outcome.numbers)
-            or (NOTHING_SAID if outcome.completed else NOT_DONE),
-            activity.fill(action.image, name, outcome.numbers),
+            speech or (NOTHING_SAID if outcome.completed else NOT_DONE),
+            image,
             outcome.completed and expected == behaviour.name,
         )
 

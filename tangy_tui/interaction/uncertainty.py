@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 from tangy_profiles.activity import Activity
 from tangy_profiles.state import ActivityState
 from tangy_tui.learning.policy import Decision
@@ -28,3 +30,9 @@ def remedy_for(decision: Decision) -> str:
     if not decision.seen:
         return "Demonstrate it once."
     return "Demonstrate it again, or correct the demonstration that differs."
+
+
+def which_of(behaviour: str, others: Sequence[tuple[str, str]], names: Mapping[str, str]) -> str:
+    """Ask whom a behaviour is for, by the selectors that name different people now."""
+    ways = [f"{names.get(person, person)} ({selector})" for selector, person in others]
+    return f"{behaviour}: for {' or '.join(ways)}?"

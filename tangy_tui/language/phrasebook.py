@@ -10,13 +10,18 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.person import Person
+from tangy_profiles.state import EVERYBODY
 from tangy_tui.language.words import Words, bare, clean, spoken, words_of
 
 ARTICLES = frozenset(("a", "an", "the"))
+LINKS = ("to", "for", "with")
+"""Between what is to be done and whom it is for."""
+USER = ("user",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +78,9 @@ class Phrases:
             self._add(words_of(behaviour.name), behaviour.name, None, place, heard=False)
         for behaviour in behaviours:
             self._add_keywords(behaviour)
-            if behaviour.effect == "go to user":
+            if behaviour.to:
+                self._add_addressees(behaviour)
+            elif behaviour.effect == "go to user":
                 self._add_people(behaviour)
         self.pronunciations = self._read_pronunciations(activity, people)
         self.sources = dict.fromkeys(self.pronunciations, "person")
@@ -127,6 +134,16 @@ class Phrases:
                 self._add((*verb, *the, *seat), behaviour.name, user, place)
             for seat_noun in self.seat_nouns:  # else "go to seat" were the first one
                 self._add((*verb, *seat_noun), behaviour.name, None, place, heard=False)
+
+    def _add_addressees(self, behaviour: Behaviour) -> None:
+        """Put people behind each phrase: "give a hint to rosa", "give a hint to everybody"."""
+        called: list[tuple[Words, str]] = [*self.names.items(), *self.seats.items()]
+        called += [((noun, number), user) for number, user in self.numbers.items() for noun in USER]
+        if EVERYBODY in behaviour.to:
+            called.append(((EVERYBODY,), EVERYBODY))
+        for place, text in enumerate(behaviour.phrases):
+            for (name, user), link in product(called, LINKS):
+                self._add((*words_of(text), link, *name), behaviour.name, user, place)
 
     def _add_keywords(self, behaviour: Behaviour) -> None:
         for place, entry in enumerate(behaviour.keywords):

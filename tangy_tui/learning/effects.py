@@ -97,6 +97,8 @@ def transition(
     opening = {r.stage for r in activity.stage_rules if r.condition == "before"}
     closing = {r.stage for r in activity.stage_rules if r.condition == "after"}
     person = before.attended
+    if before.facts or before.whom:
+        return {"robot's place": "front" if after.place == FRONT else "with a person"}
     if after.place == FRONT:
         place = "front"
     elif after.place == person:

@@ -12,7 +12,7 @@ import json
 import platform
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from itertools import product
 from types import MappingProxyType
@@ -21,10 +21,11 @@ from typing import NamedTuple
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
-from tangy_profiles.state import Situation
+from tangy_profiles.state import FACTS, Situation
 from tangy_profiles.teaching_records import ForestSettings as ForestSettings
 from tangy_profiles.teaching_records import LearntRow, PolicyLearnt
 from tangy_tui.learning.conflicts import Resolution, find_conflicts, training_rows
+from tangy_tui.learning.whom import Whom, learn_whom
 
 SURE = 0.7
 """The vote share below which a decision is called unsure."""
@@ -82,6 +83,8 @@ class Policy:
     digest: str
     versions: Mapping[str, str]
     resolutions: tuple[Resolution, ...] = ()
+    whom: Whom = field(default_factory=dict)
+    """Which selectors say whom a behaviour is for, by stage and behaviour."""
 
     def decide(self, situation: Situation) -> Decision:
         """Look up the decision for a situation.
@@ -129,10 +132,7 @@ class Policy:
 
 def all_situations(activity: Activity) -> Iterator[Situation]:
     """Yield every combination of stage, request and user state, reachable or not."""
-    for stage, request, state in product(
-        activity.stages, ("ANR", "AR"), (s.name for s in activity.user_states)
-    ):
-        yield Situation(stage, "AR" if request == "AR" else "ANR", state)
+    yield from activity.imaginable()
 
 
 def learn_policy(
@@ -183,15 +183,17 @@ def learn_policy(
             right.get(situation, ()),
         )
     ids = tuple(d.id for d in demonstrations)
+    whom = learn_whom(demonstrations, activity.behaviours)
     return Policy(
         name=name or _name_by_count(activity.name, ids),
         activity=activity.name,
         demonstrations=ids,
         settings=settings,
         table=MappingProxyType(table),
-        digest=_digest(settings, rows, table, resolutions),
+        digest=_digest(settings, rows, table, resolutions, whom),
         versions=MappingProxyType(dict(forest.versions)),
         resolutions=tuple(resolutions),
+        whom=MappingProxyType(whom),
     )
 
 
@@ -258,16 +260,25 @@ def grown(
 
 
 def encoder(situations: Sequence[Situation]) -> Callable[[Situation], list[float]]:
-    """Return the one-hot encoding of a situation (stage, request, user state) among all of them."""
-    words = [
-        word for part in range(3) for word in dict.fromkeys((part, s[part]) for s in situations)
-    ]
-    place = {word: index for index, word in enumerate(words)}
+    """Return the one-hot encoding of a situation (stage, request, user state) among all of them.
+
+    Of an activity that is declared by facts, each fact of the user state is encoded by itself.
+    """
+    features = {
+        situation: [
+            *((0, situation.stage), (1, situation.request)),
+            *((2, fact) for fact in situation.user_state.split(FACTS)),
+        ]
+        for situation in situations
+    }
+    words = dict.fromkeys(word for found in features.values() for word in found)
+    order = sorted(words, key=lambda word: word[0])  # it keeps the order within each part
+    place = {word: index for index, word in enumerate(order)}
 
     def encode(situation: Situation) -> list[float]:
-        row = [0.0] * len(words)
-        for part in enumerate(situation):
-            row[place[part]] = 1.0
+        row = [0.0] * len(order)
+        for word in features[situation]:
+            row[place[word]] = 1.0
         return row
 
     return encode
@@ -278,6 +289,7 @@ def _digest(
     rows: list[tuple[Situation, str]],
     table: Mapping[Situation, Decision],
     resolutions: Sequence[Resolution],
+    whom: Whom,
 ) -> str:
     """Return a SHA-256 over what was learnt from and what came of it."""
     body: list[object] = [
@@ -287,5 +299,7 @@ def _digest(
     ]
     if resolutions:
         body.append([[*r.situation, *r.right] for r in resolutions])
+    if whom:
+        body.append([[*key, *selectors] for key, selectors in whom.items()])
     canonical = json.dumps(body, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
     return hashlib.sha256(canonical.encode()).hexdigest()

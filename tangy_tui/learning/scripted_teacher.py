@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.state import EVERYBODY
 from tangy_tui.learning.teaching_events import Next, TeachingEvent
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.learning.whom import first_addressee
 
 SCRIPTED = "scripted"
 """The name under which its demonstrations are kept."""
@@ -39,7 +41,18 @@ class ScriptedTeacher:
         expected = teaching.activity.expected.get(situation)
         if expected is None:
             raise TangyError(f"Nothing is expected for {' / '.join(situation)}.")
-        return Say(self._phrases[expected])
+        return Say(self._phrases[expected] + self._addressed(expected))
+
+    def _addressed(self, expected: str) -> str:
+        """Return for whom, in words, where that is not whom the behaviour is for by itself."""
+        teaching, activity = self._teaching, self._teaching.activity
+        state = teaching.world.observe()
+        selector = activity.whom_expected(state.situation)
+        if selector is None:
+            return ""
+        person = EVERYBODY if selector == "group" else dict(state.whom).get(selector, EVERYBODY)
+        usual = first_addressee(activity.behaviours[expected], state) or EVERYBODY
+        return "" if person == usual else f" to {teaching.name(person)}"
 
     def demonstrate(self) -> Iterator[TeachingEvent]:
         """Demonstrate to the end of the game, event by event."""

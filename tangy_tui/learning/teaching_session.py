@@ -319,10 +319,8 @@ class TeachingSession:
             raise
         self._logged = True
         self.demonstration = replace(self.demonstration.with_step(step), finished=finished)
-        name = self.name(target) if target else ""
-        fill, number = self.activity.fill, len(self.demonstration.steps)
-        speech = fill(action.speech, name, outcome.numbers) or NOTHING_SAID
-        image = fill(action.image, name, outcome.numbers)
+        speech, image = self.activity.words_of(action, outcome, self.name)
+        number, speech = len(self.demonstration.steps), speech or NOTHING_SAID
         events: list[TeachingEvent] = [Executed(number, step, action, outcome, speech, image)]
         shown = Shown(self.demonstration.id, self.teacher, number, step)
         self._remarks.notice(shown, over=finished)

@@ -11,9 +11,10 @@ from typing import TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
-from tangy_profiles.state import ActivityState
+from tangy_profiles.state import EVERYBODY, ActivityState
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
 from tangy_tui.language.stop_sentence import stops
+from tangy_tui.learning.whom import first_addressee
 
 ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
 LEAVE = "leave without executing it"
@@ -161,7 +162,7 @@ class Verifier:
             behaviour = self._activity.behaviours.get(name)
             if behaviour is None:
                 continue
-            target = self._observe().attended if behaviour.attends else None
+            target = self._usual(behaviour) if behaviour.attends else None
             if self._obstacle(behaviour, target) is None:
                 phrases.append(behaviour.phrases[0])
         return tuple(phrases)
@@ -232,9 +233,18 @@ class Verifier:
 
     def _target(self, command: Command) -> str | None:
         """Return whom a command is about."""
-        if not self._activity.behaviour(command.behaviour).attends:
+        behaviour = self._activity.behaviour(command.behaviour)
+        if not behaviour.attends:
             return None
-        return command.arguments.get("user") or self._observe().attended
+        named = command.arguments.get("user")
+        if named == EVERYBODY:
+            return None
+        return named or self._usual(behaviour)
+
+    def _usual(self, behaviour: Behaviour) -> str | None:
+        """Return whom a behaviour is for where nobody is named."""
+        state = self._observe()
+        return first_addressee(behaviour, state) if behaviour.to else state.attended
 
     def _words(self, command: Command) -> str:
         """Return how a command is asked about: the words of its behaviour, and with whom."""
@@ -247,9 +257,14 @@ class Verifier:
         if not behaviour.attends:
             return None
         goes = behaviour.effect == "go to user"
+        nobody = "nobody asks for help"
+        if behaviour.to:
+            if target is not None or EVERYBODY in behaviour.to:
+                return None
+            nobody = "there is nobody to do it for"
         if target is None:
             way = f" Say whom to go to, for example: {behaviour.phrases[0]} 1." if goes else ""
-            return f"That cannot be done now: nobody asks for help.{way}"
+            return f"That cannot be done now: {nobody}.{way}"
         if not goes and self._observe().place != target:
             return f"Tangy is not with {self._name(target)} yet: it has to go there first."
         return None

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from tangy_profiles.activity import Activity, StageRule
 from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
 from tangy_profiles.reading import plain
@@ -68,7 +69,9 @@ def _pressing(activity: Activity) -> Iterator[str]:
 def _stages(activity: Activity) -> Iterator[str]:
     """Tell of each stage none of whose rules can ever be the first that holds."""
     reasons: dict[str, list[str | None]] = {}
-    for place, rule in enumerate(activity.stage_rules):
+    for place, rule in enumerate(
+        () if isinstance(activity, DeclaredActivity) else activity.stage_rules
+    ):
         reason = _never(rule, activity.stage_rules[:place], activity)
         reasons.setdefault(rule.stage, []).append(reason)
     for stage, found in reasons.items():

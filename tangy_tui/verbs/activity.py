@@ -170,12 +170,15 @@ def _holds_faults(file: str) -> bool:
 
 def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
     from tangy_profiles.activity import load_activity
+    from tangy_profiles.declared.source import MistakesError
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
     from tangy_tui.speech.activity_check import CheckedFile, check_activity
 
     try:
         activity = load_activity(name)
+    except MistakesError as error:
+        return CheckedFile(plain(Path(name).name), error.lines), None
     except ProfileError as error:
         return CheckedFile(plain(Path(name).name), (str(error),)), None
     return check_activity(activity, robot, load_room().placed(load_people(SHOWN))), activity

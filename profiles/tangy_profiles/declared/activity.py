@@ -1,0 +1,168 @@
+"""A declared activity as the rest of the program knows activities."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+
+from tangy_profiles.activity import Activity, StageRule
+from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.cards import CardState, Deck
+from tangy_profiles.declared.model import Declaration, DeclaredBehaviour, Expectation
+from tangy_profiles.declared.reader import read_declaration
+from tangy_profiles.declared.situations import (
+    NOTHING_SEEN,
+    seen_facts,
+    situations,
+    told,
+)
+from tangy_profiles.declared.speech import with_names
+from tangy_profiles.declared.vocabulary import Selector
+from tangy_profiles.effects import Effect
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.state import EVERYBODY, Outcome, Situation
+
+NO_CARDS = Deck((), 0, False, ())
+MOST_SITUATIONS = 3_000
+
+
+@dataclass(frozen=True)
+class DeclaredActivity(Activity):
+    """An activity whose facts, stages and behaviours its file declares."""
+
+    declaration: Declaration = field(kw_only=True)
+
+    @cached_property
+    def situations(self) -> tuple[Situation, ...]:
+        """The situations that the conditions of the stages do not rule out, in their order."""
+        return tuple(situations(self.declaration))
+
+    @property
+    def teams(self) -> tuple[str, ...]:
+        """The teams that take turns, where people do not play each for themselves."""
+        return self.declaration.teams
+
+    def imaginable(self) -> Iterable[Situation]:
+        """Yield every situation that the policy has an answer to."""
+        return self.situations
+
+    def in_words(self, situation: Situation) -> str:
+        """Write a situation in a few words: the stage, and the facts that are seen there."""
+        facts = ", ".join(f"{fact} is {value}" for fact, value in seen_facts(situation).items())
+        return f"{situation.stage} · {facts}" if facts else situation.stage
+
+    def not_yet(self, situation: Situation) -> str:
+        """Name a situation that has not been shown yet."""
+        return self.in_words(situation)
+
+    def words_of(
+        self, action: Action, outcome: Outcome, name: Callable[[str], str]
+    ) -> tuple[str, str]:
+        """Return what the world said and showed, with people by their names."""
+        return with_names(outcome.speech, name), with_names(outcome.image, name)
+
+    def expectation(self, situation: Situation) -> Expectation | None:
+        """Return what a test expects of a facilitator in a situation."""
+        facts = seen_facts(situation)
+        for one in self.declaration.expected:
+            if one.stage == situation.stage and all(told(c, facts) for c in one.conditions):
+                return one
+        return None
+
+    def whom_expected(self, situation: Situation) -> Selector | None:
+        """Return whom a test expects the behaviour to be for, None where it is not said."""
+        found = self.expectation(situation)
+        return found.to if found is not None else None
+
+
+def read_declared(path: Path) -> DeclaredActivity:
+    """Read and check a declared activity.
+
+    Raises:
+        ProfileError: the file has mistakes; says the first, and how many more there are.
+    """
+    return made_activity(read_declaration(path))
+
+
+def made_activity(declaration: Declaration) -> DeclaredActivity:
+    """Make what the program plays of what a file declares.
+
+    Raises:
+        ProfileError: the stages see so many facts that nobody could show all situations.
+    """
+    count = 1
+    for stage in declaration.stages:
+        product = 1
+        for name in stage.sees:
+            product *= len(declaration.facts[name].values)
+        count += product
+    if count > MOST_SITUATIONS:
+        raise ProfileError(
+            f"{declaration.source}: the stages see {count} situations; {MOST_SITUATIONS} at most."
+        )
+    bare = _with_expected(declaration, MappingProxyType({}))
+    expected = {
+        situation: found.behaviour
+        for situation in bare.situations
+        if (found := bare.expectation(situation)) is not None
+    }
+    return _with_expected(declaration, MappingProxyType(expected))
+
+
+def _with_expected(
+    declaration: Declaration, expected: MappingProxyType[Situation, str]
+) -> DeclaredActivity:
+    labels = dict.fromkeys(one.user_state for one in situations(declaration))
+    states = [CardState(NOTHING_SEEN, NOTHING_SEEN, "unread", "")]
+    states += [
+        CardState(one, one, "otherwise", "") for one in sorted(labels) if one != NOTHING_SEEN
+    ]
+    return DeclaredActivity(
+        name=declaration.name,
+        title=declaration.title,
+        patience=declaration.patience,
+        strategies=MappingProxyType(dict(declaration.strategies)),
+        plain_strategy=declaration.plain_strategy,
+        deck=NO_CARDS,
+        user_states=tuple(states),
+        stage_rules=tuple(StageRule(stage.name, "otherwise") for stage in declaration.stages),
+        behaviours=MappingProxyType(
+            {name: _behaviour(declaration, one) for name, one in declaration.behaviours.items()}
+        ),
+        expected=expected,
+        source=declaration.source,
+        pronunciations=MappingProxyType(dict(declaration.pronunciations)),
+        names_pressing=True,
+        declaration=declaration,
+    )
+
+
+def _behaviour(declaration: Declaration, one: DeclaredBehaviour) -> Behaviour:
+    does = {effect.does for effect in one.effects}
+    effect: Effect = "none"
+    if "finish" in does:
+        effect = "finish"
+    elif "go to whom" in does:
+        effect = "go to user"
+    elif "go to front" in does:
+        effect = "go to front"
+    texts = {name: found[0] for name, found in one.says.items()}
+    first = texts.get(declaration.plain_strategy, next(iter(texts.values()), ""))
+    return Behaviour(
+        name=one.name,
+        question=one.question,
+        effect=effect,
+        place="here",
+        posture=one.posture,
+        image=one.image,
+        speech=MappingProxyType({s: texts.get(s, first) for s in declaration.strategies}),
+        persuades=one.invites,
+        closes="always" if "close request" in does else "never",
+        needs=(),
+        phrases=one.phrases,
+        keywords=(),
+        to=tuple(EVERYBODY if selector == "group" else selector for selector in one.to),
+    )

@@ -1,0 +1,164 @@
+"""The behaviours of an activity's file: what they do, for whom, what is said, the phrases."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import cast
+
+from tangy_profiles.declared.conditions import Facts, Phrasing
+from tangy_profiles.declared.items import read_csv
+from tangy_profiles.declared.model import DeclaredBehaviour
+from tangy_profiles.declared.section import Section
+from tangy_profiles.declared.vocabulary import SELECTORS, Selector
+from tangy_profiles.reading import nearest
+
+KEYS = ("does", "needs", "to", "says", "phrases", "question", "posture", "image")
+POSTURE = "rest"
+SLOT = re.compile(r"\{([^{}]*)\}")
+PHRASE = re.compile(r"[a-z']+( [a-z']+)*")
+OF_EACH = " of each"
+"""Behind the name of a count in a slot: the count of every player."""
+SPEECH_COLUMNS = ["behaviour", "strategy", "text"]
+Texts = dict[str, tuple[str, ...]]
+
+
+def read_behaviours(
+    top: Section,
+    phrasing: Phrasing,
+    strategies: Sequence[str],
+    plain: str,
+    folder: Path,
+    columns: Sequence[str],
+    title: str,
+) -> dict[str, DeclaredBehaviour]:
+    """Read all behaviours of a file, and the CSV file of their speech where it names one.
+
+    Args:
+        top: the file.
+        phrasing: reads conditions and effects.
+        strategies: the names of the persuasive strategies.
+        plain: the one of them that is used where nobody is asked to do anything.
+        folder: where the files beside it are.
+        columns: the columns of the items.
+        title: what the chest screen shows where a behaviour does not say.
+    """
+    slots = known_slots(phrasing.facts, columns)
+    spoken = _read_speech(top, folder, strategies, slots)
+    section = top.table("behaviours")
+    found: dict[str, DeclaredBehaviour] = {}
+    said: dict[str, str] = {}
+    for name in section:
+        one = section.table(name)
+        one.only(*KEYS)
+        effects = phrasing.effects(one, "does")
+        texts = _read_says(one, strategies, plain, slots) | spoken.get(name, {})
+        behaviour = DeclaredBehaviour(
+            name,
+            effects,
+            phrasing.conditions(one, "needs"),
+            _read_to(one),
+            texts,
+            _read_phrases(one, name, said),
+            one.text("question", name),
+            one.text("posture", POSTURE),
+            _text(one, "image", one.text("image", title), slots),
+        )
+        if behaviour.invites and set(texts) != set(strategies) and texts:
+            missing = next(s for s in strategies if s not in texts)
+            one.wrong("says", f"says nothing by the strategy {missing!r}")
+        found[name] = behaviour
+    for name in spoken:
+        if name not in found:
+            top.wrong("speech", f"{name!r} is not a behaviour; {nearest(name, found)}")
+    if not found:
+        top.wrong("behaviours", "there must be at least 1")
+    elif not any(e.does == "finish" for b in found.values() for e in b.effects):
+        top.wrong("behaviours", "one of them must 'finish', or no game would end")
+    return found
+
+
+def known_slots(facts: Facts, columns: Sequence[str]) -> list[str]:
+    """Return the slots that a speech or a screen of an activity can have."""
+    slots = ["name", "n", "turn", *columns]
+    for fact in facts.values():
+        if not fact.built_in:
+            slots.append(fact.name)
+            if fact.kind == "count" and fact.per_player:
+                slots.append(fact.name + OF_EACH)
+    return slots
+
+
+def _text(section: Section, key: str, text: str, slots: Collection[str]) -> str:
+    for slot in SLOT.findall(text):
+        if slot not in slots:
+            section.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot, slots)}", text)
+    if re.search(r"[{}]", SLOT.sub("", text)):
+        section.wrong(key, "has an unpaired brace", text)
+    return text
+
+
+def _read_says(
+    section: Section, strategies: Sequence[str], plain: str, slots: Collection[str]
+) -> Texts:
+    if not isinstance(section.raw("says"), dict):
+        texts = section.texts("says", single=True)
+        texts = tuple(_text(section, "says", text, slots) for text in texts)
+        return {plain: texts} if texts else {}
+    table = section.table("says")
+    found: Texts = {}
+    for name in table:
+        if name not in strategies:
+            table.wrong(name, f"is not a strategy; {nearest(name, strategies)}")
+        texts = table.texts(name, single=True)
+        found[name] = tuple(_text(table, name, text, slots) for text in texts)
+    return {name: texts for name, texts in found.items() if texts}
+
+
+def _read_to(section: Section) -> tuple[Selector, ...]:
+    named = section.texts("to", single=True)
+    for one in named:
+        if one not in SELECTORS:
+            section.wrong("to", f"{one!r} is not known; {nearest(one, SELECTORS)}", one)
+    return cast(tuple[Selector, ...], tuple(one for one in named if one in SELECTORS))
+
+
+def _read_phrases(section: Section, name: str, said: dict[str, str]) -> tuple[str, ...]:
+    phrases = section.texts("phrases")
+    for phrase in phrases:
+        if not PHRASE.fullmatch(phrase):
+            section.wrong("phrases", f"{phrase!r} must be small letters, as it is spoken", phrase)
+    if PHRASE.fullmatch(name):
+        phrases = tuple(dict.fromkeys((*phrases, name)))
+    if not phrases:
+        section.wrong("phrases", f"{name!r} cannot be spoken: give it phrases", name)
+    for phrase in phrases:
+        if said.setdefault(phrase, name) != name:
+            section.wrong("phrases", f"{phrase!r} belongs to {said[phrase]!r} already", phrase)
+    return phrases
+
+
+def _read_speech(
+    top: Section, folder: Path, strategies: Sequence[str], slots: Collection[str]
+) -> Mapping[str, Texts]:
+    """Read the CSV file of speech: behaviour, strategy, text."""
+    name = top.text("speech", "")
+    if not name:
+        return {}
+    if Path(name).name != name:
+        top.wrong("speech", "must be the name of a file beside this one", name)
+        return {}
+    rows = read_csv(top.source, ("speech",), folder / name)
+    if rows and rows[0] != SPEECH_COLUMNS:
+        top.wrong("speech", f"{name}: its header must be {','.join(SPEECH_COLUMNS)}")
+        return {}
+    found: dict[str, Texts] = {}
+    for behaviour, strategy, text in rows[1:]:
+        if strategy not in strategies:
+            near = nearest(strategy, strategies)
+            top.wrong("speech", f"{name}: {strategy!r} is not a strategy; {near}", name)
+        _text(top, "speech", text, slots)
+        texts = found.setdefault(behaviour, {})
+        texts[strategy] = (*texts.get(strategy, ()), text)
+    return found

@@ -1,0 +1,303 @@
+"""The one interpreter of declared activities: the facts of a game, and what changes them.
+
+`observe` and `execute` are the only ways in which a fact changes: simulated people, cameras,
+buttons, speech and staff use the first, the robot's behaviours the second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tangy_profiles.declared.judging import judged
+from tangy_profiles.declared.model import Declaration, Effect, Fact, FactCondition, Stage
+from tangy_profiles.declared.vocabulary import (
+    ASKING,
+    ITEMS,
+    NO,
+    PLACE,
+    TURN,
+    YES,
+    Selector,
+)
+from tangy_profiles.state import FRONT
+
+Key = tuple[str, str]
+"""A fact and whose it is ("": the group's)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Execution:
+    """What became of a behaviour: whether it could be done, and who was invited to do what."""
+
+    completed: bool
+    invited: tuple[tuple[str, str, str], ...] = ()
+    """Person, fact and value; "" is everybody."""
+
+
+class DeclaredGame:
+    """The state of one game of a declared activity."""
+
+    def __init__(
+        self, declaration: Declaration, players: Sequence[str], order: Sequence[int] = ()
+    ) -> None:
+        """Begin a game.
+
+        Args:
+            declaration: the activity.
+            players: those who take turns: people, or teams.
+            order: the rows of the items in the order of the game (default: as they stand).
+        """
+        self.declaration = declaration
+        self.players = tuple(players)
+        self.order = tuple(order) or tuple(range(declaration.items.rounds))
+        self.values: dict[Key, str] = {}
+        self.counts: dict[Key, float] = {}
+        self.round = 0
+        """How many items have been put to the group."""
+        self.turn = 0
+        self.queue: list[str] = []
+        """Those who ask, first come first."""
+        self.place = FRONT
+        self.addressed: str | None = None
+        self.actor: str | None = None
+        self.acts = dict.fromkeys(self.players, 0)
+        self.now = 0.0
+        """The time in this game, in s."""
+        self.step = 0
+        self.closed: str | None = None
+        self.over = False
+        self.executed: dict[str, int] = {}
+
+    def copy(self) -> DeclaredGame:
+        """Return a game that goes on from here by itself."""
+        other = object.__new__(DeclaredGame)
+        other.__dict__.update(self.__dict__)
+        other.values, other.counts = dict(self.values), dict(self.counts)
+        other.queue, other.acts = list(self.queue), dict(self.acts)
+        other.executed = dict(self.executed)
+        return other
+
+    # ------------------------------------------------------------------------ what is so now
+
+    @property
+    def row(self) -> int:
+        """The row of the present item, -1 before the first."""
+        return self.order[self.round - 1] if 0 < self.round <= len(self.order) else -1
+
+    def number(self, fact: Fact, player: str | None) -> float:
+        """Return a count, or how many s a timer runs."""
+        if fact.per_player and player is None:
+            return 0.0
+        kept = self.counts.get(_key(fact, player))
+        if fact.kind != "timer":
+            return kept or 0.0
+        return 0.0 if kept is None else self.now - kept
+
+    def value(self, name: str, player: str | None) -> str:
+        """Return the value of a fact as conditions and the policy see it, of a player or the group.
+
+        Of a fact that players have one by one, nobody has the first value.
+        """
+        fact = self.declaration.facts[name]
+        if fact.built_in:
+            return self._built_in(name, player)
+        if fact.kind == "test":
+            found = fact.values[0]
+            for value, conditions in fact.tests:
+                if all(self.holds(one, player) for one in conditions):
+                    found = value
+            return found
+        if fact.kind in ("count", "timer"):
+            return fact.band(self.number(fact, player)) if fact.bands else ""
+        if fact.per_player and player is None:
+            return fact.values[0]
+        return self.values.get(_key(fact, player), fact.values[0])
+
+    def _built_in(self, name: str, player: str | None) -> str:
+        if name == ITEMS:
+            return "over" if self.round >= len(self.order) else "left"
+        if name == PLACE:
+            if self.place == FRONT:
+                return "front"
+            return "beside" if self.place == player else "elsewhere"
+        if name == ASKING:
+            holds = player in self.queue
+        elif name == TURN:
+            holds = player is not None and self.players[self.turn] == player
+        else:
+            holds = player is not None and self.addressed == player
+        return YES if holds else NO
+
+    def holds(self, condition: FactCondition, player: str | None) -> bool:
+        """Say whether a condition holds, of a player where it has no quantifier."""
+        match condition.quantifier:
+            case "":
+                return self._holds_for(condition, player)
+            case "any":
+                return any(self._holds_for(condition, one) for one in self.players)
+            case "every":
+                return all(self._holds_for(condition, one) for one in self.players)
+            case "nobody":
+                return not any(self._holds_for(condition, one) for one in self.players)
+            case "most":
+                many = sum(self._holds_for(condition, one) for one in self.players)
+                return 2 * many > len(self.players)
+
+    def _holds_for(self, condition: FactCondition, player: str | None) -> bool:
+        if condition.comparison == "is":
+            return self.value(condition.fact, player) == condition.value
+        if condition.comparison == "is not":
+            return self.value(condition.fact, player) != condition.value
+        number = self.number(self.declaration.facts[condition.fact], player)
+        enough = number >= condition.number
+        return enough if condition.comparison == ">=" else not enough
+
+    def whom(self, selector: Selector) -> str | None:
+        """Return whom a selector names now, None where that is nobody, or the group."""
+        match selector:
+            case "group":
+                return None
+            case "first asking":
+                return self.queue[0] if self.queue else None
+            case "whose turn":
+                return self.players[self.turn]
+            case "next in circle":
+                if self.addressed is None:
+                    return self.players[0]
+                place = self.players.index(self.addressed) + 1
+                return self.players[place % len(self.players)]
+            case "quietest":
+                return min(self.players, key=lambda one: self.acts[one])
+            case "last to act":
+                return self.actor
+            case "addressed":
+                return self.addressed
+            case "beside":
+                return self.place if self.place != FRONT else None
+
+    def stage(self) -> tuple[Stage, str | None]:
+        """Return the present stage, and whom it is about."""
+        for stage in self.declaration.stages:
+            about = self.whom(stage.about)
+            if all(self.holds(one, about) for one in stage.when):
+                break
+        return stage, about
+
+    def seen(self) -> tuple[str, tuple[str, ...]]:
+        """Return what the policy sees: the stage, and the values of its facts."""
+        stage, about = self.stage()
+        return stage.name, tuple(self.value(name, about) for name in stage.sees)
+
+    def allows(self, name: str, whom: str | None) -> bool:
+        """Say whether a behaviour can be done now, for a player or the group."""
+        behaviour = self.declaration.behaviours[name]
+        if not behaviour.needs:
+            return True
+        person = whom if whom is not None else self.stage()[1]
+        return all(self.holds(one, person) for one in behaviour.needs)
+
+    # ------------------------------------------------------------------- what changes the facts
+
+    def observe(self, name: str, who: str | None, raw: str, certainty: float = 1.0) -> bool:
+        """Take in something that was observed.
+
+        Args:
+            name: the fact that it is about.
+            who: the player, None where it is of the group.
+            raw: a value, or the answer that a person gave.
+            certainty: how sure it is, as a probability.
+
+        Returns:
+            Whether it says anything that was not so.
+        """
+        fact = self.declaration.facts[name]
+        if name == ASKING:
+            return self._ask(who, raw)
+        if fact.kind == "test" or fact.built_in or (fact.per_player and who not in self.players):
+            return False
+        if fact.kind == "count":
+            key = _key(fact, who)
+            self.counts[key] = self.counts.get(key, 0.0) + 1
+        else:
+            value = judged(fact, self.declaration.items, self.row, raw, certainty)
+            if value is None or value == self.value(name, who):
+                return False
+            self.values[_key(fact, who)] = value
+        if who in self.acts:
+            self.actor = who
+            self.acts[who] += 1
+        return True
+
+    def _ask(self, who: str | None, raw: str) -> bool:
+        if who not in self.players or (who in self.queue) == (raw == YES):
+            return False
+        if raw == YES:
+            self.queue.append(who)
+        else:
+            self.queue.remove(who)
+        return True
+
+    def execute(self, name: str, whom: str | None) -> Execution:
+        """Do a behaviour, for a player or (None) the group."""
+        self.closed = None
+        self.step += 1
+        if self.over or not self.allows(name, whom):
+            return Execution(False)
+        behaviour = self.declaration.behaviours[name]
+        person = whom if whom is not None else self.stage()[1]
+        self.executed[name] = self.executed.get(name, 0) + 1
+        if whom is not None:
+            self.addressed = whom
+        invited: list[tuple[str, str, str]] = []
+        for effect in behaviour.effects:
+            if all(self.holds(one, person) for one in effect.conditions):
+                self._change(effect, whom, invited)
+        return Execution(True, tuple(invited))
+
+    def _change(
+        self, effect: Effect, whom: str | None, invited: list[tuple[str, str, str]]
+    ) -> None:
+        match effect.does:
+            case "set" | "add" | "clear" | "start":
+                fact = self.declaration.facts[effect.fact]
+                for key in self._keys(fact, whom):
+                    self._assign(effect, fact, key)
+            case "next item":
+                self.round = min(self.round + 1, len(self.order))
+            case "next turn":
+                self.turn = (self.turn + 1) % len(self.players)
+            case "go to front":
+                self.place = FRONT
+            case "go to whom":
+                self.place = whom or self.place
+            case "close request":
+                for one in [whom] if whom is not None else list(self.queue):
+                    if one in self.queue:
+                        self.queue.remove(one)
+                        self.closed = one
+            case "invite":
+                invited.append((whom or "", effect.fact, effect.value))
+            case "finish":
+                self.over = True
+
+    def _keys(self, fact: Fact, whom: str | None) -> list[Key]:
+        """Return what a change is of: the group's fact, a player's, or that of every player."""
+        if not fact.per_player:
+            return [(fact.name, "")]
+        return [(fact.name, one) for one in ([whom] if whom is not None else self.players)]
+
+    def _assign(self, effect: Effect, fact: Fact, key: Key) -> None:
+        if effect.does == "set":
+            self.values[key] = effect.value
+        elif effect.does == "add":
+            self.counts[key] = self.counts.get(key, 0.0) + effect.number
+        elif effect.does == "start":
+            self.counts[key] = self.now
+        else:
+            self.values.pop(key, None)
+            self.counts.pop(key, None)
+
+
+def _key(fact: Fact, player: str | None) -> Key:
+    return fact.name, (player or "") if fact.per_player else ""

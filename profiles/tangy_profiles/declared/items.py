@@ -1,0 +1,61 @@
+"""The items of an activity: a CSV file beside it, with one row for each round."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+from tangy_profiles.declared.source import SourceText
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.given_file import read_given
+from tangy_profiles.plain_text import plain
+
+LARGEST_TABLE = 1_000_000  # bytes
+MOST_ROWS = 5_000
+
+
+def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[str]]:
+    """Read a CSV file that stands beside an activity's file; its mistakes are noted there.
+
+    The text is UTF-8, with or without a mark of the byte order; blank lines are left out.
+
+    Args:
+        source: where mistakes are noted.
+        key: the key of the activity's file that names it.
+        path: the CSV file.
+
+    Returns:
+        The rows as they are, the header first; none where it cannot be read.
+    """
+    try:
+        content = read_given(path, LARGEST_TABLE, ProfileError, called=plain(path.name))
+    except ProfileError as error:
+        source.wrong(key, str(error))
+        return []
+    try:
+        lines = content.decode("utf-8-sig").splitlines()
+        rows = [[cell.strip() for cell in row] for row in csv.reader(lines, strict=True) if row]
+    except (UnicodeDecodeError, csv.Error) as error:
+        source.wrong(key, f"{plain(path.name)} cannot be read: {error}")
+        return []
+    rows = [row for row in rows if any(row)]
+    if len(rows) < 2:
+        source.wrong(key, f"{plain(path.name)} has no row under its header")
+        return []
+    if len(rows) > MOST_ROWS:
+        source.wrong(key, f"{plain(path.name)} has more than {MOST_ROWS} rows")
+        return []
+    width = len(rows[0])
+    if len(set(rows[0])) < width or not all(rows[0]):
+        source.wrong(key, f"{plain(path.name)}: each column of its header must have its own name")
+        return []
+    for number, row in enumerate(rows, 1):
+        if len(row) != width:
+            problem = f"row {number} has {len(row)} cells in place of {width}"
+            source.wrong(key, f"{plain(path.name)}: {problem}")
+            return []
+        for cell in row:
+            if plain(cell) != cell:
+                source.wrong(key, f"{plain(path.name)}: row {number} cannot be shown")
+                return []
+    return rows

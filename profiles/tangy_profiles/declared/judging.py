@@ -1,0 +1,60 @@
+"""What a raw observation says of a fact: the answer of a person, judged against the item."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import unicodedata
+
+from tangy_profiles.declared.model import Fact, Items
+
+CERTAIN = 0.7
+"""Below this certainty nothing is judged: the person is asked again."""
+ALIKE = 0.85
+"""From this likeness on a free answer is taken for the right one, misspelt or misheard."""
+LETTERS = "abcdefgh"
+
+
+def plain_words(text: str) -> str:
+    """Return a text as answers are compared: small letters, no accents, no marks, no article."""
+    folded = unicodedata.normalize("NFKD", text.casefold())
+    kept = "".join(c if c.isalnum() else " " for c in folded if not unicodedata.combining(c))
+    words = re.sub(r"^\s*(the|a|an)\s+(?=\S)", "", kept).split()
+    return " ".join(words)
+
+
+def judged(fact: Fact, items: Items, row: int, raw: str, certainty: float) -> str | None:
+    """Return the value of a fact that an observation stands for.
+
+    An answer that is to be checked may be the letter of an option, its words, or the right answer
+    in any of its synonyms.
+
+    Args:
+        fact: what was observed.
+        items: the items, with the columns of the options.
+        row: the row of the present item.
+        raw: a value of the fact, or what a person answered.
+        certainty: how sure the observation is, as a probability.
+
+    Returns:
+        The value, or None where the observation is not sure, or says nothing of the fact.
+    """
+    if certainty < CERTAIN:
+        return None
+    if not fact.checks:
+        return raw if raw in fact.values else None
+    right = [plain_words(way) for way in items.value(row, fact.checks).split("|")]
+    said = plain_words(raw)
+    if not said:
+        return None
+    offered = [plain_words(items.value(row, column)) for column in fact.options]
+    if offered:
+        letters = dict(zip(LETTERS, offered, strict=False))
+        names = dict(zip((plain_words(c) for c in fact.options), offered, strict=True))
+        chosen = said if said in offered else names.get(said, letters.get(said, ""))
+        chosen = chosen or (said if said in right else "")
+        if not chosen:
+            return None
+        return fact.values[1] if chosen in right else fact.values[2]
+    close = max(difflib.SequenceMatcher(None, said, way).ratio() for way in right)
+    return fact.values[1] if close >= ALIKE else fact.values[2]

@@ -1,0 +1,203 @@
+"""An activity as its file declares it: facts, items, stages, behaviours, people, all checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from tangy_profiles.declared.vocabulary import (
+    Comparison,
+    Does,
+    Kind,
+    Order,
+    Quantifier,
+    Selector,
+    Source,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class FactCondition:
+    """One condition: `[any|every|nobody|most] FACT is|is not VALUE`, `FACT >= N` or `FACT < N`."""
+
+    quantifier: Quantifier
+    fact: str
+    comparison: Comparison
+    value: str
+    number: int = 0
+    """What a comparison by >= or < is with."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """Something that can be so or otherwise in a game.
+
+    `values` are what conditions and the policy see: of a count or a timer its bands. `tests` gives
+    for each value of a test the conditions under which it is that one; the last that holds counts.
+    """
+
+    name: str
+    kind: Kind
+    values: tuple[str, ...]
+    per_player: bool = False
+    bands: tuple[int, ...] = ()
+    sources: tuple[Source, ...] = ()
+    options: tuple[str, ...] = ()
+    """The columns of the items that hold the answers to choose from."""
+    checks: str = ""
+    """The column of the items that says which answer is right; synonyms stand between bars."""
+    tests: tuple[tuple[str, tuple[FactCondition, ...]], ...] = ()
+    built_in: bool = False
+
+    def band(self, number: float) -> str:
+        """Return the band that a count, or a timer's number of s, is in."""
+        place = sum(number >= bound for bound in self.bands)
+        return self.values[place]
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One thing that a behaviour does, where its conditions hold."""
+
+    does: Does
+    fact: str = ""
+    value: str = ""
+    number: int = 1
+    conditions: tuple[FactCondition, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A stage: the first whose conditions hold is the present one."""
+
+    name: str
+    when: tuple[FactCondition, ...]
+    about: Selector
+    sees: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredBehaviour:
+    """A behaviour as it is declared: what it does, for whom, and what is said."""
+
+    name: str
+    effects: tuple[Effect, ...]
+    needs: tuple[FactCondition, ...]
+    to: tuple[Selector, ...]
+    says: Mapping[str, tuple[str, ...]]
+    """The texts by persuasive strategy, each list used in turn."""
+    phrases: tuple[str, ...]
+    question: str
+    posture: str
+    image: str
+
+    @property
+    def invites(self) -> bool:
+        """Whether a person is asked to do something, and may not."""
+        return any(effect.does == "invite" for effect in self.effects)
+
+
+@dataclass(frozen=True, slots=True)
+class Habit:
+    """How simulated people bring a fact about: when, with which chance, and to which values."""
+
+    fact: str
+    when: tuple[FactCondition, ...]
+    chance: float
+    weights: tuple[tuple[str, float], ...]
+    last: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """One line of what a test expects a facilitator to do; the first that fits counts."""
+
+    stage: str
+    conditions: tuple[FactCondition, ...]
+    behaviour: str
+    to: Selector | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Items:
+    """The rows of the items' file, and how many of them a game has, in which order."""
+
+    columns: tuple[str, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+    order: Order = "given"
+    rounds: int = 0
+
+    def value(self, row: int, column: str) -> str:
+        """Return what stands in a column of a row ("": there is no such row)."""
+        if not 0 <= row < len(self.rows):
+            return ""
+        return self.rows[row][self.columns.index(column)]
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """A whole activity as its file declares it."""
+
+    name: str
+    title: str
+    source: str
+    facts: Mapping[str, Fact]
+    stages: tuple[Stage, ...]
+    behaviours: Mapping[str, DeclaredBehaviour]
+    items: Items = Items()
+    teams: tuple[str, ...] = ()
+    habits: tuple[Habit, ...] = ()
+    expected: tuple[Expectation, ...] = ()
+    strategies: Mapping[str, str] = field(default_factory=dict)
+    plain_strategy: str = ""
+    patience: float = 10.0
+    pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @cached_property
+    def thresholds(self) -> dict[str, int]:
+        """Return up to which number a count or a timer matters to anything, by fact."""
+        found: dict[str, int] = {}
+        for fact in self.facts.values():
+            if fact.bands:
+                found[fact.name] = fact.bands[-1]
+        for condition in self.conditions:
+            if condition.comparison in (">=", "<"):
+                found[condition.fact] = max(found.get(condition.fact, 0), condition.number)
+        return found
+
+    @cached_property
+    def conditions(self) -> tuple[FactCondition, ...]:
+        """Return every condition of the file, but for those that are only for tests."""
+        found: list[FactCondition] = []
+        for stage in self.stages:
+            found += stage.when
+        for fact in self.facts.values():
+            for _, conditions in fact.tests:
+                found += conditions
+        for behaviour in self.behaviours.values():
+            found += behaviour.needs
+            for effect in behaviour.effects:
+                found += effect.conditions
+        for habit in self.habits:
+            found += habit.when
+        return tuple(found)
+
+    @cached_property
+    def selectors(self) -> frozenset[Selector]:
+        """Return the selectors that the file uses anywhere."""
+        found = {stage.about for stage in self.stages}
+        for behaviour in self.behaviours.values():
+            found.update(behaviour.to)
+        return frozenset(found)
+
+    def stage(self, name: str) -> Stage:
+        """Return a stage by its name.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        for stage in self.stages:
+            if stage.name == name:
+                return stage
+        raise KeyError(name)

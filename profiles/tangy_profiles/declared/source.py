@@ -1,0 +1,120 @@
+"""The text of an activity's file: where a key or a value stands, and the mistakes found in it."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.plain_text import plain
+
+MOST_MISTAKES = 50
+"""More are not told at once."""
+LONGEST = 60
+"""Characters of a word from the file that a mistake quotes."""
+Path = tuple[str | int, ...]
+
+
+class MistakesError(ProfileError):
+    """An activity's file has mistakes; `lines` names each, with its line and column."""
+
+    def __init__(self, lines: list[str]) -> None:
+        """Take the mistakes, of which there is at least one."""
+        more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
+        super().__init__(lines[0] + more)
+        self.lines = tuple(lines)
+
+
+class SourceText:
+    """A file's text and its mistakes."""
+
+    def __init__(self, file: str, text: str) -> None:
+        """Take the file's name, and its text as it stands there."""
+        self.file = file
+        self._text = text
+        self._found: list[tuple[int, int, str]] = []
+
+    def wrong(self, path: Path, problem: str, quoted: str = "") -> None:
+        """Note a mistake.
+
+        Args:
+            path: the keys that lead to it; a number is a place in a list, from 0.
+            problem: what is wrong, without a full stop.
+            quoted: the text that is wrong, where it is only a part of the value.
+        """
+        offset = self._offset(path, quoted)
+        line = self._text.count("\n", 0, offset) + 1
+        column = offset - (self._text.rfind("\n", 0, offset) + 1) + 1
+        problem = problem if problem.endswith(("?", ".")) else f"{problem}."
+        told = f"{self.file}:{line}:{column}: {dotted(path)}: {problem}"
+        if (line, column, told) not in self._found:
+            self._found.append((line, column, told))
+
+    def close(self) -> None:
+        """Refuse the file if it has mistakes.
+
+        Raises:
+            MistakesError: naming all of them, in the order of the file.
+        """
+        if self._found:
+            lines = [plain(told) for _, _, told in sorted(self._found)]
+            raise MistakesError(lines[:MOST_MISTAKES])
+
+    @property
+    def sound(self) -> bool:
+        """Whether no mistake was noted so far."""
+        return not self._found
+
+    def _offset(self, path: Path, quoted: str) -> int:
+        """Return where a key stands, or the nearest place before it that can be found."""
+        text, rest = self._text, list(path)
+        begin, end = 0, len(text)
+        for length in range(len(path), 0, -1):
+            keys = [key for key in path[:length] if isinstance(key, str)]
+            if len(keys) < length:
+                continue
+            header = r"\s*\.\s*".join(f"[\"']?{re.escape(key)}[\"']?" for key in keys)
+            found = re.search(rf"^\s*\[\s*({header})\s*\]", text, re.MULTILINE)
+            if found is not None:
+                begin, rest = found.start(1), list(path[length:])
+                following = re.compile(r"^\s*\[", re.MULTILINE).search(text, found.end())
+                end = following.start() if following is not None else end
+                break
+        for key in rest:
+            found = self._key(key, begin, end)
+            if found is None:
+                break
+            begin = found.start(1)
+        if quoted:
+            place = text.find(quoted, begin, end)
+            begin = place if place >= 0 else begin
+        return begin
+
+    def _key(self, key: str | int, begin: int, end: int) -> re.Match[str] | None:
+        if isinstance(key, str):
+            pattern = re.compile(rf"(?<![\w-])([\"']?{re.escape(key)}[\"']?)\s*=")
+            return pattern.search(self._text, begin, end)
+        found = None
+        places = re.compile(r"([{\"'])(?:[^{}\"'\n]*(?:\"[^\"\n]*\"|'[^'\n]*')?)*?[}\"']")
+        for count, found in enumerate(re.finditer(r"(\{)", self._text[begin:end])):
+            if count == key:
+                return re.compile(r"(\{)").search(self._text, begin + found.start())
+        return places.search(self._text, begin, end) if found is None else None
+
+
+def dotted(path: Path) -> str:
+    """Return the keys that lead somewhere as a person reads them."""
+    words = ""
+    for key in path:
+        if isinstance(key, int):
+            words += f"[{key + 1}]"
+        else:
+            short = key if len(key) <= LONGEST else f"{key[:LONGEST]}\N{HORIZONTAL ELLIPSIS}"
+            words += f".{short}" if words else short
+    return words
+
+
+def short(value: Any) -> str:
+    """Return a value of a file as a mistake quotes it."""
+    text = repr(value)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}\N{HORIZONTAL ELLIPSIS}"

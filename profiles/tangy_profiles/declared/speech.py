@@ -1,0 +1,72 @@
+"""What is said and shown in a game of a declared activity: its texts with their slots filled in."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from tangy_profiles.declared.game import DeclaredGame
+
+SLOT = re.compile(r"\{([^{}]*)\}")
+PERSON = re.compile(r"\x02([^\x03]*)\x03")
+"""A person in a filled text, by the id: the worlds do not know what people are called."""
+OF_EACH = " of each"
+
+
+def filled(game: DeclaredGame, template: str, whom: str | None) -> str:
+    """Fill the slots of a text.
+
+    Args:
+        game: the game, with its present item.
+        template: the text.
+        whom: the player who is spoken to, None for the group.
+
+    Returns:
+        The text, in which people stand by their ids (see `with_names`); "" where a slot that it
+        needs is empty.
+    """
+    empty = False
+
+    def value(match: re.Match[str]) -> str:
+        nonlocal empty
+        found = _value(game, match.group(1), whom)
+        empty = empty or not found
+        return found
+
+    text = SLOT.sub(value, template)
+    return "" if empty else text
+
+
+def empty_slots(game: DeclaredGame, template: str, whom: str | None) -> list[str]:
+    """Return the slots of a text that would be empty now."""
+    return [slot for slot in SLOT.findall(template) if not _value(game, slot, whom)]
+
+
+def with_names(text: str, name: Callable[[str], str]) -> str:
+    """Put the names of people into a filled text."""
+    return PERSON.sub(lambda match: name(match.group(1)), text)
+
+
+def _value(game: DeclaredGame, slot: str, whom: str | None) -> str:
+    declaration = game.declaration
+    if slot == "name":
+        return _person(whom) if whom is not None else ""
+    if slot == "turn":
+        return _person(game.players[game.turn])
+    if slot == "n":
+        return str(game.round) if game.round else ""
+    if slot.endswith(OF_EACH) and slot[: -len(OF_EACH)] in declaration.facts:
+        fact = declaration.facts[slot[: -len(OF_EACH)]]
+        parts = [f"{_person(one)} {game.number(fact, one):.0f}" for one in game.players]
+        *others, last = parts
+        return f"{', '.join(others)} and {last}" if others else last
+    if slot in declaration.items.columns:
+        return declaration.items.value(game.row, slot).split("|")[0]
+    fact = declaration.facts[slot]
+    if fact.kind in ("count", "timer"):
+        return f"{game.number(fact, whom):.0f}"
+    return game.value(slot, whom)
+
+
+def _person(id: str) -> str:
+    return f"\x02{id}\x03"

@@ -1,0 +1,73 @@
+"""The closed vocabularies of an activity's file, each a type that mypy follows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Literal, get_args
+
+Kind = Literal["flag", "choice", "count", "timer", "test"]
+"""What a fact holds: no or yes; one of its values; a number; seconds; what its conditions give."""
+KINDS: tuple[Kind, ...] = get_args(Kind)
+
+Source = Literal["button", "sign", "speech", "camera", "card", "staff"]
+"""What tells a fact about people."""
+SOURCES: tuple[Source, ...] = get_args(Source)
+
+Quantifier = Literal["", "any", "every", "nobody", "most"]
+"""Of how many players a condition has to hold; "": of the one whom the stage is about."""
+QUANTIFIERS: tuple[Quantifier, ...] = get_args(Quantifier)
+
+Comparison = Literal["is", "is not", ">=", "<"]
+COMPARISONS: tuple[Comparison, ...] = get_args(Comparison)
+
+Does = Literal[
+    "set",  # FACT VALUE
+    "add",  # FACT [NUMBER]
+    "clear",  # FACT: its first value, 0, or not running
+    "start",  # FACT: a timer, from 0 s
+    "next item",
+    "next turn",
+    "go to front",
+    "go to whom",
+    "close request",
+    "invite",  # FACT VALUE: a person is asked to bring it about
+    "finish",
+]
+"""What a behaviour does to the game."""
+DOES: tuple[Does, ...] = get_args(Does)
+
+Selector = Literal[
+    "group",
+    "first asking",
+    "whose turn",
+    "next in circle",
+    "quietest",
+    "last to act",
+    "addressed",
+    "beside",
+]
+"""Whom a behaviour is for, or a stage is about."""
+SELECTORS: tuple[Selector, ...] = get_args(Selector)
+
+Order = Literal["given", "shuffled"]
+ORDERS: tuple[Order, ...] = get_args(Order)
+
+ASKING, TURN, ADDRESSED, PLACE, ITEMS = "asking", "turn", "addressed", "place", "items"
+BUILT_IN: dict[str, tuple[str, ...]] = {
+    ITEMS: ("left", "over"),
+    ASKING: ("no", "yes"),
+    TURN: ("no", "yes"),
+    ADDRESSED: ("no", "yes"),
+    PLACE: ("elsewhere", "front", "beside"),
+}
+"""The facts that every activity has, with their values; all but the items are a player's."""
+
+NO, YES = "no", "yes"
+
+MARKS = ("facts", "flags", "items", "people")
+"""Keys by which the file of an activity that is declared by facts is known."""
+
+
+def declares(keys: Iterable[str]) -> bool:
+    """Say whether a file's keys are those of an activity that is declared by facts."""
+    return any(key in MARKS for key in keys)

@@ -1,0 +1,69 @@
+"""What simulated people do in a declared activity: who acts, when, and with which answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.model import Fact, Habit
+
+NO_IDEA = "no idea"
+"""A free answer that is wrong whatever is asked."""
+
+
+class Act(NamedTuple):
+    """One thing that somebody does: a fact, whose (None: the group's), and its value."""
+
+    fact: str
+    who: str | None
+    value: str
+
+
+def acts(game: DeclaredGame, *, drawn: Callable[[], float] | None = None) -> Iterator[Act]:
+    """Yield what people may do now.
+
+    Args:
+        game: the game; what is yielded may be observed in it before the next is asked for.
+        drawn: draws from 0 to 1, so that each act comes with its chance, one value each
+            (default: every act that has a chance, with every value that has a weight).
+    """
+    for habit in game.declaration.habits:
+        fact = game.declaration.facts[habit.fact]
+        for who in game.players if fact.per_player else (None,):
+            able = habit.chance > 0 and all(game.holds(one, who) for one in habit.when)
+            if drawn is None:
+                values = [value for value, weight in habit.weights if weight > 0]
+                new = [value for value in values if game.value(fact.name, who) != value]
+                yield from (Act(fact.name, who, value) for value in new if able)
+                continue
+            chance, share = drawn(), drawn()  # two numbers, whatever comes of them
+            if able and chance < habit.chance:
+                yield Act(fact.name, who, _chosen(habit, share))
+
+
+def take_in(game: DeclaredGame, act: Act) -> bool:
+    """Let a game observe an act, as a device would tell it."""
+    fact = game.declaration.facts[act.fact]
+    return game.observe(act.fact, act.who, raw(game, fact, act.value))
+
+
+def raw(game: DeclaredGame, fact: Fact, value: str) -> str:
+    """Return what a person says or shows who brings a value about."""
+    if not fact.checks:
+        return value
+    items, row = game.declaration.items, game.row
+    right = items.value(row, fact.checks).split("|")[0]
+    if value == fact.values[1]:
+        return right
+    others = [items.value(row, column) for column in fact.options]
+    return next((one for one in others if one != right), NO_IDEA)
+
+
+def _chosen(habit: Habit, share: float) -> str:
+    rest = share * sum(weight for _, weight in habit.weights)
+    for value, weight in habit.weights:  # noqa: B007 - the last one takes what is left
+        rest -= weight
+        if rest < 0:
+            break
+    return value

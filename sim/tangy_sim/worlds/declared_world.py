@@ -1,0 +1,165 @@
+"""A simulated room for any declared activity: the interpreter, and people who act by chance.
+
+Time goes from behaviour to behaviour: as long as the speech lasts, and a pause in which people may
+act. Streams for items, people and compliance are seeded apart; only `Random.random` is drawn from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from random import Random
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.game import DeclaredGame, Execution
+from tangy_profiles.declared.joint_state import joint_state
+from tangy_profiles.declared.model import Items
+from tangy_profiles.declared.speech import filled
+from tangy_profiles.declared.vocabulary import ASKING
+from tangy_profiles.faults import Remedy
+from tangy_profiles.game_world import SIMULATED, GameWorld
+from tangy_profiles.health import Health
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import EVERYBODY, ActivityState, Outcome, Response
+from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
+from tangy_sim.worlds.declared_people import Act, acts, take_in
+from tangy_sim.worlds.devices import WELL
+from tangy_sim.worlds.users import load_users
+
+SECONDS_A_WORD, PAUSE = 0.4, 8.0  # s
+
+
+class DeclaredWorld:
+    """One room in which games of a declared activity are played.
+
+    The same seed and the same actions give the same games on every machine.
+    """
+
+    played_in: GameWorld = SIMULATED
+
+    def __init__(
+        self,
+        activity: DeclaredActivity,
+        people: Sequence[str],
+        *,
+        seed: int,
+        preferences: Preferences | None = None,
+    ) -> None:
+        self.activity: Activity = activity
+        self._declaration = activity.declaration
+        self.people = tuple(people)
+        self.preferences = preferences or preferences_in_turn(
+            self.people, tuple(activity.strategies), load_users()
+        )
+        self._items = Random(f"{seed}/items").random
+        self._people_draw = Random(f"{seed}/people").random
+        self._compliance = Random(f"{seed}/compliance")
+        self.begin()
+
+    @property
+    def seconds(self) -> float:
+        """The time in this game, in s."""
+        return self.game.now
+
+    @property
+    def pauses(self) -> tuple[int, float]:
+        """How often, and for how many s, the robot waited for late data: never."""
+        return 0, 0.0
+
+    def begin(self) -> ActivityState:
+        """Begin a new game, its items in a new order, and return its first state."""
+        order = order_of(self._declaration.items, self._items)
+        self.game = DeclaredGame(self._declaration, self.people, order)
+        self.over = False
+        self._did: dict[str, str] = {}
+        return self.observe()
+
+    def observe(self) -> ActivityState:
+        """Return the joint state as it is now."""
+        return joint_state(self.game)
+
+    def execute(self, action: Action) -> Outcome:
+        """Let the robot carry out an action, and then people act."""
+        game = self.game
+        if game.over:
+            return Outcome(False, 0.0, (), None)
+        before, behaviour = game.copy(), action.behaviour.name
+        whom = None if action.target in (None, EVERYBODY) else action.target
+        done = game.execute(behaviour, whom)
+        speech, image = self._words(before, action, whom) if done.completed else ("", "")
+        seconds = 1.0 + SECONDS_A_WORD * len(speech.split())
+        self._did.clear()
+        response = self._respond(done, action)
+        game.now += seconds
+        self.over = game.over
+        if not game.over:
+            self._let_people_act()
+        return Outcome(done.completed, seconds + PAUSE, (), response, speech, image)
+
+    def who(self, place: str) -> str:
+        """Return who sits at somebody's place, which here is always theirs."""
+        return place
+
+    def scene(self) -> Scene:
+        """Return what there is to see in the room."""
+        game = self.game
+        doing = {
+            one: self._did.get(one, "asks for help" if one in game.queue else "watches")
+            for one in self.people
+        }
+        return Scene(game.place, tuple(game.queue), doing, (), None)
+
+    def health(self) -> Health:
+        """Return the readings of devices of which none has a fault."""
+        return WELL
+
+    def recover(self, remedy: Remedy) -> float:
+        """Do nothing, in 0 s: here is nothing that could be mended."""
+        return 0.0
+
+    def _words(self, before: DeclaredGame, action: Action, whom: str | None) -> tuple[str, str]:
+        """Return what is said and shown, by the facts that a behaviour leaves."""
+        declared = self._declaration.behaviours[action.behaviour.name]
+        texts = declared.says.get(action.strategy) or next(iter(declared.says.values()), ())
+        times = before.executed.get(declared.name, 0)
+        in_turn = [texts[(times + n) % len(texts)] for n in range(len(texts))]
+        spoken = (filled(self.game, text, whom) for text in in_turn)
+        return next((text for text in spoken if text), ""), filled(self.game, declared.image, whom)
+
+    def _respond(self, done: Execution, action: Action) -> Response | None:
+        """Let those who were invited do what they were asked to, or not."""
+        response: Response | None = None
+        patience = self.activity.patience
+        for person, fact, value in done.invited:
+            for one in (person,) if person else self.people:
+                reply = respond(self.preferences, one, action.strategy, patience, self._compliance)
+                if person or reply.complied:
+                    self._take_in(Act(fact, one, value))
+                response = reply if person else None
+        return response
+
+    def _let_people_act(self) -> None:
+        self.game.now += PAUSE
+        for act in acts(self.game, drawn=self._people_draw):
+            self._take_in(act)
+
+    def _take_in(self, act: Act) -> None:
+        if take_in(self.game, act) and act.who is not None:
+            asks = act.fact == ASKING
+            self._did[act.who] = "asks for help" if asks else f"{act.fact}: {act.value}"
+
+
+def order_of(items: Items, uniform: Callable[[], float]) -> list[int]:
+    """Return the rows of a game's items in their order (Fisher and Yates where shuffled).
+
+    Args:
+        items: the items, with how many rounds a game has.
+        uniform: draws from 0 to 1.
+    """
+    order = list(range(len(items.rows)))
+    if items.order == "shuffled":
+        for end in range(len(order) - 1, 0, -1):
+            pick = int(uniform() * (end + 1))
+            order[end], order[pick] = order[pick], order[end]
+    return order[: items.rounds]

@@ -1,0 +1,58 @@
+"""Which simulated world an activity is played in: that of its cards, or that of its facts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
+from tangy_tui.world import World
+
+if TYPE_CHECKING:
+    from tangy_sim.worlds.injection import Injection
+
+
+def game_world(
+    activity: Activity, people: Sequence[str], seed: int, injections: Sequence[Injection] | None
+) -> World:
+    """Make the simulated world of games.
+
+    Args:
+        activity: what is played.
+        people: who takes part.
+        seed: of the random generators.
+        injections: faults that are to come; None makes a world without any.
+
+    Raises:
+        TangyError: faults are to come in an activity that has none.
+    """
+    if isinstance(activity, DeclaredActivity):
+        from tangy_sim.worlds.declared_world import DeclaredWorld
+
+        if injections:
+            raise TangyError(f"No fault can be brought about in {activity.title} yet.")
+        return DeclaredWorld(activity, people, seed=seed)
+    if injections is None:
+        from tangy_sim.worlds.world import SimulatedWorld
+
+        return SimulatedWorld(activity, people, seed=seed)
+    from tangy_sim.worlds.faulty_world import FaultyWorld
+
+    return FaultyWorld(activity, people, seed=seed, injections=injections)
+
+
+def teaching_world(activity: Activity, shown: Demonstration) -> World:
+    """Make the simulated world of a demonstration, in which people ask more often."""
+    if isinstance(activity, DeclaredActivity):
+        from tangy_sim.worlds.declared_world import DeclaredWorld
+
+        return DeclaredWorld(activity, shown.people, seed=shown.seed)
+    from tangy_sim.worlds.guidance import GuidedWorld
+    from tangy_sim.worlds.users import load_users
+    from tangy_sim.worlds.world import SimulatedWorld
+
+    kind = GuidedWorld if shown.guided else SimulatedWorld
+    return kind(activity, shown.people, seed=shown.seed, users=load_users().teaching())

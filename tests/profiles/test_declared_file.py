@@ -1,0 +1,125 @@
+"""An activity that is declared by facts: what its file says, and each mistake with its place."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.activity import load_activity, read_activity, shipped_activities
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.reader import read_declaration
+from tangy_profiles.declared.source import MistakesError
+from tangy_profiles.errors import ProfileError
+from tests.support.laws import tried
+
+SHIPPED = shipped_activities()["trivia"]
+TEXT = SHIPPED.read_text(encoding="utf-8")
+TOKENS = [match.span() for match in re.finditer(r"[a-z_]{3,}", TEXT)]
+DECLARED = [
+    name for name in shipped_activities() if isinstance(load_activity(name), DeclaredActivity)
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    shutil.copy(SHIPPED.with_suffix(".csv"), tmp_path / "trivia.csv")
+    return tmp_path
+
+
+def mistakes(folder: Path, *changes: tuple[str, str], text: str = TEXT) -> tuple[str, ...]:
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(MistakesError) as caught:
+        read_declaration(path)
+    return caught.value.lines
+
+
+def place(text: str, wanted: str) -> str:
+    before = text[: text.index(wanted)]
+    return f"{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}"
+
+
+def test_every_mistake_is_told_at_once_with_its_place_and_the_nearest_word(folder: Path) -> None:
+    changes = (
+        ('about = "first asking"', 'about = "frst asking"'),
+        ('"set told yes"', '"set told yess"'),
+        ("chance = 0.4", "chanse = 0.4"),
+        ('checks = "right"', 'checks = "rigt"'),
+    )
+    text = TEXT
+    for old, new in changes:
+        text = text.replace(old, new)
+    found = mistakes(folder, *changes)
+    near = {"'first asking'": "frst", "'yes'": "set told yess", "'chance'": "chanse"}
+    near["'right'"] = '"rigt"'
+    for word, wrong in near.items():
+        (line,) = (line for line in found if f"did you mean {word}?" in line)
+        # a place points at a key, or into the value that is wrong
+        row = place(text, wrong).partition(":")[0]
+        assert line.startswith(f"mine.toml:{row}:")
+    assert len(found) == len(changes)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('{ name = "next" }', '{ name = "next", when = ["open is no"] }', "the last stage"),
+        ('does = ["finish"]', "does = []", "'finish'"),
+        ("{hint}", "{hunt}", "{hunt}"),
+        ('sees = ["clock", "hinted"]', 'sees = ["score"]', "bands"),
+        ('when = ["items is over"]', 'when = ["any items is over"]', "each player"),
+        ('to = "whose turn"', 'to = "whose trun"', "'whose turn'"),
+        ('"add score"', '"add scores"', "'score'"),
+        ('"start clock"', '"start score"', "timer"),
+        ('file = "trivia.csv"', 'file = "../trivia.csv"', "beside"),
+        ("rounds = 6", "rounds = 600", "from 1 to 40"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_name(folder: Path, old: str, new: str, told: str) -> None:
+    assert any(told in line for line in mistakes(folder, (old, new)))
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_what_ships_has_80_lines_at_most(name: str) -> None:
+    assert shipped_activities()[name].read_text(encoding="utf-8").count("\n") <= 80
+
+
+def test_a_mark_of_the_byte_order_and_blank_lines_are_no_items(folder: Path) -> None:
+    items = (folder / "trivia.csv").read_text(encoding="utf-8")
+    (folder / "trivia.csv").write_text("\ufeff" + items + "\n,,,,,\n", encoding="utf-8")
+    (folder / "mine.toml").write_text(TEXT, encoding="utf-8")
+    assert read_declaration(folder / "mine.toml").items == read_declaration(SHIPPED).items
+
+
+@given(token=st.sampled_from(TOKENS), how=st.sampled_from(("twist", "drop", "double", "number")))
+@tried(3_000)
+def test_a_word_that_is_mistaken_is_a_line_and_never_a_traceback(
+    tmp_path_factory: pytest.TempPathFactory, token: tuple[int, int], how: str
+) -> None:
+    begin, end = token
+    word = TEXT[begin:end]
+    changed = {
+        "twist": word[1] + word[0] + word[2:],
+        "drop": "",
+        "double": f"{word} {word}",
+        "number": "7",
+    }[how]
+    folder = tmp_path_factory.mktemp("mutant", numbered=True)
+    shutil.copy(SHIPPED.with_suffix(".csv"), folder / "trivia.csv")
+    path = folder / "mine.toml"
+    path.write_text(TEXT[:begin] + changed + TEXT[end:], encoding="utf-8")
+    try:
+        read_activity(path)
+    except MistakesError as error:
+        assert all(re.match(r"mine\.toml:\d+:\d+: ", line) for line in error.lines)
+        assert all(line.isprintable() and len(line) < 700 for line in error.lines)
+    except ProfileError as error:
+        assert str(error).isprintable()

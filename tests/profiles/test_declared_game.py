@@ -1,0 +1,92 @@
+"""The interpreter of declared activities: facts change by what is observed and done, only so."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.joint_state import joint_state
+
+PLAYERS = ("ann", "ben", "cat")
+
+
+@pytest.fixture
+def trivia() -> DeclaredActivity:
+    activity = load_activity("trivia")
+    assert isinstance(activity, DeclaredActivity)
+    return activity
+
+
+@pytest.fixture
+def game(trivia: DeclaredActivity) -> DeclaredGame:
+    game = DeclaredGame(trivia.declaration, PLAYERS, (2, 0, 1))
+    game.execute("welcome everyone", None)
+    game.execute("ask question", "ann")
+    return game
+
+
+@pytest.mark.parametrize("answer", ["b", "B", "eight", "Eight!"])
+def test_a_letter_or_the_words_of_the_right_answer_are_right(
+    game: DeclaredGame, answer: str
+) -> None:
+    assert game.observe("answer", "ann", answer)
+    assert game.seen() == ("judge", ("right", "no"))
+
+
+def test_another_option_is_wrong(game: DeclaredGame) -> None:
+    assert game.observe("answer", "ann", "ten")
+    assert game.value("answer", "ann") == "wrong"
+
+
+@pytest.mark.parametrize(("answer", "certainty"), [("b", 0.5), ("eleventy", 1.0), ("", 1.0)])
+def test_what_is_not_sure_is_never_judged(
+    game: DeclaredGame, answer: str, certainty: float
+) -> None:
+    assert not game.observe("answer", "ann", answer, certainty)
+    assert game.value("answer", "ann") == "none"
+
+
+def test_an_answer_of_somebody_else_does_not_count_for_whose_turn_it_is(game: DeclaredGame) -> None:
+    game.observe("answer", "ben", "eight")
+    assert game.stage()[0].name == "listen"
+
+
+def test_requests_are_served_in_the_order_in_which_they_came(game: DeclaredGame) -> None:
+    game.observe("asking", "cat", "yes")
+    game.observe("asking", "ben", "yes")
+    stage, about = game.stage()
+    assert (stage.name, about) == ("repeat", "cat")
+    game.execute("repeat question", "cat")
+    assert (game.queue, game.closed) == (["ben"], "cat")
+
+
+def test_a_timer_is_seen_by_its_bands(game: DeclaredGame) -> None:
+    assert game.seen() == ("listen", ("<20", "no"))
+    game.now += 20
+    assert game.seen() == ("listen", (">=20", "no"))
+
+
+def test_turns_go_round_and_scores_are_each_players_own(game: DeclaredGame) -> None:
+    game.observe("answer", "ann", "b")
+    game.execute("confirm answer", "ann")
+    score = game.declaration.facts["score"]
+    assert [game.number(score, one) for one in PLAYERS] == [1, 0, 0]
+    assert game.whom("whose turn") == "ben"
+
+
+def test_a_copy_goes_on_by_itself(game: DeclaredGame) -> None:
+    before = joint_state(game)
+    other = game.copy()
+    other.observe("asking", "ben", "yes")
+    other.observe("answer", "ann", "b")
+    other.execute("confirm answer", "ann")
+    assert joint_state(game) == before
+
+
+def test_no_situation_of_a_game_is_missing_from_those_of_the_activity(
+    trivia: DeclaredActivity, game: DeclaredGame
+) -> None:
+    assert joint_state(game).situation in trivia.situations
+    assert len(trivia.situations) == 13
