@@ -47,6 +47,7 @@ from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.terminal import TerminalKind
 from tests.interaction.gaps import learnt
+from tests.support.waiting import PATIENCE
 
 SMALL = (80, 24)
 LARGE = (160, 45)
@@ -74,7 +75,10 @@ def type_at_once(app: App[Any], *keys: str, at: float | None = None) -> None:
 
 
 LONGEST = 1.0
-"""Seconds after which a program that is never done is waited for no longer (Textual's own)."""
+"""Seconds of the processor after which a program that is never done is waited for no longer.
+
+Textual counts those of the clock: on a busy machine it gave up on a program that had not begun.
+"""
 
 GLANCE = 0.02
 """Seconds for which a thread is watched: it thinks if it uses a twentieth of them (Textual's)."""
@@ -100,9 +104,9 @@ async def until_idle(app: App[Any], least: float = 0.0, most: float = LONGEST) -
     is at work is the processor watched as Textual does it.
     """
     loop: Any = asyncio.get_running_loop()
-    start = monotonic()
+    start, began = monotonic(), process_time()
     quiet = 0
-    while monotonic() - start < most:
+    while process_time() - began < most and monotonic() - start < PATIENCE:
         thread = any(worker._thread_worker and worker.is_running for worker in app.workers)
         used = process_time() if thread else 0.0
         await asyncio.sleep(GLANCE if thread else 0)  # the loop looks what has arrived, too

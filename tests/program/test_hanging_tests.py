@@ -36,6 +36,16 @@ async def test_runs_round_in_the_loop():
         await asyncio.sleep(0)
 
 
+async def test_waits_while_another_task_runs_round():
+    async def round_and_round():
+        while True:
+            await asyncio.sleep(0)
+
+    others = [asyncio.create_task(round_and_round()) for _ in range(9)]
+    while True:
+        await asyncio.sleep(0.01)
+
+
 def test_never_cleans_up(clean_up_hangs):
     threading.Event().wait()
 
@@ -62,6 +72,7 @@ def test_each_that_hangs_fails_and_is_named(tmp_path: Path) -> None:
         "waits_for_a_thread",
         "waits_for_a_task",
         "runs_round_in_the_loop",
+        "waits_while_another_task_runs_round",
         "never_cleans_up",
     }, done.stdout + done.stderr
     assert "1 passed" in done.stdout

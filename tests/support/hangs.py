@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import faulthandler
 import os
+import signal
+import threading
 from typing import Any
 
 import pytest
@@ -19,6 +21,9 @@ SLOW_SECONDS = 900
 
 GRACE = float(os.environ.get("TANGY_TEST_GRACE", "60"))
 """Seconds that an interrupted test has to clean up."""
+
+AGAIN = 1.0
+"""Seconds between interruptions: one that comes in a task beside the test ends that task alone."""
 
 _STDERR = pytest.StashKey[int]()
 
@@ -45,7 +50,10 @@ def _end_process_after(item: pytest.Item, seconds: float) -> None:
 def pytest_timeout_set_timer(item: pytest.Item, settings: Any) -> Any:
     """End the process where interrupting the test does not."""
     _end_process_after(item, settings.timeout + GRACE)
-    return (yield)
+    done = yield
+    if settings.method == "signal" and threading.current_thread() is threading.main_thread():
+        signal.setitimer(signal.ITIMER_REAL, settings.timeout, AGAIN)
+    return done
 
 
 @pytest.hookimpl(trylast=True)
