@@ -19,6 +19,7 @@ from tangy_hw.audio.player import examine_output
 from tangy_hw.audio.synthesis import examine_voice
 from tangy_hw.audio.wav import SoundError
 from tangy_hw.drivers.camera_devices import list_cameras
+from tangy_profiles.contacts import EXPERT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from tangy_profiles.extensions import Group
     from tangy_profiles.robot import Robot
 
+
+TEST_SECONDS = 10.0  # for an answer to a message that is a test
 
 NOUNS: Mapping[Group, str] = {
     "drivers": "driver",
@@ -157,6 +160,36 @@ def examine_robot(
 
     tried = asyncio.run(try_robot(robot, activity, cameras, seconds, pairing=pairing))
     return [Finding(label(one.device), one.ok, one.text, not one.absent) for one in tried]
+
+
+def examine_contacts(robot: Robot, seconds: float = TEST_SECONDS) -> list[Finding]:
+    """Call everybody whom a robot's file names, with a message that says that it is a test.
+
+    Args:
+        robot: whose file names them.
+        seconds: for which an answer is waited for.
+    """
+    from tangy_hw.calling import CallNews, call
+    from tangy_profiles.contacts import ROLES
+    from tangy_tui.text.calls import NOBODY_NAMED, TEST_CALL, tried_words
+
+    findings = []
+    for role in ROLES:
+        contact = robot.expert if role == EXPERT else robot.staff
+        part = f"{robot.title}'s {role}"
+        if contact is None:
+            findings.append(Finding(part, False, NOBODY_NAMED))
+            continue
+        if not contact.reachable:
+            findings.append(Finding(f"{part} {contact.name}", False, tried_words(contact, "none")))
+            continue
+        news: list[CallNews] = []
+        call(contact, {"for": role, "robot": robot.title, "text": TEST_CALL}, seconds, news.append)
+        stage = news[-1].stage
+        text = tried_words(contact, stage, news[-1].said)
+        failed = stage == "failed"
+        findings.append(Finding(f"{part} {contact.name}", not failed, text, broken=failed))
+    return findings
 
 
 def _camera() -> Finding:

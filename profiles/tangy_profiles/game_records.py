@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from tangy_profiles.codec import By, Count, Flat, Sparse, measurement, read
+from tangy_profiles.contacts import Role
 from tangy_profiles.demonstration import Step, not_the_same
 from tangy_profiles.drill_sheet import Sheet
 from tangy_profiles.game_world import GameWorld
@@ -182,6 +183,25 @@ class FaultMove(EventRecord):
     game: str
     fault: str
     move: Flat[RecoveryEvent]
+
+
+CallStage = Literal["tried", "sent", "answered", "failed"]
+"""What became of a call; a person is reached only when they have answered."""
+
+
+@kind("call")
+class CallMade(EventRecord):
+    """Somebody was called about a fault: in which role, by which way, and what came of it.
+
+    `said` is the answer, or why the call failed.
+    """
+
+    game: str
+    fault: str
+    role: Role
+    way: str
+    stage: CallStage
+    said: Sparse[str] = ""
 
 
 @kind("effect accepted")

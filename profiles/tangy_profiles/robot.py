@@ -9,6 +9,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.contacts import EXPERT, STAFF_ROLE, read_contact
+from tangy_profiles.contacts import Contact as Contact
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.liveness import PAUSING, Liveness, read_liveness
 from tangy_profiles.reading import Table, nearest, plain, read_toml
@@ -105,14 +107,6 @@ class Driver:
 
 
 @dataclass(frozen=True)
-class Contact:
-    """A person whom staff call: a name, and a telephone number ("": none is given)."""
-
-    name: str
-    telephone: str = ""
-
-
-@dataclass(frozen=True)
 class FaceModels:
     """The two ONNX files by which faces are found and told apart, where a facility has them."""
 
@@ -127,7 +121,8 @@ class Robot:
     `faces` are its files for faces; without them it uses what comes with OpenCV. `drivers` drive
     it when it is there in earnest, by the name of the device. `gaze` says which limb does what
     (angles in degrees) to look at a `card` and at a `face`. `file` is where all this was read.
-    `expert` is whom the facility has named for what staff cannot mend; Tangy itself calls nobody.
+    `expert` is whom the facility has named for what staff cannot mend, and `staff` who is called
+    where it stands still. `liveness` is how late its data may be.
     """
 
     name: str
@@ -142,6 +137,7 @@ class Robot:
     gaze: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     expert: Contact | None = None
     liveness: Liveness = field(default_factory=Liveness)
+    staff: Contact | None = None
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -217,21 +213,12 @@ def read_robot(top: Table, path: Path) -> Robot:
         path,
         MappingProxyType(_drivers(top, devices)),
         MappingProxyType(_gaze(top, limbs)),
-        _contact(top, "expert"),
+        read_contact(top, EXPERT),
         liveness,
+        read_contact(top, STAFF_ROLE),
     )
     top.close()
     return robot
-
-
-def _contact(top: Table, key: str) -> Contact | None:
-    """Read whom staff call, where the robot's file says so."""
-    if key not in top:
-        return None
-    entry = top.table(key)
-    contact = Contact(entry.text("name"), entry.text("telephone") if "telephone" in entry else "")
-    entry.close()
-    return contact
 
 
 def _face_models(top: Table, folder: Path) -> FaceModels | None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-from tangy_tui.app.game_commands import Accept, Acknowledge, CallExpert, Clear, StaffNote
+from tangy_tui.app.game_commands import Accept, Acknowledge, CallExpert, Clear, Reached, StaffNote
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 Result: TypeAlias = Event | StaffNote
 """What comes of a command."""
-FaultCommand: TypeAlias = Acknowledge | CallExpert | Clear | Accept
+FaultCommand: TypeAlias = Acknowledge | CallExpert | Reached | Clear | Accept
 
 
 def attend(game: Supervision, command: FaultCommand, by: str) -> list[Result]:
@@ -27,5 +27,7 @@ def attend(game: Supervision, command: FaultCommand, by: str) -> list[Result]:
             return list(game.acknowledge(by)) or [StaffNote("seen before")]
         case CallExpert():
             return list(game.call_expert(by))
+        case Reached():
+            return [StaffNote("reached" if game.reached(by) else "nobody named")]
         case Clear():
             return list(game.clear(by)) if fault.acknowledged else [StaffNote("not seen yet")]

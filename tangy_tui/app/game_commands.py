@@ -124,6 +124,11 @@ class CallExpert:
 
 
 @dataclass(frozen=True, slots=True)
+class Reached:
+    """Say that the expert was reached."""
+
+
+@dataclass(frozen=True, slots=True)
 class Clear:
     """Say that it is over, so that Tangy goes on."""
 
@@ -154,6 +159,7 @@ GameCommand: TypeAlias = (
     | Confirm
     | Acknowledge
     | CallExpert
+    | Reached
     | Clear
     | Accept
     | EndGame
@@ -181,6 +187,7 @@ NoteKind = Literal[
     "driven",
     "ended",
     "seen before",
+    "reached",
     # what cannot be done, and why
     "stopped first",
     "asks first",
@@ -191,6 +198,7 @@ NoteKind = Literal[
     "called since",
     "nothing to void",
     "not halted",
+    "nobody named",
     "not seen yet",
     "nothing asked",
     "not acceptable",

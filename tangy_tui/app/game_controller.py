@@ -38,6 +38,7 @@ from tangy_tui.app.game_commands import (
     Pause,
     Phase,
     Proposal,
+    Reached,
     SetAutonomy,
     StaffNote,
     StopRobot,
@@ -197,11 +198,7 @@ class GameController:
             return [StaffNote("cannot", str(error))]
 
     def carry_out(self, command: GameCommand) -> list[Result]:
-        """Carry out a command of staff, and return what came of it.
-
-        Raises:
-            TangyError: it cannot be done, or not be logged.
-        """
+        """Carry out a command of staff; raises TangyError where it cannot be done or logged."""
         with serving():
             try:
                 if isinstance(command, AT_ONCE):
@@ -248,7 +245,7 @@ class GameController:
                 return [self.refuses(command) or self.robot.do(command)]
             case VoidResponse(person):
                 return [self._voided(person)]
-            case Acknowledge() | CallExpert() | Clear() | Accept():
+            case Acknowledge() | CallExpert() | Reached() | Clear() | Accept():
                 return attend(self.supervision, command, self.by)
             case EndGame():
                 return self._end()

@@ -282,9 +282,11 @@ class Workspace:
             TangyError: one of the injections is none, or the fault rules have a mistake.
         """
         from tangy_profiles.fault_file import load_faults
+        from tangy_profiles.game_world import LIVE
         from tangy_sim.worlds.injection import read_injection
         from tangy_tui.app.simulated_worlds import game_world
         from tangy_tui.monitoring.accepted import expected_effects
+        from tangy_tui.monitoring.calls import Calls
         from tangy_tui.monitoring.supervision import Supervision
 
         to_come = [read_injection(text) for text in injections]
@@ -298,7 +300,7 @@ class Workspace:
             from tangy_tui.app.partly_live_world import PartlyLiveWorld
 
             world = PartlyLiveWorld(self.activity, people, seed=seed, injections=to_come, live=live)
-        return Supervision(
+        supervision = Supervision(
             self._facilitation(world, policy, seed, asks),
             load_faults(self.robot),
             self.robot,
@@ -307,6 +309,9 @@ class Workspace:
             self.name,
             [str(one) for one in to_come],
         )
+        if world.played_in == LIVE:
+            supervision.call_by(Calls(self.robot, self.store.append))
+        return supervision
 
     def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:
         """Make a run of simulated games with a policy and with what is believed of the people.

@@ -49,8 +49,9 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
+from tangy_tui.text.calls import expert_line, waits_line
 from tangy_tui.text.control import going_words, noted_words, proposal_words
-from tangy_tui.text.faults import HALTED, expert_line
+from tangy_tui.text.faults import HALTED
 from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.situations import Name, verification_lines
 
@@ -199,7 +200,7 @@ class StaffLines:
         proposal = self._controller.proposal
         asked = "" if proposal is None else proposal_words(proposal, self._name)
         if not asked and self._controller.phase == "halted":
-            asked = HALTED
+            asked = waits_line(self._game, HALTED)
         if not asked and self._game.acceptable:
             asked = staff_lines.ACCEPTABLE
         if asked != self._prompted:

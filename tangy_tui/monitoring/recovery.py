@@ -69,6 +69,8 @@ class Recovery:
         """The one because of which the robot stands still."""
         self.seconds = 0.0
         """The time in the present game, in s."""
+        self.on_halt: Callable[[Fault], None] = lambda fault: None
+        """Is told what halts the robot."""
         self._game = game
         self._detector = detector
         self._robot = robot
@@ -247,6 +249,7 @@ class Recovery:
             return []
         self.halted = fault
         self.remedy(fault, "halt")
+        self.on_halt(fault)
         self._game.withdraw()
         return self.move(fault, RecoveryEvent("halted", self.seconds))
 

@@ -10,6 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.codec import written
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import (
+    CallMade,
     FaultDiagnosed,
     FaultMove,
     GameEnding,
@@ -24,6 +25,7 @@ from tangy_tui.monitoring.games import Game
 
 IN_GAMES = (
     *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
+    CallMade,
     GameEnding,
 )
 
@@ -72,7 +74,7 @@ class Noted:
     by: str
 
 
-What: TypeAlias = Done | AnsweredRequest | Diagnosed | Moved | Noted
+What: TypeAlias = Done | AnsweredRequest | Diagnosed | Moved | Noted | CallMade
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +119,8 @@ class Moment:
                 return {"kind": "staff", "what": what, "by": by}
             case Moved(fault, move):
                 return {"kind": "recovery", "fault": fault.id, "move": written(move)}
+            case CallMade() as made:
+                return {"kind": "call", **made.body}
 
 
 @dataclass
@@ -208,6 +212,8 @@ def _replay(
                 what = _answered(event, None, None)
             case StaffAction(what=words, by=by):
                 what = Noted(words, by)
+            case CallMade() as what:
+                pass
             case FaultDiagnosed(fault=id, seconds=at) if id in faults and id not in moved:
                 replay.seconds = max(replay.seconds, at)
                 moved[id] = 0

@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 
 from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.contacts import EXPERT
 from tangy_profiles.faults import Evidence, FaultBook
 from tangy_profiles.game_records import StaffAction
 from tangy_profiles.process_log import serving
@@ -24,6 +25,7 @@ from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import Verifier
 from tangy_tui.monitoring import accepted
+from tangy_tui.monitoring.calls import FIRST_SECONDS, Calls
 from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.fault import (
     OPEN,
@@ -84,6 +86,8 @@ class Supervision:
         self._watch = FaultWatch(game, book, self._detector, self._recovery)
         self._clearings: Counter[str] = Counter()
         self._stops = 0
+        self.calls: Calls | None = None
+        """Who is called about what halts the robot; None: nobody is, as in simulated games."""
 
     @property
     def book(self) -> FaultBook:
@@ -240,8 +244,20 @@ class Supervision:
             return []
         told = self.acknowledge(by)
         told += self._recovery.move(fault, RecoveryEvent("expert called", self.seconds, by=by))
+        if self.calls is not None:
+            self.calls.call(EXPERT, fault, FIRST_SECONDS)
         self._recovery.remedy(fault, "call expert")
         return told + self.look()
+
+    def reached(self, by: str) -> bool:
+        """Let staff say that they have reached the expert; return whether one is named."""
+        fault, calls = self.halted, self.calls
+        return fault is not None and calls is not None and calls.reached(EXPERT, fault, by)
+
+    def call_by(self, calls: Calls) -> None:
+        """Have people called when the robot halts, and when staff turn to the expert."""
+        self.calls = calls
+        self._recovery.on_halt = calls.begin
 
     def clear(self, by: str) -> list[Event]:
         """Let the robot move again, if what halted it was seen and is gone.

@@ -120,6 +120,10 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"There is no response of {name(about)} in this game that counts."
         case "not halted":
             return "No fault halts Tangy."
+        case "reached":
+            return "It is noted that you have reached the expert."
+        case "nobody named":
+            return "No expert is named in the robot's file."
         case "not seen yet":
             return "Say first that you have seen it: seen."
         case "nothing asked":

@@ -9,9 +9,7 @@ from typing import NamedTuple
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.health import ERROR, STALE, Fact, Health
-from tangy_profiles.reading import plain
 from tangy_profiles.robot import DeviceProfile, Robot
-from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.monitoring.detection import LATE
 from tangy_tui.monitoring.diagnosis import narrows
 from tangy_tui.monitoring.evidence import STATES, mismatch_words, written
@@ -329,15 +327,6 @@ def move_words(move: RecoveryEvent) -> str:
     return words
 
 
-def whom_to_call(robot: Robot) -> str:
-    """Say whom staff call about what they cannot mend, or that nobody is named."""
-    expert = robot.expert
-    if expert is None:
-        return "No expert is named for this robot: ask your facility who looks after it."
-    number = f": {expert.telephone}" if expert.telephone else ""
-    return plain(f"Call the expert, {expert.name}{number}.")
-
-
 def recovery_words(rule: FaultRule) -> str:
     """Say how a fault is recovered from, rung by rung."""
     tries = f" (up to {rule.tries} times)" if rule.tries > 1 else ""
@@ -345,9 +334,7 @@ def recovery_words(rule: FaultRule) -> str:
     return "; else ".join([first + tries, *rest])
 
 
-HALTED = "Tangy stands still. Type: seen, expert, clear, what, faults, or quit."
-SIMULATED = "The simulated expert has looked at it."
-CALLS_NOBODY = "Tangy calls nobody itself."
+HALTED = "Tangy stands still. Type: seen, expert, reached, clear, what, faults, or quit."
 
 
 def fault_lines(event: FaultEvent) -> list[str]:
@@ -374,12 +361,6 @@ def advice_lines(game: Supervision) -> list[str]:
     why = f" Why: {fault.why}." if now is fault else ""
     steps = [f"  {number}. {step}" for number, step in enumerate(now.advice, 1)]
     return [f"{now.console}{why}", *steps]
-
-
-def expert_line(game: Supervision) -> str:
-    """Say who is called about what halts Tangy, or whom staff are to call."""
-    simulated = isinstance(game.world, FaultyWorld)
-    return SIMULATED if simulated else f"{whom_to_call(game.robot)} {CALLS_NOBODY}"
 
 
 def _said(move: RecoveryEvent) -> list[str]:

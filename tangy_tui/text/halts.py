@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from tangy_profiles.robot import Robot
+from tangy_profiles.contacts import EXPERT
 from tangy_tui.monitoring.fault import Fault, RecoveryEvent
-from tangy_tui.text.faults import kind_words, mark_of, move_words, whom_to_call
+from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.text.calls import expert_words
+from tangy_tui.text.faults import kind_words, mark_of, move_words
 from tangy_tui.text.times import clock
 
 SEEN_FIRST = "Press a first to say that you have seen this."
 SEEN = "You have seen it. Press e to see whom to call, or c when all is well."
-CALL_YOURSELF = "Tangy calls nobody itself. Press c when all is well."
+WHEN_WELL = "Press c when all is well."
+REACHED_TOO = "Press r when you have reached them."
 SIMULATED = "The simulated expert has looked at it. Press c when all is well."
 RESTARTED = "The robot process was started again."
 STILL_THERE = "It is still there. Tangy stands still. Press e to see whom to call."
@@ -53,10 +56,12 @@ def failed_words(error: Exception) -> str:
     return f"{error} Nothing was changed: try again."
 
 
-def called_words(robot: Robot, *, restarted: bool) -> str:
-    """Say whom to call, and what was done meanwhile."""
+def called_words(game: Supervision, *, restarted: bool) -> str:
+    """Say who was called and has answered, or whom to call, and what was done meanwhile."""
     begun = f"{RESTARTED} " if restarted else ""
-    return f"{begun}{whom_to_call(robot)} {CALL_YOURSELF}"
+    state = None if game.calls is None else game.calls.state(EXPERT)
+    waits = "" if state is None or state.stage == "answered" else f"{REACHED_TOO} "
+    return f"{begun}{expert_words(game)} {waits}{WHEN_WELL}"
 
 
 ALL_WELL = "Is all well now?"

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.game_records import CallMade
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
+from tangy_tui.text.calls import logged_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import Name
@@ -64,6 +66,8 @@ def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list
             ]
         case Noted(what, by):
             return [f"*  {what}{f', by {by}' if by else ''}."]
+        case CallMade(role=role, way=way, stage=stage, said=said_then):
+            return [f"*  {logged_words(role, way, stage, said_then)}"]
         case Moved(fault, move):
             said = [f"   Tangy says: {move.speech}"] if move.speech else []
             whose = "" if fault.asks_only else f"{fault.name}: "

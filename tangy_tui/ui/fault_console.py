@@ -18,7 +18,7 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.app.game_commands import Acknowledge, CallExpert, Clear, StaffNote
+from tangy_tui.app.game_commands import Acknowledge, CallExpert, Clear, Reached, StaffNote
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
@@ -317,6 +317,10 @@ class FaultConsole:
     async def call_expert(self) -> None:
         """Note that the expert is needed for what halts the robot, and do what Tangy can."""
         await self._do(CallExpert())
+
+    def reached(self) -> None:
+        """Say that the expert was reached."""
+        self._control.carry_out(Reached())
 
     async def clear(self) -> None:
         """Let the robot go on, if the fault was seen and is gone."""

@@ -48,15 +48,16 @@ def doctor(
 ) -> None:
     """Say what of this machine works: terminal, store, speech, voice, microphone, camera.
 
-    With --robot each driver that the robot's profile names is tried, too; nothing is moved. The
-    exit status is 1 where the data folder, or a device of that robot, is broken.
+    With --robot each driver that the robot's profile names is tried, too; nothing is moved. So is
+    every person whom it names to be called: they get a message that says that it is a test. The
+    exit status is 1 where the data folder, a device of that robot, or a call is broken.
     """
     from tangy_tui.app.workspace import data_folder
 
     if logs:
         _print_logs(data_folder(data), as_json=as_json)
         return
-    from tangy_tui.doctor import examine, examine_robot
+    from tangy_tui.doctor import examine, examine_contacts, examine_robot
 
     findings = examine(data_folder(data))
     wanted = {"data folder"}  # what was asked for: what else is missing, Tangy does without
@@ -68,6 +69,7 @@ def doctor(
         body = load_robot(robot)
         game, cameras = load_activity(activity), camera_sources(body)
         tried = examine_robot(body, game, cameras, folder=data_folder(data))
+        tried += examine_contacts(body)
         wanted |= {finding.part for finding in tried}
         findings += tried
     if as_json:

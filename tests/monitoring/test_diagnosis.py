@@ -20,7 +20,7 @@ from tangy_tui.learning.effects import Effects, Mismatch
 from tangy_tui.monitoring.detection import Detector, symptoms
 from tangy_tui.monitoring.diagnosis import diagnose, narrows
 from tangy_tui.monitoring.evidence import evidence_words
-from tangy_tui.text.faults import whom_to_call
+from tangy_tui.text.calls import whom_to_call
 
 ROBOT = load_robot()
 BOOK = load_faults(ROBOT)

@@ -7,7 +7,7 @@ from pathlib import Path
 from tangy_hw.perception.faces import face_store
 from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.events import KINDS
-from tangy_profiles.game_records import DrillHeld, EffectAccepted, FaultDiagnosed
+from tangy_profiles.game_records import CallMade, DrillHeld, EffectAccepted, FaultDiagnosed
 from tangy_profiles.game_world import BENCH
 from tangy_profiles.people_records import (
     EventsLost,
@@ -93,6 +93,8 @@ def _play(workspace: Workspace) -> None:
     append_body(workspace.store, EffectAccepted, {**about, "fault": fault.body["fault"], **kept})
     assert read_accepted(workspace.store, "bingo")
     take_back(workspace.store, "bingo", 1)
+    called = {"game": fault.body["game"], "fault": fault.body["fault"], "role": "expert"}
+    append_body(workspace.store, CallMade, {**called, "way": "command", "stage": "sent"})
     GameWorlds(workspace.store).set(fault.body["game"], BENCH, "Ada")
     append_body(workspace.store, EffectAccepted, {**about, "fault": fault.body["fault"], **kept})
 

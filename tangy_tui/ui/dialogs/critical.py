@@ -11,11 +11,14 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Static
 
+from tangy_profiles.contacts import EXPERT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.robot import Robot
+from tangy_tui.monitoring.calls import CallState
 from tangy_tui.monitoring.fault import OVER, Fault
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text import halts
+from tangy_tui.text.calls import staff_words, whom_to_call
 from tangy_tui.text.fault_views import ALSO_WRONG, HOW_KNOWN
 from tangy_tui.text.faults import (
     ages_of,
@@ -23,7 +26,6 @@ from tangy_tui.text.faults import (
     known_now,
     mark_of,
     still_there_words,
-    whom_to_call,
 )
 from tangy_tui.text.times import clock
 from tangy_tui.ui.base import Dialog
@@ -36,7 +38,7 @@ from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
-KEYS = ("a", "e", "c", "g", "escape")
+KEYS = ("a", "e", "r", "c", "g", "escape")
 
 
 class Desk(Protocol):
@@ -62,6 +64,9 @@ class Desk(Protocol):
     async def call_expert(self) -> None:
         """Note that the expert is needed, and do what Tangy itself can."""
 
+    def reached(self) -> None:
+        """Say that the expert was reached."""
+
     async def clear(self) -> None:
         """Let the robot go on, if the fault is gone."""
 
@@ -85,14 +90,16 @@ class CriticalDialog(Dialog[None]):
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("a", "nothing", "I have seen it"),
-        Binding("e", "nothing", "Show whom to call"),
+        Binding("e", "nothing", "Call the expert, or show whom to call"),
+        Binding("r", "nothing", "I have reached the expert"),
         Binding("c", "nothing", "Clear it: all is well, Tangy goes on"),
         Binding("g,escape", "nothing", "Give the game up", key_display="g esc"),
     ]
     HELP = (
-        "Tangy has stopped and stands still. a says that you have seen it, e shows whom to call "
-        "(Tangy calls nobody itself), and c lets Tangy go on, if the fault is gone; otherwise "
-        "nothing moves. g or esc gives the game up, after asking. Up and down scroll."
+        "Tangy has stopped and stands still. a says that you have seen it. e calls the expert, if "
+        "the robot's file says how, and shows whom to call; r says that you have reached them. c "
+        "lets Tangy go on, if the fault is gone; otherwise nothing moves. g or esc gives the game "
+        "up, after asking. Up and down scroll."
     )
 
     def __init__(
@@ -109,6 +116,7 @@ class CriticalDialog(Dialog[None]):
         self._doing = ""
         """What is being done, which takes its time; keys wait for it."""
         self._done = False
+        self._call = self._call_state()  # how the call to the expert stood when it was said last
 
     @property
     def fault(self) -> Fault:
@@ -158,6 +166,8 @@ class CriticalDialog(Dialog[None]):
         """Say whether the fault is still there, if that is not what is said already."""
         if self._doing:  # it is being looked at, by another thread
             return
+        if self._call != self._call_state() is not None:
+            self.say(self._whom_to_call(False))
         before = self._now
         words = self._is_there()
         if words != before:
@@ -232,6 +242,9 @@ class CriticalDialog(Dialog[None]):
                 if not self._called:
                     await desk.call_expert()
                 self.say(self._whom_to_call(restarts and not desk.restarts))
+            case "r":
+                desk.reached()
+                self.say(self._whom_to_call(False))
             case "c" if not fault.acknowledged:
                 self.say(halts.SEEN_FIRST)
             case "c":
@@ -248,7 +261,12 @@ class CriticalDialog(Dialog[None]):
         """Say whom to call, and what was done meanwhile."""
         if self._desk.simulated:
             return halts.SIMULATED
-        return halts.called_words(self._robot, restarted=restarted)
+        self._call = self._call_state()
+        return halts.called_words(self._desk.supervision, restarted=restarted)
+
+    def _call_state(self) -> CallState | None:
+        calls = self._desk.supervision.calls
+        return None if calls is None else calls.state(EXPERT)
 
     @property
     def _called(self) -> bool:
@@ -280,7 +298,10 @@ class CriticalDialog(Dialog[None]):
         if self._doing:
             return (("^x", "STOP"), ("?", "help"))
         seen = () if self._fault.acknowledged else (("a", "seen"),)
-        return (*seen, ("e", "expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
+        state = self._call_state()
+        waits = state is not None and state.stage != "answered"
+        reached = (("r", "reached"),) if waits else ()
+        return (*seen, ("e", "expert"), *reached, ("c", "clear"), ("g", "give up"), ("?", "help"))
 
     def _write(self, width: int) -> list[PageLine]:
         supervision = self._desk.supervision
@@ -296,6 +317,8 @@ class CriticalDialog(Dialog[None]):
         lines += heading(halts.WHOM_TO_CALL)
         lines += advice_lines(fault.advice, width)
         lines += paragraph(clean(whom_to_call(self._robot)), width)
+        if staff := staff_words(supervision):
+            lines += paragraph(clean(staff), width)
         pieces = evidence_of(fault, book, robot)
         pieces += ages_of(fault, book, robot, supervision.world.health())
         if pieces:

@@ -1,0 +1,144 @@
+"""Calling the expert, and staff, about what halts the robot: who was tried, and who answered.
+
+A person counts as reached only when they have answered. Every try, and what came of it, is logged.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+from tangy_hw.calling import CallNews, call
+from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact, Role
+from tangy_profiles.errors import TangyError
+from tangy_profiles.events import EventRecord
+from tangy_profiles.game_records import CallMade, CallStage
+from tangy_profiles.robot import Robot
+from tangy_tui.monitoring.fault import Fault
+
+ANSWER_SECONDS = 300.0
+"""How long an answer is waited for."""
+FIRST_SECONDS = 3.0
+"""How long staff wait before they are told how it stands."""
+
+Way = Callable[[Contact, Mapping[str, Any], float, Callable[[CallNews], None]], None]
+
+
+@dataclass(frozen=True, slots=True)
+class CallState:
+    """How a call stands: whom it is for, and what they said, or why it failed."""
+
+    role: Role
+    contact: Contact
+    stage: CallStage
+    said: str = ""
+
+
+class Calls:
+    """The calls about what halts a robot in the present game."""
+
+    def __init__(self, robot: Robot, log: Callable[[EventRecord], object], way: Way = call) -> None:
+        """Prepare.
+
+        Args:
+            robot: whose file names whom to call.
+            log: keeps what was tried.
+            way: sends a message and waits for an answer.
+        """
+        self._contacts = {EXPERT: robot.expert, STAFF_ROLE: robot.staff}
+        self._title = robot.title
+        self._log = log
+        self._way = way
+        self._states: dict[Role, CallState] = {}
+        self._fault = ""
+        self._lock = threading.Lock()
+
+    def state(self, role: Role) -> CallState | None:
+        """Return how the call to somebody about the present fault stands, None if none was made."""
+        return self._states.get(role)
+
+    def begin(self, fault: Fault) -> None:
+        """Take it that another fault halts the robot: staff are called, if that can be done."""
+        with self._lock:
+            self._fault = fault.id
+            self._states.clear()
+        self.call(STAFF_ROLE, fault)
+
+    def call(self, role: Role, fault: Fault, wait: float = 0.0) -> CallState | None:
+        """Call somebody about a fault, unless that is under way or was answered.
+
+        Args:
+            role: whom.
+            fault: about what.
+            wait: for how many s the first news is waited for.
+
+        Returns:
+            How it stands, None where the robot's file names nobody who can be called.
+        """
+        contact = self._contacts[role]
+        if contact is None or not contact.reachable:
+            return None
+        with self._lock:
+            there = self._states.get(role)
+            if there is not None and self._fault == fault.id and there.stage != "failed":
+                return there
+            self._fault = fault.id
+            self._states[role] = CallState(role, contact, "tried")
+        self._keep(fault, self._states[role])
+        first = threading.Event()
+
+        def told(news: CallNews) -> None:
+            self._take(fault, CallState(role, contact, news.stage, news.said))
+            first.set()
+
+        arguments = (contact, self._message(role, fault), ANSWER_SECONDS, told)
+        threading.Thread(target=self._way, args=arguments, daemon=True).start()
+        first.wait(wait)
+        return self._states.get(role)
+
+    def reached(self, role: Role, fault: Fault, by: str) -> bool:
+        """Take it from staff that somebody was reached; return whether anybody is named."""
+        contact = self._contacts[role]
+        if contact is None:
+            return False
+        self._take(fault, CallState(role, contact, "answered", by))
+        return True
+
+    def _message(self, role: Role, fault: Fault) -> dict[str, Any]:
+        return {
+            "for": role,
+            "robot": self._title,
+            "fault": fault.code,
+            "text": f"{self._title}: {fault.unnamed}",
+            "advice": list(fault.texts[2:]),
+        }
+
+    def _take(self, fault: Fault, state: CallState) -> None:
+        with self._lock:
+            before = self._states.get(state.role)
+            current = self._fault == fault.id
+            if current and before is not None and before.stage == "answered":
+                return
+            if current:
+                self._states[state.role] = state
+        self._keep(fault, state)
+
+    def _keep(self, fault: Fault, state: CallState) -> None:
+        made = CallMade(
+            game=fault.game,
+            fault=fault.id,
+            role=state.role,
+            way=_way_of(state.contact),
+            stage=state.stage,
+            said=state.said,
+        )
+        with suppress(TangyError):  # a log that is full keeps nobody from being called
+            self._log(made)
+
+
+def _way_of(contact: Contact) -> str:
+    """Say by what somebody is called, without what an address may hold of passwords."""
+    return "command" if contact.command else contact.url.partition(":")[0] or "telephone"

@@ -1,0 +1,96 @@
+"""Whom to call about what halts a robot, and how a call to them stands."""
+
+from __future__ import annotations
+
+from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact
+from tangy_profiles.reading import plain
+from tangy_profiles.robot import Robot
+from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_tui.monitoring.calls import CallState
+from tangy_tui.monitoring.supervision import Supervision
+
+SIMULATED = "The simulated expert has looked at it."
+CALLS_NOBODY = "Tangy calls nobody itself."
+TEST_CALL = "This is a test of how Tangy calls you. Nothing is wrong."
+NOBODY_NAMED = "nobody is named in the robot's file"
+
+
+def whom_to_call(robot: Robot) -> str:
+    """Say whom staff call about what they cannot mend, or that nobody is named."""
+    expert = robot.expert
+    if expert is None:
+        return "No expert is named for this robot: ask your facility who looks after it."
+    return plain(f"Call the expert, {_named(expert)}.")
+
+
+def _named(contact: Contact) -> str:
+    return f"{contact.name}: {contact.telephone}" if contact.telephone else contact.name
+
+
+def call_words(state: CallState) -> str:
+    """Say how a call stands: somebody is reached only when they have answered."""
+    contact = state.contact
+    then = f"Nobody has answered yet: call {_named(contact)}."
+    match state.stage:
+        case "tried":
+            words = f"Tangy is sending a message to {contact.name}. {then}"
+        case "sent":
+            words = f"Tangy has sent a message to {contact.name}. {then}"
+        case "failed":
+            words = f"Tangy cannot reach {contact.name} ({state.said}). {then}"
+        case "answered":
+            said = f": {state.said.rstrip('.')}" if state.said else ""
+            words = f"{contact.name} has answered{said}."
+    return plain(words)
+
+
+def logged_words(role: str, way: str, stage: str, said: str) -> str:
+    """Say what became of a call, as the log has it."""
+    stages = {
+        "tried": "a message is being sent",
+        "sent": "a message was sent, and not answered yet",
+        "answered": "answered",
+        "failed": "could not be reached",
+    }
+    told = f": {said}" if said else ""
+    return plain(f"The {role} ({way}): {stages.get(stage, stage)}{told}.")
+
+
+def expert_words(game: Supervision) -> str:
+    """Say how the call to the expert stands, or whom staff have to call themselves."""
+    state = None if game.calls is None else game.calls.state(EXPERT)
+    if state is not None:
+        return call_words(state)
+    return f"{whom_to_call(game.robot)} {CALLS_NOBODY}"
+
+
+def staff_words(game: Supervision) -> str:
+    """Say how the call to staff stands, "" where none was made."""
+    state = None if game.calls is None else game.calls.state(STAFF_ROLE)
+    return "" if state is None else call_words(state)
+
+
+def expert_line(game: Supervision) -> str:
+    """Say who is called about what halts Tangy, or whom staff are to call."""
+    return SIMULATED if isinstance(game.world, FaultyWorld) else expert_words(game)
+
+
+def waits_line(game: Supervision, asked: str) -> str:
+    """Say how the calls stand, before what Tangy waits for."""
+    if game.calls is None:
+        return asked
+    states = (game.calls.state(EXPERT), game.calls.state(STAFF_ROLE))
+    return " ".join([*(call_words(state) for state in states if state is not None), asked])
+
+
+def tried_words(contact: Contact, stage: str, said: str = "") -> str:
+    """Say what came of trying to call somebody, for a look over a robot."""
+    number = contact.telephone or "no telephone number is given"
+    match stage:
+        case "answered":
+            return plain(f"a test message was answered{f': {said}' if said else ''} ({number})")
+        case "failed":
+            return plain(f"a test message could not be sent: {said} ({number})")
+        case "none":
+            return plain(f"neither a command nor a url is given, so staff call: {number}")
+    return plain(f"a test message was sent, and not answered so far ({number})")

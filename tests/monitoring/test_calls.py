@@ -1,0 +1,172 @@
+"""Who is called about what halts a robot: only an answer counts, and all of it is in the log."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from tangy_hw.calling import CallNews
+from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.game_records import CallMade
+from tangy_profiles.robot import load_robot
+from tangy_profiles.store import Store
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.monitoring.calls import Calls
+from tangy_tui.text.calls import call_words, expert_words
+from tests.monitoring.conftest import Supervise
+from tests.support.waiting import wait_until
+
+ANNA = Contact("Anna Berg", "030 901820", url="http://127.0.0.1:9/tangy")
+STATION = Contact("Station 2", command=("ring",))
+
+
+class Line:
+    """A line on which people are called; what becomes of a call is said by the test."""
+
+    def __init__(self) -> None:
+        self.told: dict[str, Callable[[CallNews], None]] = {}
+        self.messages: list[Mapping[str, Any]] = []
+        self._come = threading.Event()
+
+    def __call__(
+        self,
+        contact: Contact,
+        message: Mapping[str, Any],
+        seconds: float,
+        told: Callable[[CallNews], None],
+    ) -> None:
+        self.messages.append(message)
+        self.told[contact.name] = told
+
+    def says(self, name: str, stage: Any, said: str = "") -> None:
+        wait_until(lambda: name in self.told, "somebody is called")
+        self.told[name](CallNews(stage, said))
+
+
+@pytest.fixture
+def line() -> Line:
+    return Line()
+
+
+@pytest.fixture
+def calls(workspace: Workspace, line: Line, monkeypatch: pytest.MonkeyPatch) -> Calls:
+    monkeypatch.setattr("tangy_tui.monitoring.supervision.FIRST_SECONDS", 0.0)
+    robot = replace(workspace.robot, expert=ANNA, staff=STATION)
+    return Calls(robot, workspace.store.append, line)
+
+
+def logged(store: Store) -> list[tuple[str, str, str]]:
+    return [(e.record.role, e.record.stage, e.record.said) for e in store.events(CallMade)]
+
+
+def test_staff_are_called_when_the_robot_halts_and_the_expert_when_staff_turn_to_them(
+    supervise: Supervise, calls: Calls, line: Line
+) -> None:
+    game = supervise("link-lost@3")
+    game.call_by(calls)
+    game.begin()
+    while game.halted is None:
+        game.step()
+    wait_until(lambda: "Station 2" in line.told, "staff are called")
+    assert calls.state(EXPERT) is None
+    game.call_expert("Ada")
+    wait_until(lambda: "Anna Berg" in line.told, "the expert is called")
+    assert line.messages[1]["fault"] == "link-lost" and line.messages[1]["text"]
+
+
+def test_a_call_that_fails_one_that_is_answered_late_and_by_a_key_are_told_apart(
+    supervise: Supervise, calls: Calls, line: Line, workspace: Workspace
+) -> None:
+    game = supervise("link-lost@3")
+    game.call_by(calls)
+    game.begin()
+    while game.halted is None:
+        game.step()
+    game.call_expert("Ada")
+    words = [expert_words(game)]
+    line.says("Anna Berg", "failed", "no line")
+    words.append(expert_words(game))
+    game.call_expert("Ada")  # tried again
+    line.says("Anna Berg", "sent")
+    words.append(expert_words(game))
+    assert all("030 901820" in one for one in words)  # nobody was reached: staff call themselves
+    line.says("Anna Berg", "answered", "I am on my way")
+    assert "030 901820" not in expert_words(game) and "I am on my way" in expert_words(game)
+    line.says("Anna Berg", "failed", "too late")
+    assert "I am on my way" in expert_words(game)  # what was answered stays so
+    assert game.reached("Ada")
+    stages = [stage for role, stage, _ in logged(workspace.store) if role == EXPERT]
+    assert stages == ["tried", "failed", "tried", "sent", "answered"]
+
+
+def test_an_answer_about_an_earlier_fault_says_nothing_of_a_later_one(
+    supervise: Supervise, calls: Calls, line: Line, workspace: Workspace
+) -> None:
+    game = supervise("link-lost@3", "laser-disconnected@9")
+    game.call_by(calls)
+    game.begin()
+    while game.halted is None:
+        game.step()
+    game.call_expert("Ada")
+    wait_until(lambda: "Anna Berg" in line.told, "the expert is called")
+    earlier = line.told["Anna Berg"]
+    game.clear("Ada")
+    while game.halted is None and not game.over:
+        game.step()
+    assert game.halted is not None and game.halted.code == "laser-disconnected"
+    earlier(CallNews("answered", "Coming."))
+    assert calls.state(EXPERT) is None
+    assert logged(workspace.store)[-1] == (EXPERT, "answered", "Coming.")
+
+
+def test_where_nobody_can_be_called_it_is_never_said_that_somebody_was(
+    supervise: Supervise, workspace: Workspace, line: Line
+) -> None:
+    robot = replace(workspace.robot, expert=Contact("Anna Berg", "030 901820"))
+    game = supervise("link-lost@3")
+    game.robot = robot
+    game.call_by(Calls(robot, workspace.store.append, line))
+    game.begin()
+    while game.halted is None:
+        game.step()
+    game.call_expert("Ada")
+    assert not line.messages and "calls nobody" in expert_words(game)
+    assert logged(workspace.store) == []
+    assert game.reached("Ada")  # by their own telephone
+    assert logged(workspace.store) == [(EXPERT, "answered", "Ada")]
+
+
+def test_simulated_games_call_nobody(supervise: Supervise) -> None:
+    assert supervise("link-lost@3").calls is None
+
+
+def test_each_stage_of_a_call_has_words_of_its_own(calls: Calls) -> None:
+    from tangy_tui.monitoring.calls import CallState
+
+    stages = ("tried", "sent", "failed", "answered")
+    words = [call_words(CallState(STAFF_ROLE, STATION, stage)) for stage in stages]  # type: ignore[arg-type]
+    assert len(set(words)) == 4 and all("Station 2" in one for one in words)
+
+
+@pytest.mark.parametrize(
+    ("lines", "key"),
+    [
+        ('url = "ftp://x"', "expert.url"),
+        ('url = "http://x"\ncommand = ["a"]', "expert.url"),
+        ("command = 3", "expert.command"),
+        ('colour = "red"', "expert"),
+    ],
+)
+def test_a_contact_that_is_none_is_refused_by_name(
+    lines: str, key: str, tmp_path: Any, workspace: Workspace
+) -> None:
+    file = tmp_path / "mine.toml"
+    text = workspace.robot.file.read_text()
+    file.write_text(f'{text}\n[expert]\nname = "Anna"\n{lines}\n')
+    with pytest.raises(ProfileError, match=key):
+        load_robot(str(file))
