@@ -9,14 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from tangy_hw.audio.wav import HEADER, read_header, read_wav
+from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.language.commands import Command, Phrasebook
 from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, EvidenceSettings
 from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.recogniser import Recogniser
-from tangy_tui.speech.understanding import understand, wanted
+from tangy_tui.speech.understanding import clearly_heard, understand, wanted
 
+LARGEST_TEXT = 10_000_000  # bytes of a file with sentences
 Row = dict[str, Any]
 
 
@@ -45,6 +47,19 @@ def listen(
     for file in files:
         _look_at(file)
     return asyncio.run(_listen(files, phrasebook, settings, tell)) if files else []
+
+
+def read_lines(file: Path, phrasebook: Phrasebook, settings: EvidenceSettings = USUAL) -> list[Row]:
+    """Understand words as if they had been heard, one row (see `listen`) for each line of a file.
+
+    Raises:
+        TangyError: the file is missing, too large, or no text; it is named.
+    """
+    lines = read_given_text(file, LARGEST_TEXT).split("\n")
+    if lines[-1] == "":  # the last line is ended like the others
+        lines.pop()
+    said = (understand(clearly_heard(line), phrasebook, settings) for line in lines)
+    return [_row(file, one) for one in said]
 
 
 def _look_at(file: Path) -> None:

@@ -14,6 +14,7 @@ from difflib import SequenceMatcher
 
 from tangy_tui.language.commands import Command, Phrasebook
 from tangy_tui.language.stop_sentence import STOPS, stops
+from tangy_tui.language.words import clean
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import AcousticEvidence, EvidenceSettings, Wanted
 
@@ -83,6 +84,11 @@ def understand(
         return Say(text, confidence, ())
     commands = tuple(replace(c, confidence=round(confidence, 3)) for c in found)
     return Say(text, round(confidence, 3), commands, sure=confidence >= SURE)
+
+
+def clearly_heard(text: str) -> AcousticEvidence:
+    """Return the evidence of words that leave no doubt that they were said."""
+    return AcousticEvidence(clean(text), "", MOST_MARGIN, 1.0)
 
 
 def commanded(

@@ -7,6 +7,9 @@ from tangy_tui.text.numbers import counted
 TEACH_YOURSELF = "Teach it yourself with `tangy teach`. See all commands with `tangy --help`."
 SWITCHING_ON = "Switching the robot on ..."
 PREPARING_DRILL = "Tangy is preparing the drill ..."
+WHAT_TO_LISTEN_TO = (
+    "Give WAV files, a folder of them with --bench DIR, or sentences with --text FILE."
+)
 PRINTING = "Print them at full size (100%), and cut along the marks."
 
 

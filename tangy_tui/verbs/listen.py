@@ -15,7 +15,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.command_line import cut_off, recordings_deleted
+from tangy_tui.text.command_line import WHAT_TO_LISTEN_TO, cut_off, recordings_deleted
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, as_given, print_json, print_line
 from tangy_tui.verbs.opening import open_workspace, say_notices
 
@@ -32,6 +32,10 @@ def listen(
     bench: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Count it over all WAVs in DIR, named by what is said."),
+    ] = None,
+    text: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Read sentences in place of sound, one on each line."),
     ] = None,
     mode: Annotated[
         str | None,
@@ -51,6 +55,8 @@ def listen(
 ) -> None:
     """Hear spoken commands in WAV files, and say what was understood.
 
+    With --text the words are read from a file, as if they had been heard clearly.
+
     With --bench every WAV below DIR is one whole utterance, and what was said in it is its name
     (call_number-3.wav) or that of its folder (call number/3.wav). Everything that is no command is
     named none, noise or speech, or lies in a folder of that name.
@@ -58,8 +64,8 @@ def listen(
     from tangy_tui.language.commands import Phrasebook
     from tangy_tui.speech.calibration import is_checked, settings_for
 
-    if bool(files) + (bench is not None) + forget_recordings != 1:
-        raise TangyError("Give WAV files, or a folder of them with --bench DIR.")
+    if bool(files) + (bench is not None) + (text is not None) + forget_recordings != 1:
+        raise TangyError(WHAT_TO_LISTEN_TO)
     with open_workspace(data, activity, 4, write=forget_recordings) as workspace:
         if forget_recordings:
             _forget(workspace, as_json)
@@ -71,6 +77,8 @@ def listen(
         phrasebook = Phrasebook(workspace.activity, workspace.people)
         if bench is not None:
             _bench(bench, phrasebook, settings, as_json)
+        elif text is not None:
+            _read(text, phrasebook, settings, workspace.names, as_json)
         else:
             _listen(files or [], phrasebook, settings, workspace.names, as_json)
 
@@ -95,6 +103,23 @@ def _listen(
     else:
         hear(files, phrasebook, settings, show)
     say_notices([told for told in map(_cut_off, dict.fromkeys(files)) if told])
+
+
+def _read(
+    file: Path,
+    phrasebook: Phrasebook,
+    settings: EvidenceSettings,
+    names: dict[str, str],
+    as_json: bool,
+) -> None:
+    from tangy_tui.speech.transcription import read_lines
+
+    rows = read_lines(file, phrasebook, settings)
+    if as_json:
+        print_json(rows)
+        return
+    for row in rows:
+        print_line(plain(f"{row['heard']!r} -> {_meaning(row, names)}"))
 
 
 def _cut_off(file: Path) -> str:

@@ -22,6 +22,7 @@ from tangy_tui.speech.loudness import LOUD, loudness
 from tangy_tui.speech.microphone_check import PATIENCE, CheckResult, MicrophoneCheck
 from tangy_tui.speech.recogniser import Recogniser
 from tangy_tui.speech.recordings import consent, consented
+from tangy_tui.text.command_line import WHAT_TO_LISTEN_TO
 from tangy_tui.verbs import hearing, mic_check
 from tangy_tui.verbs.mic_check import ALONE
 from tests.hw.sounds import pcm, tone, wav
@@ -34,8 +35,10 @@ Tell = Callable[[int, list[dict[str, Any]]], None]
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ((), "Give WAV files, or a folder of them with --bench DIR."),
-        (("a.wav", "--bench", "."), "Give WAV files, or a folder of them with --bench DIR."),
+        ((), WHAT_TO_LISTEN_TO),
+        (("a.wav", "--bench", "."), WHAT_TO_LISTEN_TO),
+        (("a.wav", "--text", "said.txt"), WHAT_TO_LISTEN_TO),
+        (("--text", "nowhere.txt"), "nowhere.txt: there is no such file."),
         (("--bench", "nowhere"), "nowhere: there is no such folder."),
         (("a.wav", "--mode", "papr"), "--mode 'papr' is not known; did you mean 'paper'?"),
         (("nowhere.wav",), "nowhere.wav: there is no such file."),
@@ -48,6 +51,33 @@ def test_what_cannot_be_heard_is_refused_in_a_sentence(
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == f"tangy: {sentence}\n"
     assert not (tmp_path / "data").exists()
+
+
+def test_each_line_of_text_is_understood_as_if_it_had_been_heard(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    said = tmp_path / "said.txt"
+    said.write_text("call the next number\nGo to user 2\n\nthe soup was salty\nstop the robot\n")
+    done = tangy("listen", "--text", said, "--json", "--data", tmp_path / "data")
+    rows = json.loads(done.stdout)
+    assert [row["tier"] for row in rows] == ["sure", "sure", "nothing", "nothing", "stop"]
+    assert [row["behaviour"] for row in rows[:2]] == ["call number", "navigate to user"]
+    assert rows[1]["arguments"] == {"user": "user2"}
+    assert rows[1]["choices"][0] == {
+        "behaviour": "navigate to user",
+        "arguments": {"user": "user2"},
+    }
+    assert all(
+        {"file", "heard", "tier", "behaviour", "arguments", "confidence", "choices"} == row.keys()
+        for row in rows
+    )
+
+
+def test_lines_of_text_are_told_in_words(tangy: Tangy, tmp_path: Path) -> None:
+    said = tmp_path / "said.txt"
+    said.write_text("tell a joke")
+    done = tangy("listen", "--text", said, "--data", tmp_path / "data")
+    assert done.stdout.startswith("'tell a joke' -> joke, ")
 
 
 def test_an_empty_folder_says_how_to_name_recordings(tangy: Tangy, tmp_path: Path) -> None:
