@@ -26,6 +26,7 @@ from tangy_profiles.voice import VoicePreference
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 from tangy_tui.app.user_settings import read_settings
+from tangy_tui.language.intents import Intents
 
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from tangy_tui.interaction.memory import PersonModels
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.interaction.record import Record
+    from tangy_tui.language.commands import Phrasebook
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_events import Again
     from tangy_tui.learning.teaching_session import TeachingSession
@@ -90,6 +92,7 @@ class Workspace:
         self.robot: Robot = load_robot(robot)
         self.robot.check(self.activity)
         self.room: Room = load_room()
+        self.intents = Intents()
         self._sample = load_people(users)
         if self.activity.teams:
             self._sample = tuple(Person(team, team) for team in self.activity.teams)
@@ -221,6 +224,12 @@ class Workspace:
         """The names of those who take part, by id."""
         return {person.id: person.name for person in self.people}
 
+    def phrasebook(self) -> Phrasebook:
+        """Make what is understood of those who take part, said or typed."""
+        from tangy_tui.language.commands import Phrasebook
+
+        return Phrasebook(self.activity, self.people, self.intents.model)
+
     def teaching(
         self,
         teacher: str,
@@ -250,6 +259,7 @@ class Workspace:
             seed=seed,
             guided=guided,
             again=again,
+            learnt=self.intents.model,
         )
 
     def teaching_world(self, shown: Demonstration) -> World:
@@ -347,6 +357,7 @@ class Workspace:
             people=self.people,
             seed=seed,
             answers=OnlineLearning(self.store, self.activity) if asks else None,
+            learnt=self.intents.model,
         )
 
     def persuasion(self, rng: Random, world: GameWorld | None = None) -> Persuasion:

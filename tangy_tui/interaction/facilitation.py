@@ -31,7 +31,7 @@ from tangy_tui.interaction.game_events import (
 from tangy_tui.interaction.observation import Observation
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.interaction.uncertainty import remedy_for, which_of, why_not
-from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.commands import Learnt, Phrasebook
 from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.teaching_session import NOTHING_SAID
@@ -84,6 +84,7 @@ class Facilitation:
         people: Sequence[Person] = (),
         seed: int,
         answers: OnlineLearning | None = None,
+        learnt: Learnt | None = None,
     ) -> None:
         """Prepare to run games.
 
@@ -97,6 +98,7 @@ class Facilitation:
             seed: of the random generators.
             answers: where a teacher is present, what learns from the answers; without it, a
                 situation that Tangy is not sure about ends the game.
+            learnt: see `Phrasebook`.
         """
         self.world = world
         self.policy = policy
@@ -115,6 +117,7 @@ class Facilitation:
         self.observation = Observation(world)
         """Observes the state, and looks again where one look is not to be believed."""
         self._answers = answers
+        self._learnt = learnt
         self._activity = world.activity
         self._store = store
         self._names = names
@@ -234,7 +237,7 @@ class Facilitation:
         """Make the door through which a teacher answers: every command is verified first."""
         named = {id: Person(id, self._names.get(id, id)) for id in self.world.people} | self._people
         people = [named[id] for id in self.world.people]
-        phrasebook = Phrasebook(self._activity, people)
+        phrasebook = Phrasebook(self._activity, people, self._learnt)
         return Verifier(self._activity, phrasebook, self.world.observe, self._names)
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[GameEvent]:

@@ -11,9 +11,13 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.person import Person
+from tangy_tui.language.intent_model import IntentModel
+from tangy_tui.language.mentions import Mentions
+from tangy_tui.language.paraphrases import SURE, TALK, Meaning, Paraphrases
 from tangy_tui.language.phrasebook import Phrase, Phrases
 from tangy_tui.language.words import (
     FILLERS,
@@ -33,11 +37,14 @@ KEYWORDS_AT_BEST = 0.95  # confidence of keywords in a text that is almost a phr
 KEYWORDS_AT_LEAST = 0.55  # and in one that is quite unlike
 NEAREST_AT_BEST = 0.79  # confidence of a phrase that is nearly the one that was said
 NEAREST_AT_LEAST = 0.45  # what is less like any phrase is not understood
+NEARLY_A_PHRASE = 0.9  # confidence that counts also where words are likely other talk
 MENDED = 0.9  # what is left of the confidence when words were mended, besides their likeness
 CLEAR_LEAD = 0.2  # a lead over the next behaviour that takes nothing off the confidence
 ALTERNATIVE_AT_LEAST = 0.25
 UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases weigh up to 1
 SAME_WORD = 0.7  # likeness from which a word is taken for a slip of another
+
+Learnt: TypeAlias = Callable[[Activity], IntentModel]
 
 LINKS = frozenset(("of", "to"))
 LINK_ENDS = frozenset((link,) for link in LINKS)
@@ -73,8 +80,17 @@ class Phrasebook:
     table: Phrases
     game: frozenset[str]
 
-    def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
-        """Make the phrasebook of an activity for the people who take part in it."""
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[Person],
+        learnt: Learnt | None = None,
+    ) -> None:
+        """Make the phrasebook of an activity for the people who take part in it.
+
+        `learnt` returns what was learnt of how people ask in the activity; it is called when the
+        first text that is no phrase comes. Without it only phrases and keywords are understood.
+        """
         self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
         self.people = tuple(person.id for person in people)
         self.game = frozenset(words_of(activity.title))
@@ -94,13 +110,19 @@ class Phrasebook:
         self._bare = _of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
         self._joined = _of_one_meaning(self._phrases.values(), lambda p: run_together(p.bare))
         self._weights = self.table.word_weights()
+        self._learnt: Paraphrases | None = None
+        if learnt is not None:
+            mentions = Mentions(self.table, self.nouns)
+            for_people = self._to_people | {b.name for b in activity.behaviours.values() if b.to}
+            self._learnt = Paraphrases(lambda: learnt(activity), mentions, for_people)
 
     def understand(self, text: str) -> Command | None:
         """Find the behaviour that a text asks for.
 
-        An exact phrase counts 1. Keywords that point to one behaviour count less, by how unlike
-        its phrases the rest of the text is; then comes the nearest phrase, if it is near enough.
-        Words that look like typing slips of known ones are mended, which costs confidence too.
+        An exact phrase counts 1. What was learnt of how people ask counts as likely as it is, if
+        that is sure. Keywords that point to one behaviour count less, by how unlike its phrases
+        the rest of the text is; then comes the nearest phrase, if it is near enough. Words that
+        look like typing slips of known ones are mended, which costs confidence too.
         """
         heard = clean(text)
         words = words_of(heard)
@@ -108,9 +130,35 @@ class Phrasebook:
             return None
         if (exact := self._exact(words)) is not None:
             return _command(exact, 1.0, heard)  # it leaves no doubt, and so no alternatives
+        mended, trust = self._mend(words)
+        learnt = () if self._is_mistyped(words, mended) else self.paraphrased(text)
+        if learnt and learnt[0].confidence >= SURE:
+            return learnt[0]
+        near = self._nearest(heard, words, mended, trust)
+        if near is not None and near.confidence < NEARLY_A_PHRASE and self._is_talk(words):
+            return None
+        return near or (learnt[0] if learnt else None)
+
+    @property
+    def learns(self) -> bool:
+        """Whether it understands by what was learnt, too."""
+        return self._learnt is not None
+
+    def paraphrased(self, text: str) -> tuple[Command, ...]:
+        """Return up to three commands that a text is by what was learnt, the likeliest first."""
+        words = words_of(heard := clean(text))
+        if self._learnt is None or self._stranger(words) is not None:
+            return ()
+        found = self._learnt.meanings(words)
+        return tuple(
+            _meant(meaning, heard, [other.behaviour for other in found if other is not meaning])
+            for meaning in found
+        )
+
+    def _nearest(self, heard: str, words: Words, mended: Words, trust: float) -> Command | None:
+        """Find the behaviour whose phrases or keywords a text comes near to."""
         if self._refuses(words) or self._stranger(words) is not None:
             return None
-        mended, trust = self._mend(words)
         found, confidence = self._find(words, mended)
         confidence *= trust
         if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(mended, found):
@@ -173,6 +221,13 @@ class Phrasebook:
         phrases as well keeps beside its own what the activity or the dictionary says of it.
         """
         return dict(self.table.pronunciations)
+
+    def _is_talk(self, words: Words) -> bool:
+        return self._learnt is not None and self._learnt.talk(words) >= TALK
+
+    def _is_mistyped(self, words: Words, mended: Words) -> bool:
+        """Say whether words are a phrase but for slips, or spaces that are missing."""
+        return self._exact(mended) is not None or run_together(bare(words)) in self._joined
 
     def _exact(self, words: Words) -> Phrase | None:
         return self._phrases.get(words) or self._bare.get(" ".join(bare(words)))
@@ -318,6 +373,12 @@ class Phrasebook:
                 swap = 0.0 if word == known else cost + weight
                 row.append(min(last[place + 1] + cost, row[-1] + weight, last[place] + swap))
         return max(0.0, 1 - row[-1] / (sum(told) + sum(spent)))
+
+
+def _meant(meaning: Meaning, heard: str, others: Sequence[str]) -> Command:
+    arguments = MappingProxyType({} if meaning.user is None else {"user": meaning.user})
+    likelihood = round(meaning.likelihood, 3)
+    return Command(meaning.behaviour, arguments, likelihood, heard, tuple(others))
 
 
 def _command(

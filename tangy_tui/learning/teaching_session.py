@@ -24,7 +24,7 @@ from tangy_profiles.teaching_records import (
     DemonstrationStepRedone,
     DemonstrationStepUndone,
 )
-from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.commands import Learnt, Phrasebook
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.editing import new_id
 from tangy_tui.learning.game_replay import MakeWorld, replay_game, shown_again
@@ -81,6 +81,7 @@ class TeachingSession:
         seed: int,
         guided: bool = False,
         again: Again | None = None,
+        learnt: Learnt | None = None,
     ) -> None:
         """Prepare a session; `begin` it.
 
@@ -93,9 +94,11 @@ class TeachingSession:
             seed: of the first new game; the next games count on.
             guided: new games are arranged so that one of them brings about every situation.
             again: begin by showing a demonstration again from some step on.
+            learnt: see `Phrasebook`.
         """
         self.activity = activity
-        self.phrasebook = Phrasebook(activity, people)
+        self.phrasebook = Phrasebook(activity, people, learnt)
+        self._learnt = learnt
         self.teacher = teacher
         self.demonstration: Demonstration
         self.world: World
@@ -264,7 +267,7 @@ class TeachingSession:
         self.world = world
         self._undone = []
         present = [self._people.get(id, Person(id, id)) for id in demonstration.people]
-        self.phrasebook = Phrasebook(self.activity, present)
+        self.phrasebook = Phrasebook(self.activity, present, self._learnt)
         self._verifier = Verifier(
             self.activity, self.phrasebook, lambda: self.world.observe(), self._names
         )

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 
-from tangy_tui.language.commands import Command, Phrasebook
+from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import clean
 from tangy_tui.learning.verification import Reply, Say, StopCommand
@@ -27,6 +27,9 @@ LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
 MOST_KNOWN = 3
 SURE = 0.6
 UNSURE = 0.35
+DOUBT_WEIGHT, DOUBTED = 2.0, 0.0
+"""How much less likely a paraphrase is, in logits a unit of the margin, below some margin."""
+NO_TALK = 0.9  # likelihood of a near phrase from which words are no other talk, whatever was learnt
 SMALL_MARGIN = -0.25  # below it a whole phrase explains the sound better than other words do
 SAME_SOUND = 0.75  # likeness of letters from which such words are taken for the phrase, misheard
 UNDERSTOOD = 0.35
@@ -76,14 +79,38 @@ def understand(
     text, margin = best_words(evidence, phrasebook)
     if stops(text, phrasebook.game):
         return StopCommand(text)
-    found = phrasebook.choices(text)
-    if not found:
-        return Say(text, 0.0, ())
-    confidence = likelihood(found[0].confidence, phrasebook.known(text), margin, settings.shift)
+    near, confidence = _nearest(text, margin, phrasebook, settings)
+    if confidence >= SURE and near[0].confidence >= 1:
+        return _said(text, confidence, near)
+    learnt = tuple(
+        replace(c, confidence=sounded(c.confidence, margin, settings.shift))
+        for c in phrasebook.paraphrased(text)
+    )
+    if phrasebook.learns and not learnt and confidence < NO_TALK:
+        return Say(text, min(confidence, UNSURE), ())
+    if learnt and (learnt[0].confidence >= SURE or learnt[0].confidence >= confidence):
+        near, learnt, confidence = learnt, near, learnt[0].confidence
     if confidence < UNSURE:
         return Say(text, confidence, ())
-    commands = tuple(replace(c, confidence=round(confidence, 3)) for c in found)
-    return Say(text, round(confidence, 3), commands, sure=confidence >= SURE)
+    named = {c.behaviour: c for c in (*reversed(learnt), *reversed(near))}
+    rest = [c for c in (*near, *learnt) if c is named[c.behaviour]]
+    return _said(text, confidence, rest[:MOST_ALTERNATIVES])
+
+
+def _nearest(
+    text: str, margin: float, phrasebook: Phrasebook, settings: EvidenceSettings
+) -> tuple[tuple[Command, ...], float]:
+    """Return the commands whose phrases words come near to, and how likely it is the first."""
+    found = phrasebook.choices(text)
+    if not found:
+        return (), 0.0
+    return found, likelihood(found[0].confidence, phrasebook.known(text), margin, settings.shift)
+
+
+def _said(text: str, confidence: float, commands: Sequence[Command]) -> Say:
+    told = round(confidence, 3)
+    alike = tuple(replace(command, confidence=told) for command in commands)
+    return Say(text, told, alike, sure=confidence >= SURE)
 
 
 def clearly_heard(text: str) -> AcousticEvidence:
@@ -159,6 +186,20 @@ def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0)
     """
     told = OFFSET - shift + CONFIDENCE_WEIGHT * confidence + KNOWN_WEIGHT * min(known, MOST_KNOWN)
     told += MARGIN_WEIGHT * min(MOST_MARGIN, max(LEAST_MARGIN, margin))
+    return 1 / (1 + math.exp(-told))
+
+
+def sounded(likelihood: float, margin: float, shift: float = 0.0) -> float:
+    """Return how likely words are meant so, where they may also have been misheard, 0 to 1.
+
+    Args:
+        likelihood: of the meaning, if the words were said, 0 to 1.
+        margin: see `AcousticEvidence`.
+        shift: see `EvidenceSettings`.
+    """
+    sure = min(max(likelihood, 1e-6), 1 - 1e-6)
+    told = math.log(sure / (1 - sure)) - shift
+    told += DOUBT_WEIGHT * min(0.0, margin - DOUBTED)
     return 1 / (1 + math.exp(-told))
 
 

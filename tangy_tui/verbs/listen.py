@@ -61,7 +61,6 @@ def listen(
     (call_number-3.wav) or that of its folder (call number/3.wav). Everything that is no command is
     named none, noise or speech, or lies in a folder of that name.
     """
-    from tangy_tui.language.commands import Phrasebook
     from tangy_tui.speech.calibration import is_checked, settings_for
 
     if bool(files) + (bench is not None) + (text is not None) + forget_recordings != 1:
@@ -74,7 +73,7 @@ def listen(
         if mic is not None and not is_checked(workspace.store, mic):
             check = f"tangy mic check --mic {shlex.quote(mic)}{as_given(data)}"
             say_notices([f"{mic} was never checked, so the usual settings are used: {check}"])
-        phrasebook = Phrasebook(workspace.activity, workspace.people)
+        phrasebook = workspace.phrasebook()
         if bench is not None:
             _bench(bench, phrasebook, settings, as_json)
         elif text is not None:

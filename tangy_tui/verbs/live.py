@@ -113,7 +113,6 @@ def live(
     """
     from tangy_hw.perception.requests.source_names import read_corners
     from tangy_tui.console.inputs import keys_from_terminal
-    from tangy_tui.language.commands import Phrasebook
     from tangy_tui.learning.policies import need_policy
 
     if INJECT_HELP in (inject or ()):
@@ -164,7 +163,7 @@ def live(
                     ascii_only=ascii_only,
                     ears=listening.ears(
                         workspace,
-                        Phrasebook(workspace.activity, workspace.people),
+                        workspace.phrasebook(),
                         who,
                         sound=sound,
                         spoken=True,

@@ -93,11 +93,10 @@ def _list(workspace: Workspace, as_json: bool) -> None:
 
 def _asked(workspace: Workspace) -> tuple[Phrasebook, Lexicon, list[CalibrationPrompt]]:
     """Return what can be said, what of it can be heard, and what is to be said."""
-    from tangy_tui.language.commands import Phrasebook
     from tangy_tui.speech.lexicon import Lexicon
     from tangy_tui.speech.microphone_check import to_say
 
-    phrasebook = Phrasebook(workspace.activity, workspace.people)
+    phrasebook = workspace.phrasebook()
     lexicon = Lexicon(phrasebook, suggest=lambda word: "")
     return phrasebook, lexicon, to_say(phrasebook, lexicon)
 

@@ -88,7 +88,6 @@ def play(
     With --camera that device is real: cover its lens, and Tangy asks to have it uncovered.
     """
     from tangy_tui.console.inputs import keys_from_terminal
-    from tangy_tui.language.commands import Phrasebook
     from tangy_tui.learning.policies import need_policy
 
     if INJECT_HELP in (inject or ()):
@@ -129,7 +128,7 @@ def play(
                     voice=voice,
                     ears=listening.ears(
                         workspace,
-                        Phrasebook(workspace.activity, workspace.people),
+                        workspace.phrasebook(),
                         who,
                         sound=sound,
                     ),

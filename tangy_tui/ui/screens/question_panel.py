@@ -118,7 +118,7 @@ class AskingPanel(Vertical):
         self._answers = control.answers
         self._supervision = control.supervision
         self._question = question
-        self._phrasebook = Phrasebook(workspace.activity, workspace.people)
+        self._phrasebook = workspace.phrasebook()
         self._acceptable = control.supervision.acceptable
         self._answer: asyncio.Future[Verified | Instead]
         self._answer = asyncio.get_running_loop().create_future()

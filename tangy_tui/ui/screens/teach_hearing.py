@@ -97,7 +97,10 @@ class TeachHearing:
         if self._changed is None and self._people is self._workspace.people:
             return self._teaching.phrasebook
         if self._changed is None or self._present != present:
-            self._present, self._changed = present, Phrasebook(self._teaching.activity, present)
+            self._present, self._changed = (
+                present,
+                Phrasebook(self._teaching.activity, present, self._workspace.intents.model),
+            )
         return self._changed
 
     def refresh(self) -> None:

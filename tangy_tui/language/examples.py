@@ -1,0 +1,168 @@
+"""Sentences from which the understanding of an activity is learnt, made of that activity's words.
+
+They come from templates of how people ask (`asking.toml`), into which each behaviour's phrases,
+question and name are put, and from talk that asks for nothing, with the same words in it. A person
+or seat stands in them as one token, so what is learnt does not depend on who takes part.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from importlib.resources import files
+from itertools import cycle
+from typing import Any, NamedTuple
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
+from tangy_tui.language.words import Words, words_of
+
+SOMEBODY = "somebody0"
+"""Stands for a person or a seat; no text has this word."""
+ASKS = "ask"  # how the question of a behaviour begins that asks a person to do something
+ARTICLES = frozenset(("a", "an", "the", "any", "next", "another"))
+MADE = ARTICLES - {"the"}  # before what a behaviour makes, rather than what it is done to
+EVERY = 3  # each phrase is put into one of so many templates
+
+
+class Example(NamedTuple):
+    """A sentence, and the behaviour that it asks for; "" asks for nothing."""
+
+    words: Words
+    behaviour: str
+
+
+@cache
+def templates() -> Mapping[str, Any]:
+    """Return the templates of how people ask."""
+    content = files("tangy_tui.language").joinpath("asking.toml").read_text(encoding="utf-8")
+    return tomllib.loads(content)
+
+
+def examples_of(activity: Activity) -> tuple[Example, ...]:
+    """Return the sentences to learn an activity from, each once, in a fixed order."""
+    found: dict[Words, str] = {}
+    for behaviour in activity.behaviours.values():
+        for text in _asking(behaviour, activity):
+            found.setdefault(_words(text), behaviour.name)
+    for text in _talk(activity):
+        found.setdefault(_words(text), "")
+    return tuple(Example(words, behaviour) for words, behaviour in found.items() if words)
+
+
+def _asking(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
+    """Yield sentences that ask for a behaviour, its own phrases first."""
+    known = templates()
+    own = own_phrases(behaviour)
+    yield from own
+    for place, phrase in enumerate(own):
+        for form in known["asking"][place % EVERY :: EVERY]:
+            yield _fill(form, do=phrase, doing=_doing(phrase))
+    for thing in _things(behaviour, MADE):
+        for form in known["things"]:
+            yield form.replace("{thing}", thing)
+    yield from _by_effect(behaviour, activity)
+    if _asks(behaviour):
+        yield from _through(behaviour, known)
+    elif behaviour.persuades:
+        them = cycle(known["them"])
+        for phrase in own:
+            for form in known["saying"]:
+                yield _fill(form, do=phrase, them=next(them))
+
+
+def _by_effect(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
+    """Yield sentences that ask for what a behaviour does."""
+    known = templates()
+    goes = behaviour.effect == "go to user"
+    them, sub = cycle(known["them"]), cycle(known["sub"])
+    for form in known["effects"].get(behaviour.effect, ()):
+        for who in (SOMEBODY, *_people(behaviour)) if goes else ("",):
+            for thing in _things(behaviour, MADE) or ("one",):
+                filled = _fill(form, who=who, thing=thing, object=activity.object)
+                yield _fill(filled, them=next(them), sub=next(sub))
+
+
+def _through(behaviour: Behaviour, known: Mapping[str, Any]) -> Iterator[str]:
+    """Yield sentences that have a person do what the behaviour asks for."""
+    them, sub = cycle((*known["them"], SOMEBODY)), cycle(known["sub"])
+    for phrase in own_phrases(behaviour):
+        they = _without_asking(phrase)
+        for form in known["through"]:
+            yield _fill(form, they=they, them=next(them), sub=next(sub))
+
+
+def _talk(activity: Activity) -> Iterator[str]:
+    """Yield sentences that ask for nothing."""
+    talk = templates()["talk"]
+    yield from talk["other"]
+    for behaviour in activity.behaviours.values():
+        phrases = tuple(map(_without_asking, own_phrases(behaviour)))
+        things = _things(behaviour, ARTICLES)
+        for place, form in enumerate(talk["about"]):
+            if "{do}" in form:
+                some = phrases[place % EVERY :: EVERY] or phrases[:1]
+                yield from (form.replace("{do}", phrase) for phrase in some)
+            elif "{thing}" in form:
+                yield from (form.replace("{thing}", thing) for thing in things)
+            elif "{who}" in form:
+                yield form.replace("{who}", SOMEBODY)
+            else:
+                yield form.replace("{object}", activity.object)
+
+
+def own_phrases(behaviour: Behaviour) -> tuple[str, ...]:
+    """Return what the activity itself has for a behaviour: phrases, question, name."""
+    return tuple(dict.fromkeys((*behaviour.phrases, behaviour.question, behaviour.name)))
+
+
+def _asks(behaviour: Behaviour) -> bool:
+    return words_of(behaviour.question)[:1] == (ASKS,)
+
+
+def _without_asking(phrase: str) -> str:
+    words = phrase.split()
+    return " ".join(words[2:]) if words[:2] == [ASKS, "to"] else phrase
+
+
+def _things(behaviour: Behaviour, after: frozenset[str]) -> tuple[str, ...]:
+    """Return the words that stand after an article in the phrases of a behaviour: "joke"."""
+    if behaviour.effect.startswith("go to"):
+        return ()
+    found = (
+        word
+        for phrase in own_phrases(behaviour)
+        for before, word in zip(phrase.split(), phrase.split()[1:], strict=False)
+        if before in after and word not in ARTICLES
+    )
+    return tuple(dict.fromkeys(found))
+
+
+def _people(behaviour: Behaviour) -> tuple[str, ...]:
+    """Return how somebody can be called who is not named: "the player", "her"."""
+    nouns = dict.fromkeys(words_of(phrase)[-1] for phrase in behaviour.phrases)
+    return (*(f"the {noun}" for noun in nouns), *templates()["them"][:3])
+
+
+def _doing(phrase: str) -> str:
+    """Return a phrase as what somebody does now: "telling a joke"."""
+    verb, _, rest = phrase.partition(" ")
+    if verb.endswith("e") and not verb.endswith("ee"):
+        verb = verb[:-1]
+    return f"{verb}ing {rest}".strip()
+
+
+def _fill(form: str, **parts: str) -> str:
+    for name, text in parts.items():
+        form = form.replace(f"{{{name}}}", text)
+    return form
+
+
+def _words(text: str) -> Words:
+    """Split a made sentence as a said one is split."""
+    told: Sequence[str] = text.split(SOMEBODY)
+    words: list[str] = []
+    for place, part in enumerate(told):
+        words += [*([SOMEBODY] if place else []), *words_of(part)]
+    return tuple(words)

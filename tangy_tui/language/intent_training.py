@@ -1,0 +1,63 @@
+"""Learning which behaviour a sentence asks for, from an activity's examples, with scikit-learn.
+
+`python -m tangy_tui.language.intent_training` learns the activities that come with Tangy anew, and
+puts what was learnt beside this module: run it after `asking.toml` or a phrase has changed.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from tangy_tui.language.examples import Example
+from tangy_tui.language.intent_model import IntentModel, features
+
+FEWEST = 3  # examples that a feature is in; rarer ones tell nothing of other sentences
+INVERSE_REGULARISATION = 10.0  # scikit-learn's C
+MOST_STEPS = 120
+DIGITS = 2
+
+
+def train(examples: Sequence[Example]) -> IntentModel:
+    """Fit a model to examples. It takes a few seconds, and is the same each time."""
+    import numpy as np
+    from sklearn.feature_extraction import DictVectorizer
+    from sklearn.linear_model import LogisticRegression
+
+    rows = [features(example.words) for example in examples]
+    seen = Counter(name for row in rows for name in row)
+    kept = [{name: v for name, v in row.items() if seen[name] >= FEWEST} for row in rows]
+    vectorizer = DictVectorizer(dtype=np.float64)
+    table = vectorizer.fit_transform(kept)
+    classifier = LogisticRegression(C=INVERSE_REGULARISATION, max_iter=MOST_STEPS, tol=1e-3)
+    classifier.fit(table, [example.behaviour for example in examples])
+    weights = np.round(classifier.coef_, DIGITS)
+    offsets = classifier.intercept_
+    if len(classifier.classes_) == 2:  # then scikit-learn keeps one row for both
+        weights, offsets = np.vstack([0 * weights, weights]), np.array([0.0, offsets[0]])
+    names = vectorizer.get_feature_names_out()
+    return IntentModel(
+        tuple(map(str, classifier.classes_)),
+        tuple(round(float(one), DIGITS) for one in offsets),
+        {
+            str(name): tuple(map(float, column))
+            for name, column in zip(names, weights.T, strict=True)
+            if column.any()
+        },
+    )
+
+
+def main() -> None:
+    """Learn the activities that come with Tangy anew."""
+    from tangy_profiles.activity import load_activity
+    from tangy_profiles.defaults import DEFAULT_ACTIVITY
+    from tangy_tui.language.intents import SHIPPED, Intents
+
+    SHIPPED.mkdir(exist_ok=True)
+    for old in SHIPPED.glob("*.json"):
+        old.unlink()
+    Intents(SHIPPED).model(load_activity(DEFAULT_ACTIVITY))
+
+
+if __name__ == "__main__":
+    main()

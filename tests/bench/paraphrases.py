@@ -1,0 +1,132 @@
+"""What is understood of ways to ask that no phrasebook has, typed and as if they had been heard.
+
+Run by hand: `python -m tests.bench.paraphrases`. The sentences of `sentences.py` at even places set
+the limits of `paraphrases` and `understanding`, the others are quoted; `--staff` counts the set of
+`staff_sayings.toml`, which chose nothing. `--phrases` counts phrases and keywords alone, and
+`--show` lists what went wrong (of the sentences that set limits only).
+"""
+
+from __future__ import annotations
+
+import argparse
+import tomllib
+from collections import Counter
+from pathlib import Path
+from typing import NamedTuple
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.person import load_people
+from tangy_profiles.room import load_room
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.intents import Intents
+from tangy_tui.language.paraphrases import SURE
+from tangy_tui.learning.verification import Say, StopCommand
+from tangy_tui.speech.evidence import USUAL
+from tangy_tui.speech.understanding import clearly_heard, understand
+from tests.bench.sentences import FAR, NEAR, WORDINGS
+
+STAFF = Path(__file__).parent / "staff_sayings.toml"
+OUTCOMES = ("right", "offered", "wrong", "misled", "nothing")
+
+
+class Sentence(NamedTuple):
+    """A sentence of a kind, and what it asks for: a behaviour ("" is nothing) and a person."""
+
+    kind: str
+    text: str
+    behaviour: str
+    user: str | None = None
+
+
+def written_sentences(half: int) -> list[Sentence]:
+    """Return every second sentence of `sentences.py`, from the first or the second on."""
+    asked = [Sentence("paraphrase", text, meant) for text, meant in WORDINGS.items()]
+    others = [[Sentence(kind, text, "") for text in texts] for kind, texts in
+              (("near", NEAR), ("other", FAR))]  # fmt: skip
+    return [one for listed in (asked, *others) for one in listed[half::2]]
+
+
+def staff_sentences() -> list[Sentence]:
+    """Return the sentences of the set that chose nothing."""
+    read = tomllib.loads(STAFF.read_text(encoding="utf-8"))
+    found = [
+        Sentence("paraphrase", text, behaviour)
+        for behaviour, texts in read["requests"].items()
+        for text in texts
+    ]
+    found += [
+        Sentence("visit", text, "navigate to user", f"user{visit['person']}")
+        for visit in read["visits"]
+        for text in visit["says"]
+    ]
+    return found + [Sentence(k, text, "") for k, texts in read["talk"].items() for text in texts]
+
+
+def spoken(sentence: Sentence, book: Phrasebook) -> str:
+    """Judge what the spoken door makes of a sentence that was heard clearly."""
+    said = understand(clearly_heard(sentence.text), book, USUAL)
+    if isinstance(said, StopCommand):
+        return "wrong"
+    commands = said.commands or ()
+    meant = [_fits(sentence, c.behaviour, c.arguments.get("user")) for c in commands]
+    return _judged(meant, sure=said.sure)
+
+
+def typed(sentence: Sentence, book: Phrasebook) -> str:
+    """Judge what the typed door makes of a sentence."""
+    command = book.understand(sentence.text)
+    if command is None:
+        return "nothing"
+    first = _fits(sentence, command.behaviour, command.arguments.get("user"))
+    others = [_fits(sentence, name, None) for name in command.alternatives]
+    sure = command.confidence >= SURE or not book.learns
+    return _judged([first, *others], sure=sure)
+
+
+def _fits(sentence: Sentence, behaviour: str, user: str | None) -> bool:
+    return (behaviour, sentence.user or user) == (sentence.behaviour, user)
+
+
+def _judged(meant: list[bool], *, sure: bool) -> str:
+    if not meant:
+        return "nothing"
+    if sure:
+        return "right" if meant[0] else "wrong"
+    return "offered" if any(meant) else "misled"
+
+
+def table(sentences: list[Sentence], book: Phrasebook, *, show: bool = False) -> None:
+    """Print how many of each kind are right, offered, wrong and so on."""
+    for door in (spoken, typed):
+        counts: dict[str, Counter[str]] = {}
+        for one in sentences:
+            outcome = door(one, book)
+            counts.setdefault(one.kind, Counter())[outcome] += 1
+            if show and outcome != ("right" if one.behaviour else "nothing"):
+                said = understand(clearly_heard(one.text), book, USUAL)
+                meant = [c.behaviour for c in said.commands or ()] if isinstance(said, Say) else []
+                print(f"  {door.__name__} {outcome}: {one.text} ({one.behaviour}): {meant}")
+        for kind, count in counts.items():
+            told = "  ".join(f"{name} {count[name]:3}" for name in OUTCOMES)
+            print(f"{door.__name__:8}{kind:12} n {count.total():3}  {told}")
+
+
+def main() -> None:
+    """Print the tables."""
+    options = argparse.ArgumentParser(description="Measure what is understood of paraphrases.")
+    options.add_argument("--staff", action="store_true")
+    options.add_argument("--phrases", action="store_true")
+    options.add_argument("--show", action="store_true")
+    chosen = options.parse_args()
+    learnt = None if chosen.phrases else Intents().model
+    book = Phrasebook(load_activity("bingo"), load_room().placed(load_people(4)), learnt)
+    if chosen.staff:
+        table(staff_sentences(), book)
+        return
+    for name, half in (("set the limits", 0), ("quoted", 1)):
+        print(name)
+        table(written_sentences(half), book, show=chosen.show and half == 0)
+
+
+if __name__ == "__main__":
+    main()

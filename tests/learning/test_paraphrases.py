@@ -1,0 +1,152 @@
+"""What is no phrase is understood by what was learnt, or offered, or left alone."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.person import Person, load_people
+from tangy_profiles.room import load_room
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.examples import SOMEBODY, examples_of
+from tangy_tui.language.intent_model import IntentModel, UnreadableModel, read_model
+from tangy_tui.language.intents import SHIPPED, Intents, digest_of
+from tangy_tui.language.mentions import Mentions
+from tangy_tui.language.words import words_of
+from tangy_tui.speech.evidence import USUAL
+from tangy_tui.speech.understanding import clearly_heard, understand
+from tests.support.understood import behaviour_of
+
+BINGO = load_activity("bingo")
+PEOPLE = load_room().placed([*load_people(3), Person("user4", "Rosa")])
+BOOK = Phrasebook(BINGO, PEOPLE, Intents().model)
+
+REQUESTS = [
+    ("encourage them", "encourage"),
+    ("ask for the card", "move card closer"),
+    ("do you know any jokes", "joke"),
+    ("please let us have another joke", "joke"),
+    ("would you say hello to all of them", "greeting"),
+    ("could you draw another number", "call number"),
+    ("tell her to take the wrong markers off", "remove markers"),
+]
+VISITS = [
+    ("player one needs a hand", "user1"),
+    ("please check on player two", "user2"),
+    ("the third player has a question", "user3"),
+    ("rosa needs help", "user4"),
+    ("see what rosa wants", "user4"),
+    ("go over to the person in seat one", "user1"),
+]
+
+
+@pytest.mark.parametrize(("text", "behaviour"), REQUESTS)
+def test_requests_in_other_words_are_understood_at_both_doors(text: str, behaviour: str) -> None:
+    typed = BOOK.understand(text)
+    assert typed is not None and typed.behaviour == behaviour
+    assert behaviour_of(understand(clearly_heard(text), BOOK, USUAL)) == behaviour
+
+
+@pytest.mark.parametrize(("text", "user"), VISITS)
+def test_whom_to_go_to_is_found_in_other_words_too(text: str, user: str) -> None:
+    found = BOOK.understand(text)
+    assert found is not None
+    assert (found.behaviour, dict(found.arguments)) == ("navigate to user", {"user": user})
+
+
+@pytest.mark.parametrize("name", list(BINGO.behaviours))
+def test_the_names_of_behaviours_are_understood_at_both_doors(name: str) -> None:
+    typed = BOOK.understand(name)
+    assert typed is not None and typed.behaviour == name
+    assert behaviour_of(understand(clearly_heard(name), BOOK, USUAL)) == name
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "they moved the room upstairs",
+        "don't call the next number",
+        "please do not tell a joke",
+        "did she celebrate her birthday",
+        "go to user 9",
+        "go to user 1 and user 2",
+        "the tea is too hot",
+        "",
+        "\u0000 \u202e",
+    ],
+)
+def test_other_talk_asks_for_nothing(text: str) -> None:
+    said = understand(clearly_heard(text), BOOK, USUAL)
+    assert behaviour_of(said) is None
+
+
+def test_phrases_count_as_they_did_before_anything_was_learnt() -> None:
+    plain = Phrasebook(BINGO, PEOPLE)
+    for phrase in plain.phrases:
+        assert BOOK.understand(phrase) == plain.understand(phrase)
+
+
+def test_an_activity_that_nobody_has_seen_is_learnt_from_its_own_words(
+    lanterns: Activity, tmp_path: Path
+) -> None:
+    intents = Intents(tmp_path)
+    book = Phrasebook(lanterns, PEOPLE, intents.model)
+    for behaviour in lanterns.behaviours.values():
+        if behaviour.effect == "none":
+            found = book.understand(f"it is time to {behaviour.phrases[0]} I think")
+            assert found is not None and found.behaviour == behaviour.name
+    assert len(list(tmp_path.glob("*.json"))) == 1
+
+
+def test_what_was_learnt_is_read_again_and_believed_only_if_it_fits(
+    lanterns: Activity, tmp_path: Path
+) -> None:
+    model = Intents(tmp_path).model(lanterns)
+    (kept,) = tmp_path.glob("*.json")
+    assert Intents(tmp_path).model(lanterns) == model
+    kept.write_text('{"behaviours": ["a"], "offsets": [0.0, 1.0], "weights": {}}')
+    assert Intents(tmp_path).model(lanterns) == model
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"behaviours":["a"],"offsets":["x"]}', "[[[["])
+def test_what_is_no_model_is_refused(text: str) -> None:
+    with pytest.raises(UnreadableModel):
+        read_model(text)
+
+
+def test_what_comes_with_tangy_was_learnt_from_the_words_that_come_with_it() -> None:
+    assert (SHIPPED / f"{digest_of(BINGO)}.json").exists(), (
+        "run: python -m tangy_tui.language.intent_training"
+    )
+
+
+def test_other_words_make_another_digest() -> None:
+    greeting = BINGO.behaviours["greeting"]
+    other = replace(greeting, phrases=(*greeting.phrases, "hi all"))
+    changed = replace(BINGO, behaviours={**BINGO.behaviours, "greeting": other})
+    assert digest_of(changed) != digest_of(BINGO)
+
+
+def test_a_model_is_written_as_it_is_read() -> None:
+    model = IntentModel(("", "a"), (0.0, 1.5), {"b": (0.25, -1.0)})
+    assert read_model(model.to_json()) == model
+    assert json.loads(model.to_json())["behaviours"] == ["", "a"]
+
+
+def test_each_example_stands_once_and_asks_for_a_behaviour_or_nothing() -> None:
+    examples = examples_of(BINGO)
+    assert len({one.words for one in examples}) == len(examples)
+    assert {one.behaviour for one in examples} == {"", *BINGO.behaviours}
+
+
+def test_a_mention_is_one_token_whoever_it_is() -> None:
+    mentions = Mentions(BOOK.table, BOOK.nouns)
+    for who in ("user 2", "the second player", "user number two", "user 2's", "user two's"):
+        found = mentions.find(words_of(f"look at {who} card"))
+        assert found.words == ("look", "at", SOMEBODY, "card")
+        assert found.users == {"user2"}
+    assert mentions.find(words_of("look at user 9")).strangers
