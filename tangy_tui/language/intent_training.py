@@ -49,14 +49,14 @@ def train(examples: Sequence[Example]) -> IntentModel:
 
 def main() -> None:
     """Learn the activities that come with Tangy anew."""
-    from tangy_profiles.activity import load_activity
-    from tangy_profiles.defaults import DEFAULT_ACTIVITY
+    from tangy_profiles.activity import load_activity, shipped_activities
     from tangy_tui.language.intents import SHIPPED, Intents
 
     SHIPPED.mkdir(exist_ok=True)
     for old in SHIPPED.glob("*.json"):
         old.unlink()
-    Intents(SHIPPED).model(load_activity(DEFAULT_ACTIVITY))
+    for name in shipped_activities():
+        Intents(SHIPPED).model(load_activity(name))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.activity import Activity, load_activity, shipped_activities
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.room import load_room
 from tangy_tui.language.commands import Phrasebook
@@ -118,8 +118,9 @@ def test_what_is_no_model_is_refused(text: str) -> None:
         read_model(text)
 
 
-def test_what_comes_with_tangy_was_learnt_from_the_words_that_come_with_it() -> None:
-    assert (SHIPPED / f"{digest_of(BINGO)}.json").exists(), (
+@pytest.mark.parametrize("name", list(shipped_activities()))
+def test_what_comes_with_tangy_was_learnt_from_the_words_that_come_with_it(name: str) -> None:
+    assert (SHIPPED / f"{digest_of(load_activity(name))}.json").exists(), (
         "run: python -m tangy_tui.language.intent_training"
     )
 
