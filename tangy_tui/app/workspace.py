@@ -26,6 +26,7 @@ from tangy_profiles.voice import VoicePreference
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 from tangy_tui.app.user_settings import read_settings
+from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.intents import Intents
 
 if TYPE_CHECKING:
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from tangy_tui.interaction.memory import PersonModels
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.interaction.record import Record
-    from tangy_tui.language.commands import Phrasebook
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_events import Again
     from tangy_tui.learning.teaching_session import TeachingSession
@@ -226,8 +226,6 @@ class Workspace:
 
     def phrasebook(self) -> Phrasebook:
         """Make what is understood of those who take part, said or typed."""
-        from tangy_tui.language.commands import Phrasebook
-
         return Phrasebook(self.activity, self.people, self.intents.model)
 
     def teaching(

@@ -27,7 +27,7 @@ LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
 MOST_KNOWN = 3
 SURE = 0.6
 UNSURE = 0.35
-DOUBT_WEIGHT, DOUBTED = 2.0, 0.0
+DOUBT_WEIGHT, DOUBTED = 4.5, 0.0
 """How much less likely a paraphrase is, in logits a unit of the margin, below some margin."""
 NO_TALK = 0.9  # likelihood of a near phrase from which words are no other talk, whatever was learnt
 SMALL_MARGIN = -0.25  # below it a whole phrase explains the sound better than other words do
