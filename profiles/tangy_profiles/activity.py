@@ -16,6 +16,7 @@ from os.path import isdir
 from pathlib import Path
 from types import MappingProxyType
 
+from tangy_profiles.asking_limits import AskingLimits, read_asking_limits
 from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
 from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
 from tangy_profiles.declared.vocabulary import declares
@@ -76,6 +77,7 @@ class Activity:
     """The strategies that are not used any more in a visit in which a person has refused."""
     names_pressing: bool = False
     """Whether the file says which strategies press people, or that none does."""
+    asking: AskingLimits = field(default_factory=AskingLimits)
 
     @cached_property
     def unread(self) -> str:
@@ -281,6 +283,7 @@ def read_activity(path: Path) -> Activity:
         listening=listening.choice("mode", LISTENING, LISTENING[0]),
         names_pressing="pressing_strategies" in top,
         pressing=_pressing(top, strategies),
+        asking=read_asking_limits(top),
     )
     listening.close()
     top.close()

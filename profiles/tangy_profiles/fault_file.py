@@ -118,6 +118,7 @@ def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRul
         solved=entry.choice("solved", SOLVED, SOLVED[0]),
         bearable=entry.flag("bearable", False),
         aloud=_text(entry, "aloud", optional=True),
+        aloud_again=_text(entry, "aloud_again", optional=True),
         image=_text(entry, "image", optional=True),
         fallback=fallback,
     )

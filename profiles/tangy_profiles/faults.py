@@ -45,6 +45,7 @@ CONTEXT: Mapping[str, str] = MappingProxyType(
 SYMPTOMS: Mapping[str, str] = MappingProxyType(
     {
         "person.refusals": "how often in a row a person did not follow",
+        "person.spent": "whether a person was asked as often as the activity allows",
         "visit.fruitless": "behaviours in a row after which nothing had changed",
         "situation.shown": "whether a teacher has shown what to do in the situation",
         **{f"mismatch.{name}": f"an unexpected value of: {name}" for name in VARIABLES},
@@ -149,6 +150,7 @@ class FaultRule:
     solved: str = SOLVED[0]
     bearable: bool = False
     aloud: str = ""
+    aloud_again: str = ""
     image: str = ""
     fallback: bool = False
 

@@ -18,7 +18,10 @@ from tangy_profiles.state import ActivityState, Variable
 
 @kind("game begun")
 class GameBeginning(EventRecord):
-    """A game begins, by the policy of that digest. The first logs do not name the `world`."""
+    """A game begins, by the policy of that digest. The first logs do not name the `world`.
+
+    `asks_in_visit` and `asks_in_game` say how often a person may be asked in vain; 0: not logged.
+    """
 
     game: str
     number: Count = 0
@@ -27,6 +30,8 @@ class GameBeginning(EventRecord):
     seed: int = 0
     people: tuple[str, ...]
     world: Sparse[GameWorld | None] = None
+    asks_in_visit: Sparse[Count] = 0
+    asks_in_game: Sparse[Count] = 0
 
 
 @kind("game world set")

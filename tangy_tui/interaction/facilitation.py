@@ -126,6 +126,8 @@ class Facilitation:
         self._game = ""
         self._refused: str | None = None
         """Who has refused a request in the present visit."""
+        self._said: tuple[str, str, str] | None = None
+        """To whom what was said last in this visit, and by which strategy."""
 
     def begin(self) -> list[GameEvent]:
         """Begin the next game."""
@@ -136,7 +138,7 @@ class Facilitation:
         self.steps = 0
         self.over = False
         self.question = None
-        self._refused = None
+        self._refused = self._said = None
         self._store.append(
             GameBeginning(
                 game=self._game,
@@ -146,6 +148,8 @@ class Facilitation:
                 seed=self._seed,
                 people=tuple(self.world.people),
                 world=self.world.played_in,
+                asks_in_visit=self._activity.asking.visit,
+                asks_in_game=self._activity.asking.game,
             )
         )
         return [GameBegun(self._game, self.games, state)]
@@ -306,7 +310,10 @@ class Facilitation:
         choice = None
         if behaviour.persuades and target is not None:
             without = activity.pressing if self._refused == target else ()
-            choice = self.persuasion.choose(self.world.who(target), without)
+            same = self._said is not None and self._said[:2] == (target, behaviour.name)
+            again = self._said[2] if same and self._said is not None else None
+            choice = self.persuasion.choose(self.world.who(target), without, again=again)
+            self._said = (target, behaviour.name, choice.strategy)
         action = activity.action(behaviour, target, choice.strategy if choice else None)
         _LOG.info("%s for %s begins", behaviour.name, target or "everybody")
         outcome = self.world.execute(action)
@@ -318,7 +325,7 @@ class Facilitation:
             *("done" if outcome.completed else "not done", outcome.seconds),
         )
         if state.place != after.place:
-            self._refused = None
+            self._refused = self._said = None
         elif refused(behaviour, state, outcome, after):
             self._refused = target
         expected = activity.expected.get(state.situation, behaviour.name)

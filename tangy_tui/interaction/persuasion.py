@@ -86,12 +86,15 @@ class Persuasion:
             self.beliefs[person] = known.beliefs
         return self.beliefs[person]
 
-    def choose(self, person: str, without: Collection[str] = ()) -> StrategyChoice:
+    def choose(
+        self, person: str, without: Collection[str] = (), *, again: str | None = None
+    ) -> StrategyChoice:
         """Choose the strategy to persuade a person with, among those that are switched on.
 
         Args:
             person: who is to be persuaded.
             without: strategies that are out of place now, whatever is switched on.
+            again: the strategy by which the very same was said last: another is taken, if any.
         """
         known = self._known[person]
         self._fade(person, known)
@@ -100,6 +103,8 @@ class Persuasion:
         if known.off or without:  # an activity may share no strategy with those that are left on
             fitting = {s: b for s, b in beliefs.items() if s not in without} or beliefs
             usable = {s: b for s, b in fitting.items() if s not in known.off} or fitting
+        if again in usable and len(usable) > 1:
+            usable = {s: b for s, b in usable.items() if s != again}
         draws = known.method.scores(usable, self._rng)
         return StrategyChoice(person, self._highest(draws), draws, beliefs, known.method.words)
 

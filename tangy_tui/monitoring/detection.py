@@ -53,6 +53,7 @@ class Detector:
         self._activity = activity
         self._robot = robot
         self._refusals: Counter[str] = Counter()
+        self._in_game: Counter[str] = Counter()
         self._fruitless = 0
         self._last: ActivityState | None = None
         self._health: Health | None = None
@@ -61,17 +62,34 @@ class Detector:
     def begin(self) -> None:
         """Forget what the last game had."""
         self._refusals.clear()
+        self._in_game.clear()
         self._fruitless = 0
         self._last = None
 
     def refused(self, person: str) -> int:
-        """Count that a person did not do what Tangy asked for aloud; return how often in a row."""
+        """Count that a person did not do what they were asked; return how often in a row."""
         self._refusals[person] += 1
+        self._in_game[person] += 1
         return self._refusals[person]
 
-    def refusals(self, person: str) -> int:
-        """Return how often in a row a person did not do what they were asked."""
-        return self._refusals[person]
+    @property
+    def spent(self) -> bool:
+        """Whether anybody was asked in vain as often as the activity allows in a game."""
+        return any(map(self.spent_for_game, self._in_game))
+
+    def spent_for_game(self, person: str | None) -> bool:
+        """Say whether a person was asked in vain as often as the activity allows in a game."""
+        return person is not None and self._in_game[person] >= self._activity.asking.game
+
+    def refusals(self, person: str | None) -> dict[str, Fact]:
+        """Return the evidence of how often a person did not do what they were asked."""
+        if person is None:
+            return {}
+        times, spent = self._refusals[person], self.spent_for_game(person)
+        found: dict[str, Fact] = {"person.refusals": times} if times or spent else {}
+        if spent or times >= self._activity.asking.visit:
+            found["person.spent"] = True
+        return found
 
     def forgive(self, person: str | None) -> None:
         """Begin anew to count what a person does not do."""
@@ -131,9 +149,8 @@ class Detector:
         self._last = acted.after
         evidence: dict[str, Fact] = {f"mismatch.{one.variable}": one.seen for one in found}
         self._count(acted, explained)
-        person = acted.state.attended
-        if person is not None and self._refusals[person]:
-            evidence["person.refusals"] = self._refusals[person]
+        if self._refusals[str(acted.state.attended)]:
+            evidence |= self.refusals(acted.state.attended)
         if self._fruitless:
             evidence["visit.fruitless"] = self._fruitless
         if evidence:
@@ -195,9 +212,9 @@ class Detector:
             if outcome.response.followed:
                 self._refusals.pop(person, None)
             else:
-                self._refusals[person] += 1
+                self.refused(person)
         elif not explained and refused(acted.action.behaviour, before, outcome, after):
-            self._refusals[str(before.attended)] += 1
+            self.refused(str(before.attended))
         alike = after._replace(step=before.step, closed=before.closed) == before
         moved_on = before.attended is None and bool(outcome.numbers)  # a number was called
         self._fruitless = self._fruitless + 1 if alike and not moved_on else 0

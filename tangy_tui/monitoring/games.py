@@ -50,6 +50,10 @@ class Game:
     last_seq: int | None
     stopped: str | None
     world: GameWorld = SIMULATED
+    asks: tuple[int, int] = (0, 0)
+    """How often a person could be asked in vain, in a visit and in the game; 0: not logged."""
+    pauses: tuple[int, float] = (0, 0.0)
+    """How often the robot waited for late data, and for how many s."""
 
     @property
     def smooth(self) -> bool:
@@ -79,6 +83,9 @@ class Game:
             "stopped": self.stopped,
             "ending": self.ending,
             "world": self.world,
+            "asks_in_visit": self.asks[0],
+            "asks_in_game": self.asks[1],
+            "pauses": {"count": self.pauses[0], "seconds": self.pauses[1]},
         }
 
 
@@ -157,6 +164,8 @@ def _game(
         last_seq=None if end is None else end.seq,
         stopped=None if ending is None else ending.stopped,
         world=world,
+        asks=(begun.asks_in_visit, begun.asks_in_game),
+        pauses=(0, 0.0) if ending is None else (ending.pauses, ending.paused_seconds),
     )
 
 

@@ -174,9 +174,10 @@ class Recovery:
                 return self.halt_if_critical()
 
     def _ask_user(self, fault: Fault, rule: FaultRule) -> list[Event]:
-        speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
         self._tried[fault.id] += 1
         attempt = self._tried[fault.id]
+        aloud = rule.aloud if attempt % 2 else rule.aloud_again or rule.aloud
+        speech, image = self._text(fault, aloud), self._text(fault, rule.image)
         move = RecoveryEvent("asked", self.seconds, attempt=attempt, speech=speech, image=image)
         told = self.move(fault, move)
         self.remedy(fault, "ask", move.called(fault.called))

@@ -187,6 +187,8 @@ class Supervision:
             return told + self._stop(f"The game did not end within {MOST_STEPS} steps.")
         if not self.game.asks:
             told += self._watch.foresee()
+        if spared := self._watch.spare():
+            return told + spared
         stops = self._stops
         events = self.game.step()
         told += self._watch.after(events, ordered=self._stops != stops)

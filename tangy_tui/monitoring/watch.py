@@ -98,10 +98,25 @@ class FaultWatch:
     def refused(self, fault: Fault) -> list[Event]:
         """See, after a person was asked for help, whether they are to be asked no more."""
         person = fault.person
-        if person is None or self._game.over:
+        asked = any(move.kind == "asked" for move in fault.moves)
+        if person is None or self._game.over or not asked:
             return []
-        times = self._detector.refusals(person)
-        return self._take(diagnose(self.book, {"person.refusals": times}), None, person)
+        return self._take(diagnose(self.book, self._detector.refusals(person)), None, person)
+
+    def spare(self) -> list[Event]:
+        """Leave a person in peace who would be asked once more than the activity allows."""
+        if not self._detector.spent:
+            return []
+        state = self._game.world.observe()
+        person = state.attended
+        if not self._detector.spent_for_game(person):
+            return []
+        behaviours = self._game.world.activity.behaviours
+        behaviour = behaviours.get(self._game.policy.decide(state.situation).behaviour)
+        asks = behaviour is not None and behaviour.persuades and behaviour.effect != "none"
+        if not asks or state.place != person:
+            return []
+        return self._take(diagnose(self.book, self._detector.refusals(person)), None, person)
 
     def foresee(self) -> list[Event]:
         """Where nobody can be asked, say why the game is about to end: nobody has shown this."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tangy_profiles.activity import Activity, StageRule
+from tangy_profiles.asking_limits import GAME, VISIT
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.errors import ProfileError
@@ -47,6 +48,7 @@ def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -
     mistakes += _sounds(activity, phrasebook)
     warnings = [
         *_pressing(activity),
+        *_asking(activity),
         *_stages(activity),
         *_unused(activity, phrasebook),
         *_near(activity, phrasebook),
@@ -64,6 +66,13 @@ def _pressing(activity: Activity) -> Iterator[str]:
             f"{activity.source}: pressing_strategies is not there: after a refusal Tangy still uses"
             f" {', '.join(used)}. Name those that press people, or [] if none does."
         )
+
+
+def _asking(activity: Activity) -> Iterator[str]:
+    """Tell how often people are asked in vain, where the file does not say it."""
+    if not activity.asking.named:
+        asking = activity.asking
+        yield f"{activity.source}: {VISIT}, {GAME}: not given, so {asking.visit} and {asking.game}"
 
 
 def _stages(activity: Activity) -> Iterator[str]:

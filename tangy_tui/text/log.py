@@ -124,6 +124,7 @@ def session_lines(session: Session) -> Iterator[str]:
     yield ""
     for person in session.people:
         yield _person_line(person)
+    yield from limits_lines(session.games)
     if session.look_after:
         yield ""
         yield "To look after:"
@@ -131,6 +132,20 @@ def session_lines(session: Session) -> Iterator[str]:
             yield f"  {told[0]}"
             yield from (f"    - {step}" for step in told[1])
     yield from session.notes
+
+
+def limits_lines(games: Sequence[Game]) -> Iterator[str]:
+    """Say how often people could be asked in vain, and how often a robot waited for late data."""
+    limits = dict.fromkeys(game.asks for game in games if game.asks != (0, 0))
+    for visit, most in limits:
+        yield (
+            f"Nobody was to be asked in vain more than {counted(visit, 'time')} in a visit, "
+            f"and {counted(most, 'time')} in a game."
+        )
+    pauses, seconds = sum(g.pauses[0] for g in games), sum(g.pauses[1] for g in games)
+    if pauses:
+        times = counted(pauses, "time")
+        yield f"The robot waited for late data {times}, for {seconds:.1f} s in all."
 
 
 def _games_lines(games: Sequence[Game]) -> Iterator[str]:

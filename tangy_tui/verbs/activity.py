@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.asking_limits import GAME, VISIT
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
@@ -196,12 +197,17 @@ def _activity_document(name: str, activity: Activity) -> dict[str, Any]:
     }
 
 
+def _asking_document(activity: Activity) -> dict[str, int]:
+    return {VISIT: activity.asking.visit, GAME: activity.asking.game}
+
+
 def _checked_document(checked: CheckedFile, activity: Activity | None) -> dict[str, Any]:
     told = {} if activity is None else _activity_document(activity.name, activity)
     return {
         **told,
         "file": checked.file,
         "kind": "activity",
+        **({} if activity is None else _asking_document(activity)),
         "mistakes": list(checked.mistakes),
         "warnings": list(checked.warnings),
     }

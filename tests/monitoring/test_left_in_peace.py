@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
+from itertools import pairwise
 from random import Random
 
 import pytest
 
+from tangy_profiles.asking_limits import AskingLimits
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.robot import load_robot
 from tangy_profiles.state import FRONT
 from tangy_sim.worlds import faulty_world
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.monitoring.fault import Moved
+from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.supervision import Event
 from tests.monitoring.conftest import Supervise
 from tests.support.games import codes, ended, play
@@ -107,3 +114,84 @@ def test_a_choice_can_leave_out_strategies_that_are_out_of_place() -> None:
     people = Persuasion(["a"], ["calm", "pressing"], Random(1))
     assert {people.choose("a", ["pressing"]).strategy for _ in range(50)} == {"calm"}
     assert {people.choose("a").strategy for _ in range(50)} == {"calm", "pressing"}
+
+
+def asked(events: list[Event], person: str) -> int:
+    """Count what a person was asked for in vain in a game, by behaviours and aloud."""
+    found = 0
+    for event in events:
+        if isinstance(event, Acted):
+            response, behaviour = event.outcome.response, event.action.behaviour
+            asks = behaviour.persuades and behaviour.effect != "none"
+            here = event.state.attended == person == event.after.place
+            found += asks and here and not (response and response.followed)
+        elif isinstance(event, Moved) and event.move.kind == "asked":
+            found += event.fault.person == person
+    return found
+
+
+@pytest.mark.parametrize("seed", range(1, 13))
+def test_nobody_is_asked_in_vain_more_than_six_times_in_a_game(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
+    game = supervise("never-complies@4", "card-out-of-sight~1", seed=seed)
+    events = play(game)
+    most = max(asked(events, person) for person in game.world.people)
+    assert most <= game.world.activity.asking.game
+    assert ended(events).stopped is None
+
+
+def test_an_activity_can_ask_less_often(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
+    for seed in range(1, 9):
+        game = supervise("card-out-of-sight~1", seed=seed)
+        limits = AskingLimits(visit=2, game=3)
+        activity = replace(game.world.activity, asking=limits)
+        monkeypatch.setattr(game._detector, "_activity", activity)
+        events = play(game)
+        assert max(Counter(visit for visit, _ in in_vain(events)).values(), default=0) <= 2
+        assert max(asked(events, person) for person in game.world.people) <= 3
+
+
+def test_nobody_hears_the_same_sentence_twice_in_a_row(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
+    pairs = 0
+    for seed in range(1, 13):
+        said: list[tuple[int, str]] = []
+        visit = 0
+        for event in play(supervise("never-complies@8", "card-out-of-sight~.3", seed=seed)):
+            if isinstance(event, Acted):
+                visit += event.state.place != event.after.place
+                if event.action.target is not None and event.action.behaviour.persuades:
+                    said.append((visit, event.speech))
+            elif isinstance(event, Moved) and event.move.kind == "asked" and event.fault.person:
+                said.append((visit, event.move.speech))
+        pairs += sum(one[0] == two[0] for one, two in pairwise(said))
+        assert not [one for one, two in pairwise(said) if one == two]
+    assert pairs > 20
+
+
+def test_what_is_switched_off_stays_off_where_the_same_would_be_said_again() -> None:
+    people = Persuasion(["a"], ["calm", "pressing", "kind"], Random(1))
+    assert {people.choose("a", ["pressing"], again="kind").strategy for _ in range(50)} == {"calm"}
+    chosen = {people.choose("a", ["pressing", "calm"], again="kind").strategy for _ in range(50)}
+    assert chosen == {"kind"}  # there is no other way of saying it
+
+
+def test_what_the_robot_asks_for_more_than_once_can_be_said_in_two_ways() -> None:
+    rules = load_faults(load_robot()).rules
+    again = [rule for rule in rules if "user" in rule.recovery and rule.tries > 1]
+    assert again and all(rule.aloud_again not in ("", rule.aloud) for rule in again)
+
+
+def test_the_log_says_how_often_people_may_be_asked(
+    supervise: Supervise, workspace: Workspace
+) -> None:
+    play(supervise())
+    (game,) = read_games(workspace.store)
+    assert game.asks == (3, 6)

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tangy_profiles.activity import Activity, StageRule
+from tangy_profiles.asking_limits import AskingLimits
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.cards import CardState, Deck
 from tangy_profiles.declared.model import Declaration, DeclaredBehaviour, Expectation
@@ -136,6 +137,7 @@ def _with_expected(
         source=declaration.source,
         pronunciations=MappingProxyType(dict(declaration.pronunciations)),
         names_pressing=True,
+        asking=AskingLimits(named=True),
         declaration=declaration,
     )
 

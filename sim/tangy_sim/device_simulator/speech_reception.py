@@ -64,8 +64,8 @@ class SpeechReception:
             for strategy, text in behaviour.speech.items():
                 self._patterns.append(_Pattern(_pattern(text, slots), behaviour, strategy, ""))
         for rule in load_faults(robot).rules:
-            if rule.aloud:
-                self._patterns.append(_Pattern(_pattern(rule.aloud, slots), None, "", rule.code))
+            for text in filter(None, (rule.aloud, rule.aloud_again)):
+                self._patterns.append(_Pattern(_pattern(text, slots), None, "", rule.code))
 
     def hear(self, text: str) -> Heard | None:
         """Understand a sentence; None: it is none that people know."""
