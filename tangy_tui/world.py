@@ -9,6 +9,7 @@ from tangy_profiles.behaviour import Action
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.health import Health
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import ActivityState, Outcome
 
@@ -35,6 +36,14 @@ class World(Protocol):
 
     def begin(self) -> ActivityState:
         """Begin a new game and return its first state."""
+        ...
+
+    def resume(self, past: PastGame) -> ActivityState:
+        """Go on where a game was interrupted; return the state that it was in.
+
+        Raises:
+            NotResumable: its log does not lead there.
+        """
         ...
 
     def observe(self) -> ActivityState:

@@ -53,6 +53,15 @@ def _state_of_a_game(value: Any) -> ActivityState:
 GameState: TypeAlias = Annotated[ActivityState, By(_state_of_a_game)]
 
 
+@kind("game resumed")
+class GameResumed(EventRecord):
+    """A game that was interrupted goes on, after so many steps."""
+
+    game: str
+    steps: Count
+    by: str = ""
+
+
 @kind("game step")
 class GameStep(EventRecord):
     """A behaviour was executed: how it was chosen, and what was seen before and `after`.
@@ -231,13 +240,14 @@ class AcceptanceTakenBack(EventRecord):
 class StaffAction(EventRecord):
     """Staff did what is neither a behaviour nor a move: stopped the robot, brought a fault about.
 
-    `seconds` is the time in the game.
+    `seconds` is the time in the game, `taken_back` the number of a call that counts no more.
     """
 
     game: str
     what: str
     by: str
     seconds: float | None = None
+    taken_back: Sparse[Count] = 0
 
 
 @kind("drill")

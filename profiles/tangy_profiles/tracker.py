@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.activity import Activity, StageRule
 from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.game_records import GameStep
 from tangy_profiles.state import FRONT, ActivityState, Request, Situation, UserState
 
 READS = ("beside requester",)
@@ -116,6 +117,41 @@ class Tracker:
             self.queue.remove(self.place)
             self.closed = self.place
             self.seen = None
+
+    def follow(self, step: GameStep) -> bool:
+        """Take over a step from the log; return whether this leads to the state after it.
+
+        A behaviour that was carried out in vain is not counted: that shows in the state alone.
+        """
+        behaviour, after = self._activity.behaviours.get(step.behaviour), step.after
+        if behaviour is None or after is None:
+            return False
+        steps, counts, since, queue = self.step, {**self._counts}, {**self._since}, [*self.queue]
+        for succeeded in (step.completed, False):
+            self.step, self.queue = steps, [*queue]
+            self._counts.update(counts)
+            self._since.update(since)
+            self._see(behaviour, after, succeeded=succeeded)
+            if self.state() == after:
+                return True
+        return False
+
+    def _see(self, behaviour: Behaviour, after: ActivityState, *, succeeded: bool) -> None:
+        """Count a behaviour, and see what there is after it: who asks, and the card there."""
+        self.arrive(after.place)
+        self.executed(behaviour, succeeded=succeeded)
+        asking = [user.id for user in after.users if user.request == "AR"]
+        self.queue = [person for person in self.queue if person in asking]
+        self.queue += [person for person in asking if person not in self.queue]
+        self.closed, first = after.closed, after.attended
+        if first is None or first not in self.queue:
+            return
+        shown = after.user(first).activity
+        if after.place == first:
+            self.seen = shown if shown != self._unread else None
+        else:  # whose turn it is comes first
+            self.queue.remove(first)
+            self.queue.insert(0, first)
 
     def state(self) -> ActivityState:
         """Return the joint state as the rules have it now."""

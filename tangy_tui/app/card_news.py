@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt
 from tangy_hw.robot_client.card_observations import CardObservations
-from tangy_tui.interaction.game_events import GameBegun
+from tangy_tui.interaction.game_events import GameBegun, ResumedGame
 from tangy_tui.monitoring.supervision import Event
 
 BY = "tangy"
@@ -36,7 +36,10 @@ class CardNews:
     def take(self, events: Iterable[Event], cards: CardObservations) -> list[CardNote]:
         """Return what is new after what happened; it is told once."""
         notes: list[CardNote] = []
-        if any(isinstance(event, GameBegun) for event in events) and cards.dealt.given:
+        if (
+            any(isinstance(event, GameBegun | ResumedGame) for event in events)
+            and cards.dealt.given
+        ):
             notes.append(CardNote(dealt_note(cards.dealt.given)))
         while cards.news:
             new = cards.news.popleft()

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.errors import TangyError
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
 from tangy_tui.app.answers import Answers
 from tangy_tui.app.autonomy import AutonomyDial
@@ -69,6 +70,7 @@ class GameController:
         robot: LiveWorld | None = None,
         paced: bool = True,
         void: Callable[[str], bool] = lambda person: False,
+        past: PastGame | None = None,
     ) -> None:
         """Take charge of games.
 
@@ -78,11 +80,12 @@ class GameController:
             robot: the world of a robot that is there; None: the games are simulated.
             paced: a robot that is there lets people time between two calls.
             void: lets the last response of a person not count; says whether there was one.
+            past: a game that was interrupted, which is taken up first.
         """
+        self.past = past
         self.supervision = supervision
         self.autonomy = AutonomyDial()
-        self.stopped = False
-        self.taking_over = False
+        self.stopped = self.taking_over = False
         self.nudge = threading.Event()
         """Is set when something has changed for whoever waits to do the next thing."""
         self.changed: Callable[[], object] = lambda: None
@@ -123,21 +126,25 @@ class GameController:
         return self.autonomy.proposal
 
     def begin(self) -> list[Event]:
-        """Begin the next game; the robot may move: staff have said that all is well.
+        """Begin the next game, or take up the past one, which is paused until staff let it go on.
 
-        While it is stopped none begins, and nothing is returned.
+        The robot may move: staff have said that all is well. While it is stopped, none begins.
+
+        Raises:
+            NotResumable: the world cannot come to where the past game was.
         """
         with self._turn, serving():
             if self.stopped:
                 return []
             self.taking_over = self.single = False
-            self.going = True
+            self.going = self.past is None
             self.autonomy.reset()
             self.robot.release(everybody=True)
             if self.stopped:  # just now
                 self.robot.stop()
                 return []
-            return self.supervision.begin()
+            past, self.past = self.past, None
+            return self.supervision.begin(past, self.by)
 
     def next(self) -> list[Event]:
         """Do the next thing if it may be done now; else only look at the devices."""
@@ -252,10 +259,10 @@ class GameController:
             case forgotten:
                 assert_never(forgotten)
 
-    def note(self, what: str) -> None:
-        """Log what staff did; a log that is full does not keep them from doing it."""
+    def note(self, what: str, taken_back: int = 0) -> None:
+        """Log what staff did, unless the log is full."""
         with suppress(TangyError):
-            self.supervision.note(what, self.by)
+            self.supervision.note(what, self.by, taken_back)
 
     @contextmanager
     def driving(self) -> Iterator[None]:
@@ -300,13 +307,13 @@ class GameController:
         return [StaffNote("goes on")]
 
     def _one_step(self) -> list[Result]:
-        if refused := self._refused():
+        if refused := self.refusal():
             return [refused]
         self.single = self.going = True
         return [StaffNote("one step")]
 
     def _take_over(self) -> list[Result]:
-        if refused := self._refused():
+        if refused := self.refusal():
             return [refused]
         self.taking_over = self.going = True
         self.autonomy.reset()
@@ -326,9 +333,7 @@ class GameController:
     def _confirm(self, *, yes: bool) -> list[Result]:
         if not self.autonomy.confirm(yes=yes):
             return [StaffNote("nothing asked")]
-        if yes:
-            return [StaffNote("goes on")]
-        return self._take_over()
+        return [StaffNote("goes on")] if yes else self._take_over()
 
     def _voided(self, person: str) -> StaffNote:
         if not self._void(person):
@@ -357,17 +362,12 @@ class GameController:
             self._turn.release()
         return []
 
-    @property
-    def refusal(self) -> StaffNote | None:
-        """What has to be done before staff can do more, None if nothing has."""
-        return self._refused()
-
     def refuses(self, command: GameCommand) -> StaffNote | None:
         """Say whether a command that moves the robot is refused already as it is given."""
-        return self._refused(asking=False) if isinstance(command, CallAgain | Drive) else None
+        return self.refusal(asking=False) if isinstance(command, CallAgain | Drive) else None
 
-    def _refused(self, *, asking: bool = True) -> StaffNote | None:
-        """Say what has to be done first, None if nothing has."""
+    def refusal(self, *, asking: bool = True) -> StaffNote | None:
+        """Say what has to be done before staff can do more, None if nothing has."""
         if self.stopped:
             return StaffNote("stopped first")
         if self.supervision.halted is not None:
@@ -383,7 +383,7 @@ class GameController:
             TangyError: it could not be kept, and nothing of it is.
         """
         with self._turn, serving():
-            if refused := self._refused(asking=False):
+            if refused := self.refusal(asking=False):
                 return [refused]
             try:
                 return list(self.supervision.answer(behaviour, target, self.by))

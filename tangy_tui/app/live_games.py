@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.beliefs import Beliefs
+from tangy_profiles.past_game import PastGame
 from tangy_tui.app.card_news import BY, CardNews, CardNote, doubt_document
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script
@@ -30,8 +32,11 @@ Tell: TypeAlias = Callable[[list[Event], list[News]], None]
 class LiveGames:
     """Games that were played live, and what they add up to."""
 
-    def __init__(self, workspace: Workspace, supervision: Supervision) -> None:
-        """Begin to count."""
+    def __init__(
+        self, workspace: Workspace, supervision: Supervision, past: PastGame | None = None
+    ) -> None:
+        """Begin to count; a past game, which was interrupted, is taken up first."""
+        self._past = past
         self.tally = Tally()
         self.faults: list[dict[str, Any]] = []
         self.card_doubts: list[dict[str, Any]] = []
@@ -66,7 +71,8 @@ class LiveGames:
     def _play(self, expert: bool, tell: Tell) -> None:
         game, world = self._supervision, self._supervision.world
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
-        control = GameController(game, SCRIPTED, robot=world, paced=False)
+        past, self._past = self._past, None
+        control = GameController(game, SCRIPTED, robot=world, paced=False, past=past)
         events = control.begin()
         tell(events, self.take(events))
         since = world.link.time
@@ -92,11 +98,15 @@ class LiveGames:
                 self.card_doubts.append(doubt_document(note.doubt, game.game.games))
         return [*notes, *self._seats.news(events, world.sitting)]
 
+    @property
+    def beliefs(self) -> Mapping[str, Beliefs]:
+        """What is believed of everybody."""
+        return self._supervision.persuasion.beliefs
+
     def document(self) -> dict[str, Any]:
         """Return what `tangy live --json` prints."""
         world = self._supervision.world
-        beliefs = self._supervision.persuasion.beliefs
-        found = self.tally.to_json(self._workspace.activity.situations, beliefs, self.faults)
+        found = self.tally.to_json(self._workspace.activity.situations, self.beliefs, self.faults)
         found["card_doubts"] = self.card_doubts
         if isinstance(world, BenchedWorld):
             found |= world.score.to_json()

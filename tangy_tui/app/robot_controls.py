@@ -31,7 +31,7 @@ class RobotControls:
     def __init__(
         self,
         robot: LiveWorld | None,
-        note: Callable[[str], None],
+        note: Callable[..., None],
         stopped: Callable[[], bool],
         *,
         paced: bool = True,
@@ -99,8 +99,8 @@ class RobotControls:
             return StaffNote("call again", label)
         if command.label not in ("", label):
             return StaffNote("called since", command.label)
-        robot.void_call()
-        self._note(f"staff took a call back: {label}")
+        number = robot.calls.take_back()
+        self._note(f"staff took a call back: {label}", number or 0)
         return StaffNote("call taken back", label)
 
     def _drive(self, robot: LiveWorld, command: Drive) -> StaffNote:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tangy_profiles.past_game import PastGame
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import CallExpert, Clear, StaffNote
+from tangy_tui.app.game_commands import CallExpert, Clear, GoOn, StaffNote
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -14,9 +15,14 @@ TIMES_CALLED = 3
 """An expert who comes so often and cannot mend it has the game given up."""
 
 
-def scripted_controller(game: Supervision) -> GameController:
-    """Make a controller of simulated games with nobody but scripted people."""
-    return GameController(game, SCRIPTED)
+def scripted_controller(game: Supervision, past: PastGame | None = None) -> GameController:
+    """Make a controller of simulated games with nobody but scripted people.
+
+    Args:
+        game: what runs them.
+        past: a game that was interrupted, which is taken up first.
+    """
+    return GameController(game, SCRIPTED, past=past)
 
 
 def go_on_by_script(control: GameController, *, expert: bool) -> list[Event]:
@@ -33,6 +39,8 @@ def go_on_by_script(control: GameController, *, expert: bool) -> list[Event]:
     elif game.question is not None:
         told = _answer(control)
     else:
+        if control.phase == "paused":  # as a game is that was interrupted
+            control.apply(GoOn())
         told = control.next()
     return [one for one in told if not isinstance(one, StaffNote)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tangy_tui.interaction.game_events import GameBegun
+from tangy_tui.interaction.game_events import GameBegun, ResumedGame
 from tangy_tui.monitoring.supervision import Event
 
 
@@ -26,7 +26,7 @@ class Seats:
 
     def news(self, events: Iterable[Event], sitting: Mapping[str, str]) -> list[Seated]:
         """Return what is new after what happened, of who was seen at whose place."""
-        if any(isinstance(event, GameBegun) for event in events):
+        if any(isinstance(event, GameBegun | ResumedGame) for event in events):
             self._told = {}  # nobody has been seen in this game yet
         before, self._told = self._told, dict(sitting)
         new = [Seated(one, place) for place, one in self._told.items() if before.get(place) != one]

@@ -13,7 +13,8 @@ from uuid import uuid4
 
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.demonstration import Step
-from tangy_profiles.game_records import GameBeginning, GameEnding, GameStep
+from tangy_profiles.game_records import GameBeginning, GameEnding, GameResumed, GameStep
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.person import Person
 from tangy_profiles.state import ActivityState, Outcome, Response
@@ -25,11 +26,13 @@ from tangy_tui.interaction.game_events import (
     GameBegun,
     GameEnded,
     GameEvent,
+    ResumedGame,
     Taught,
     Unsure,
 )
 from tangy_tui.interaction.observation import Observation
 from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.interaction.refusal import refused
 from tangy_tui.interaction.uncertainty import remedy_for, which_of, why_not
 from tangy_tui.language.commands import Learnt, Phrasebook
 from tangy_tui.learning.online_learning import OnlineLearning
@@ -45,22 +48,6 @@ NOT_DONE = "(it could not be carried out)"
 
 MOST_STEPS = 1_000
 """A game longer than this goes round in circles: all 75 numbers need about 120 steps."""
-
-
-def refused(
-    behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
-) -> bool:
-    """Say whether the attended person did not do what a behaviour asked for.
-
-    Where that cannot be seen, nothing that changed is as good as a refusal: people are not asked
-    again and again because their card is out of sight.
-    """
-    if not behaviour.persuades or before.attended is None or not outcome.completed:
-        return False
-    if outcome.response is not None:
-        return not outcome.response.followed
-    person = before.attended
-    return behaviour.effect != "none" and after.user(person) == before.user(person)
 
 
 Permits: TypeAlias = Callable[[Decision, str | None], bool]
@@ -132,13 +119,7 @@ class Facilitation:
     def begin(self) -> list[GameEvent]:
         """Begin the next game."""
         state = self.world.begin()
-        self.observation.begin(state)
-        self._game = uuid4().hex[:12]
-        self.games += 1
-        self.steps = 0
-        self.over = False
-        self.question = None
-        self._refused = self._said = None
+        self._enter(uuid4().hex[:12], self.games + 1, 0, state)
         self._store.append(
             GameBeginning(
                 game=self._game,
@@ -153,6 +134,24 @@ class Facilitation:
             )
         )
         return [GameBegun(self._game, self.games, state)]
+
+    def resume(self, past: PastGame, by: str) -> list[GameEvent]:
+        """Go on with a game that was interrupted.
+
+        Raises:
+            NotResumable: the world cannot come to where it was.
+        """
+        state, game = self.world.resume(past), past.beginning
+        self._enter(game.game, game.number, len(past.steps), state)
+        self._store.append(GameResumed(game=self._game, steps=self.steps, by=by))
+        return [ResumedGame(self._game, self.games, self.steps, state)]
+
+    def _enter(self, game: str, number: int, steps: int, state: ActivityState) -> None:
+        """Be in a game, at a step of it."""
+        self.observation.begin(state)
+        self._game, self.games, self.steps = game, number, steps
+        self.over = False
+        self.question = self._refused = self._said = None
 
     def step(self) -> list[GameEvent]:
         """Do the next behaviour and return what happened.

@@ -23,6 +23,16 @@ class GameBegun:
 
 
 @dataclass(frozen=True, slots=True)
+class ResumedGame:
+    """A game that was interrupted goes on, after so many steps."""
+
+    game: str
+    number: int
+    steps: int
+    state: ActivityState
+
+
+@dataclass(frozen=True, slots=True)
 class Acted:
     """One step of a game: what was observed, decided, done, and what came of it.
 
@@ -97,4 +107,6 @@ class GameEnded:
     pauses: tuple[int, float] = (0, 0.0)
 
 
-GameEvent: TypeAlias = GameBegun | Acted | BeliefUpdated | Unsure | Taught | DoneOnce | GameEnded
+GameEvent: TypeAlias = (
+    GameBegun | ResumedGame | Acted | BeliefUpdated | Unsure | Taught | DoneOnce | GameEnded
+)

@@ -27,8 +27,8 @@ from tangy_profiles.health import (
 )
 from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState, Outcome, Variable
-from tangy_tui.interaction.facilitation import refused
 from tangy_tui.interaction.game_events import Acted
+from tangy_tui.interaction.refusal import refused
 from tangy_tui.learning.effects import Effects, Mismatch
 
 OWED_BY_PEOPLE = ("what was asked about", "request")

@@ -14,6 +14,7 @@ from tangy_profiles.game_records import (
     FaultDiagnosed,
     FaultMove,
     GameEnding,
+    GameResumed,
     GameStep,
     StaffAction,
 )
@@ -25,9 +26,11 @@ from tangy_tui.monitoring.games import Game
 
 IN_GAMES = (
     *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
-    CallMade,
-    GameEnding,
+    *(CallMade, GameResumed, GameEnding),
 )
+
+
+RESUMED = "the game went on after an interruption"
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,6 +213,8 @@ def _replay(
                 what = _answered(event, followed, took)
             case ResponseAwaited():
                 what = _answered(event, None, None)
+            case GameResumed(by=by):
+                what = Noted(RESUMED, by)
             case StaffAction(what=words, by=by):
                 what = Noted(words, by)
             case CallMade() as what:

@@ -15,6 +15,7 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.contacts import EXPERT
 from tangy_profiles.faults import Evidence, FaultBook
 from tangy_profiles.game_records import StaffAction
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
@@ -152,9 +153,13 @@ class Supervision:
 
     # ---------------------------------------------------------------------- running games
 
-    def begin(self) -> list[Event]:
-        """Begin the next game, in which nothing is known to be wrong."""
-        told: list[Event] = list(self.game.begin())
+    def begin(self, past: PastGame | None = None, by: str = "") -> list[Event]:
+        """Begin the next game, or go on with a past one, in which nothing is known to be wrong.
+
+        Raises:
+            NotResumable: the world cannot come to where the past game was.
+        """
+        told = list[Event](self.game.begin() if past is None else self.game.resume(past, by))
         self._recovery.begin()
         self._watch.begin()
         self._clearings.clear()
@@ -283,11 +288,13 @@ class Supervision:
         told += self._recovery.halt_if_critical()
         return told + self._end_if_hopeless()
 
-    def note(self, what: str, by: str) -> None:
+    def note(self, what: str, by: str, taken_back: int = 0) -> None:
         """Log what people did in a game beside all this: a STOP, a fault brought about."""
         if not self.over:
-            note = StaffAction(game=self.game.game, what=what, by=by, seconds=self.seconds)
-            self._store.append(note)
+            done = StaffAction(
+                game=self.game.game, what=what, by=by, seconds=self.seconds, taken_back=taken_back
+            )
+            self._store.append(done)
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
         """Do what a teacher answered, and go on."""

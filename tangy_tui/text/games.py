@@ -13,6 +13,7 @@ from tangy_tui.interaction.game_events import (
     DoneOnce,
     GameBegun,
     GameEnded,
+    ResumedGame,
     Taught,
     Unsure,
 )
@@ -34,6 +35,8 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
     match event:
         case GameBegun(_, number, _):
             return [f"Game {number} begins."]
+        case ResumedGame(_, number, steps, _):
+            return [resumed_words(number, steps)]
         case Acted(number, state, decision, choice, action, outcome, _, speech):
             target = f" ({name(action.target)})" if action.target else ""
             how = f", {choice.strategy}" if choice else ""
@@ -142,6 +145,11 @@ def response_words(response: Response, belief: Beta, name: Name) -> str:
 def begun_words(number: int) -> str:
     """Say that a game begins."""
     return f"Game {number} begins."
+
+
+def resumed_words(number: int, steps: int) -> str:
+    """Say that an interrupted game goes on, and how."""
+    return f"Game {number} is back where it was after {counted(steps, 'step')}. It is paused."
 
 
 def over_words(steps: int) -> str:

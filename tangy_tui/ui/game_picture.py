@@ -14,13 +14,20 @@ from tangy_tui.interaction.game_events import (
     DoneOnce,
     GameBegun,
     GameEnded,
+    ResumedGame,
     Taught,
     Unsure,
 )
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.fault_views import WAITS
-from tangy_tui.text.games import begun_words, broken_off_words, over_words, response_words
+from tangy_tui.text.games import (
+    begun_words,
+    broken_off_words,
+    over_words,
+    response_words,
+    resumed_words,
+)
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.situations import lesson_words, once_words
 from tangy_tui.ui.clean_output import clean
@@ -72,8 +79,9 @@ class GamePicture:
         log = self._screen.query_one(LogView)
         for event in events:
             match event:
-                case GameBegun(_, number, state):
-                    log.write(begun_words(number), "dim")
+                case GameBegun(_, number, state) | ResumedGame(_, number, _, state):
+                    resumed = event.steps if isinstance(event, ResumedGame) else 0
+                    log.write(resumed_words(number, resumed) if resumed else begun_words(number))
                     room = self._screen.query_one(RoomView)
                     room.say("")
                     room.put(state.place)

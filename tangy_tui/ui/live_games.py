@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING
 
 from textual.constants import ESCAPE_DELAY
 
+from tangy_profiles import game_world
 from tangy_profiles.errors import TangyError
 from tangy_tui.text.live_games import BENCH, BENCH_DETAIL, SWITCH_ON_DETAIL, switch_on_words
+from tangy_tui.ui.interruption import ask_about_interrupted
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
+    from tangy_profiles.past_game import PastGame
     from tangy_tui.app.robot_opening import Opening
     from tangy_tui.app.switching_on import SwitchingOn
     from tangy_tui.learning.policy import Policy
@@ -33,18 +36,31 @@ async def play_from_home(program: Program, policy: Policy) -> None:
     else:
         question = switch_on_words(workspace.robot.title)
         dialog = ConfirmDialog(question, SWITCH_ON_DETAIL, yes="switch it on, and play", no="back")
+    world = game_world.BENCH if bench else game_world.LIVE
     if await program.push_screen_wait(dialog):
-        seed = workspace.game_seed(None)
+        chosen = await ask_about_interrupted(program, world)
+        if chosen is None:
+            return
+        past = chosen.past
+        seed = workspace.game_seed(None) if past is None else past.beginning.seed
         opening = opening_of(workspace, bench=bench, seed=seed)
-        await play_live(program, opening, policy, games=1, seed=seed, teacher="")
+        await play_live(program, opening, policy, games=1, seed=seed, teacher="", past=past)
 
 
 async def play_live(
-    program: Program, opening: Opening, policy: Policy, *, games: int, seed: int, teacher: str
+    program: Program,
+    opening: Opening,
+    policy: Policy,
+    *,
+    games: int,
+    seed: int,
+    teacher: str,
+    past: PastGame | None = None,
 ) -> None:
     """Switch the robot on, play on the live screen, and switch it off again.
 
-    It is left off where somebody calls it off meanwhile.
+    It is left off where somebody calls it off meanwhile. A past game, which was interrupted, is
+    taken up first.
     """
     from tangy_tui.app.switching_on import SwitchingOn
 
@@ -57,7 +73,7 @@ async def play_live(
         from tangy_tui.ui.screens.live import LiveScreen
 
         supervision = workspace.supervision(policy, seed, asks=True, world=world)
-        screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher)
+        screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher, past=past)
         if program.hearing is not None:
             program.hearing.ears.begin()
         await program.push_screen_wait(screen)

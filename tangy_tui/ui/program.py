@@ -11,11 +11,13 @@ from textual.screen import Screen
 from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.workspace import Workspace, teacher_name
 from tangy_tui.learning import library, policies
 from tangy_tui.text import program as text
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
+from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.messages import OpenStep
 from tangy_tui.ui.progress_summary import how_far
@@ -24,6 +26,7 @@ from tangy_tui.ui.sounding import SoundingApp
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import CameraHub
+    from tangy_profiles.past_game import PastGame
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_session import TeachingSession
 
@@ -217,6 +220,7 @@ class Program(SoundingApp):
         wanted: str = "",
         teacher: str = "",
         injections: Sequence[str] = (),
+        past: PastGame | None = None,
     ) -> None:
         """Open the playing screen with a policy, the last one unless another is wanted.
 
@@ -228,19 +232,24 @@ class Program(SoundingApp):
             wanted: the policy: its name or digest, "" for the last.
             teacher: who answers where Tangy asks.
             injections: faults that are to come.
+            past: a game that was interrupted, and is taken up first; None: it is asked about.
         """
         from tangy_tui.ui.screens.play import PlayScreen
 
         policy = await self._load_policy(wanted)
-        if policy is None:
+        chosen = await ask_about_interrupted(self, SIMULATED) if past is None else GameToPlay(past)
+        if policy is None or chosen is None:
             return
-        workspace = self.workspace
+        workspace, past = self.workspace, chosen.past
+        seed = seed if past is None else past.beginning.seed
         speed = speed or (1.0 if self.speaker.on or self.eyes.live else PLAYING)
         async with self.eyes.watching() as live:
             supervision = workspace.supervision(
                 policy, seed, asks=True, injections=injections, live=live
             )
-            screen = PlayScreen(workspace, supervision, games=games, speed=speed, teacher=teacher)
+            screen = PlayScreen(
+                workspace, supervision, games=games, speed=speed, teacher=teacher, past=past
+            )
             if live is None:
                 await self.push_screen(screen)
             else:

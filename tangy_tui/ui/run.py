@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
+from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program, Start
 from tangy_tui.ui.round_trip import read_replies
@@ -16,6 +17,8 @@ from tangy_tui.ui.writer import outlive_terminal
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import CameraHub
+    from tangy_profiles.game_world import GameWorld
+    from tangy_profiles.past_game import PastGame
     from tangy_tui.app.robot_opening import Opening
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_session import TeachingSession
@@ -75,6 +78,7 @@ def run_playing(
     voice: bool = False,
     ears: SpeechInput | None = None,
     sensors: CameraHub | None = None,
+    past: PastGame | None = None,
 ) -> int:
     """Open the playing screen (speed in times life); return the exit status.
 
@@ -84,7 +88,7 @@ def run_playing(
     """
     return _run(
         workspace,
-        lambda program: program.play(games, speed, seed, policy, teacher, injections),
+        lambda program: program.play(games, speed, seed, policy, teacher, injections, past),
         ascii_only,
         ears,
         voice=voice,
@@ -95,22 +99,47 @@ def run_playing(
 
 def run_live(
     workspace: Workspace,
-    opening: Opening,
+    opening: Callable[[int], Opening],
     policy: Policy,
     *,
     games: int,
     seed: int,
     teacher: str,
     ascii_only: bool,
+    world: GameWorld,
     ears: SpeechInput | None = None,
+    past: PastGame | None = None,
 ) -> int:
     """Switch the robot on, play on the live screen, and end with it; return the exit status.
 
-    What stops the robot is heard through the ears, if there are any, and what answers Tangy.
+    Args:
+        workspace: whose games.
+        opening: says, for a seed, how the robot is switched on.
+        policy: by which is played.
+        games: how many.
+        seed: of new games.
+        teacher: who answers where Tangy asks.
+        ascii_only: draw with plain characters.
+        world: in which is played.
+        ears: hear what stops the robot, and what answers Tangy.
+        past: a game that was interrupted, and is taken up first; None: it is asked about.
     """
 
     async def start(program: Program) -> None:
-        await play_live(program, opening, policy, games=games, seed=seed, teacher=teacher)
+        chosen = (
+            GameToPlay(past) if past is not None else await ask_about_interrupted(program, world)
+        )
+        if chosen is not None:
+            of = seed if chosen.past is None else chosen.past.beginning.seed
+            await play_live(
+                program,
+                opening(of),
+                policy,
+                games=games,
+                seed=of,
+                teacher=teacher,
+                past=chosen.past,
+            )
         program.leave()
 
     return _run(workspace, start, ascii_only, ears)

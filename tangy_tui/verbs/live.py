@@ -11,6 +11,7 @@ import typer
 
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import SWITCHING_ON
@@ -30,12 +31,15 @@ from tangy_tui.verbs.playing import (
     recall,
     who_answers,
 )
+from tangy_tui.verbs.resuming import Discard, Resume, past_game
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
     from tangy_sim.worlds.injection import Injection
+    from tangy_tui.app.live_games import LiveGames
+    from tangy_tui.app.robot_opening import Opening
     from tangy_tui.app.workspace import Workspace
-    from tangy_tui.monitoring.supervision import Event, Supervision
+    from tangy_tui.monitoring.supervision import Event
 
 PACE = 30.0  # as in tangy_hw.robot_client.live_world, which is not to be imported here
 LARGEST_LIST = 100_000  # bytes of a list of faults
@@ -99,6 +103,8 @@ def live(
     hands_free: HandsFree = False,
     spoken_answers: SpokenAnswers = False,
     mode: Mode = None,
+    resume: Resume = False,
+    discard: Discard = False,
     seed: common.Seed = None,
     data: common.Data = None,
     as_json: common.Json = False,
@@ -136,8 +142,10 @@ def live(
         raise TangyError("--mic: Tangy listens in a live game on the screen; there is none here.")
     with open_workspace(data, activity, users, robot=robot) as workspace:
         need_policy(workspace.store, workspace.activity, policy)
+        world = BENCH if bench else LIVE
+        past = past_game(workspace, world, resume=resume, discard=discard, asks=screen)
         learnt = recall(workspace, policy, quiet=as_json)
-        number = workspace.game_seed(seed)
+        number = workspace.game_seed(seed) if past is None else past.beginning.seed
         from tangy_tui.app.dealing import read_dealt
         from tangy_tui.app.robot_opening import check_map, opening_of
 
@@ -147,8 +155,11 @@ def live(
             "cameras": camera or (), "requests": requests, "corners": read_corners(table),
             "cards": read_dealt(card or (), workspace.people),
         }  # fmt: skip
-        both: dict[str, Any] = {"seed": number, "pace": pace, "map_": map_, "lost": lost}
-        opening = opening_of(workspace, bench=bench, injections=faults, own=own, **both)
+
+        def opening(seed: int) -> Opening:
+            both: dict[str, Any] = {"seed": seed, "pace": pace, "map_": map_, "lost": lost}
+            return opening_of(workspace, bench=bench, injections=faults, own=own, **both)
+
         if screen:
             from tangy_tui.ui.run import run_live
 
@@ -161,6 +172,8 @@ def live(
                     seed=number,
                     teacher=who,
                     ascii_only=ascii_only,
+                    world=world,
+                    past=past,
                     ears=listening.ears(
                         workspace,
                         workspace.phrasebook(),
@@ -172,17 +185,21 @@ def live(
             )
         if not as_json:
             print(SWITCHING_ON, file=sys.stderr)
+        from tangy_tui.app.live_games import LiveGames
         from tangy_tui.app.switching_on import switched_on
 
-        with switched_on(opening, stepped=bench and not plain_lines) as world:
-            if not as_json and (plain_lines or not bench) and world.link.tablet:
-                print(plain(world.link.tablet), file=sys.stderr)
+        with switched_on(opening(number), stepped=bench and not plain_lines) as there:
+            if not as_json and (plain_lines or not bench) and there.link.tablet:
+                print(plain(there.link.tablet), file=sys.stderr)
             asks = plain_lines or who == SCRIPTED
-            supervision = workspace.supervision(learnt, number, asks=asks, world=world)
+            supervision = workspace.supervision(learnt, number, asks=asks, world=there)
             if plain_lines:
-                to_their_end = play_with_staff(workspace, supervision, games, who, robot=world)
+                to_their_end = play_with_staff(
+                    workspace, supervision, games, who, robot=there, past=past
+                )
             else:
-                to_their_end = _play(workspace, supervision, games, as_json, expert=bool(expert))
+                played = LiveGames(workspace, supervision, past)
+                to_their_end = _play(workspace, played, games, as_json, expert=bool(expert))
         if not to_their_end:
             raise typer.Exit(1)  # so that a script knows that games did not come to their end
 
@@ -212,14 +229,12 @@ def _listed(given: list[str]) -> tuple[Injection, ...]:
 
 
 def _play(
-    workspace: Workspace, supervision: Supervision, games: int, as_json: bool, *, expert: bool
+    workspace: Workspace, played: LiveGames, games: int, as_json: bool, *, expert: bool
 ) -> bool:
     """Play games, tell of them, and return whether all of them came to their end."""
-    from tangy_tui.app.live_games import LiveGames, News
+    from tangy_tui.app.live_games import News
     from tangy_tui.text.live_news import live_lines
     from tangy_tui.ui import reports
-
-    played = LiveGames(workspace, supervision)
 
     def tell(events: list[Event], news: list[News]) -> None:
         for line in [] if as_json else live_lines(events, news, workspace.name):
@@ -232,7 +247,7 @@ def _play(
     if as_json:
         common.print_json(document)
         return to_their_end
-    reports.print_tally(workspace, played.tally, supervision.persuasion.beliefs)
+    reports.print_tally(workspace, played.tally, played.beliefs)
     for name in ("reads", "identities"):
         if name in document:
             counts = ", ".join(f"{count} {word}" for word, count in document[name].items())

@@ -9,6 +9,7 @@ import typer
 
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import SIMULATED
 from tangy_tui.text.command_line import TEACH_YOURSELF
 from tangy_tui.text.outcomes import did_not_come, faults_played
 from tangy_tui.verbs import common
@@ -34,9 +35,11 @@ from tangy_tui.verbs.playing import (
     recall,
     who_answers,
 )
+from tangy_tui.verbs.resuming import Discard, Resume, past_game
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
+    from tangy_profiles.past_game import PastGame
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.online_learning import Lesson
     from tangy_tui.monitoring.supervision import Supervision
@@ -75,6 +78,8 @@ def play(
             min=1, max=1000, help="Times life; 20, or 1 where Tangy speaks or cameras are real."
         ),
     ] = None,
+    resume: Resume = False,
+    discard: Discard = False,
     seed: common.Seed = None,
     data: common.Data = None,
     as_json: common.Json = False,
@@ -108,6 +113,9 @@ def play(
         raise TangyError("--camera: cameras are watched on the screen; see tangy sensors --plain.")
     with open_workspace(data, activity, users, robot=robot) as workspace:
         need_policy(workspace.store, workspace.activity, policy)
+        past = past_game(workspace, SIMULATED, resume=resume, discard=discard, asks=screen)
+        if past is not None:
+            seed = past.beginning.seed
         if screen:
             from tangy_hw.perception.camera_hub import sensors_of
             from tangy_tui.ui.run import run_playing
@@ -133,6 +141,7 @@ def play(
                         sound=sound,
                     ),
                     sensors=sensors,
+                    past=past,
                 )
             )
         learnt = recall(workspace, policy, quiet=as_json)
@@ -143,15 +152,21 @@ def play(
         )
         if plain_lines:
             pace = speed or SPEED
-            if not play_with_staff(workspace, supervision, games, who, speed=pace):
+            if not play_with_staff(workspace, supervision, games, who, speed=pace, past=past):
                 raise typer.Exit(1)
             return
         if not by_lines:
             _play_headless(
-                workspace, supervision, games, as_json, expert=bool(expert), injected=bool(faults)
+                workspace,
+                supervision,
+                games,
+                as_json,
+                expert=bool(expert),
+                injected=bool(faults),
+                past=past,
             )
             return
-        play_by_turns(workspace, supervision, games, who, expert=bool(expert))
+        play_by_turns(workspace, supervision, games, who, expert=bool(expert), past=past)
 
 
 def demo(
@@ -188,6 +203,7 @@ def _play_headless(
     *,
     expert: bool,
     injected: bool,
+    past: PastGame | None = None,
 ) -> None:
     from tangy_sim.worlds.faulty_world import FaultyWorld
     from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
@@ -201,7 +217,7 @@ def _play_headless(
     tally = Tally()
     lessons: list[Lesson] = []
     faults: list[dict[str, Any]] = []
-    control = scripted_controller(supervision)
+    control = scripted_controller(supervision, past)
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with workspace.store.transaction():  # one commit a game: .1 ms a step instead of 4
             tally.add(control.begin())

@@ -16,6 +16,7 @@ from tangy_tui.verbs.opening import say_notices
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.demonstration import Demonstration
+    from tangy_profiles.past_game import PastGame
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.console.staff import StaffLines
     from tangy_tui.learning.policy import Policy
@@ -106,6 +107,7 @@ def play_with_staff(
     *,
     robot: LiveWorld | None = None,
     speed: float | None = None,
+    past: PastGame | None = None,
 ) -> bool:
     """Play games with staff at the lines of standard input; return whether all came to their end.
 
@@ -116,12 +118,20 @@ def play_with_staff(
         teacher: who types.
         robot: the world of a robot that is there.
         speed: times life, for simulated games.
+        past: a game that was interrupted, which is taken up first.
     """
-    return _lines(workspace, supervision, teacher, robot=robot, speed=speed).run(games)
+    lines = _lines(workspace, supervision, teacher, robot=robot, speed=speed, past=past)
+    return lines.run(games)
 
 
 def play_by_turns(
-    workspace: Workspace, supervision: Supervision, games: int, teacher: str, *, expert: bool
+    workspace: Workspace,
+    supervision: Supervision,
+    games: int,
+    teacher: str,
+    *,
+    expert: bool,
+    past: PastGame | None = None,
 ) -> None:
     """Play simulated games by lines that are read only where Tangy waits for somebody.
 
@@ -131,9 +141,11 @@ def play_by_turns(
         games: how many.
         teacher: who answers; a scripted one reads no line.
         expert: scripted staff clear what halts the robot.
+        past: a game that was interrupted, which is taken up first.
     """
     scripted = teacher == SCRIPTED
-    _lines(workspace, supervision, teacher).run_by_turns(games, scripted=scripted, expert=expert)
+    lines = _lines(workspace, supervision, teacher, past=past)
+    lines.run_by_turns(games, scripted=scripted, expert=expert)
 
 
 def _lines(
@@ -143,6 +155,7 @@ def _lines(
     *,
     robot: LiveWorld | None = None,
     speed: float | None = None,
+    past: PastGame | None = None,
 ) -> StaffLines:
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.live_games import LiveGames
@@ -166,7 +179,7 @@ def _lines(
         return [] if live is None else [*news_lines(live.take(events), workspace.name)]
 
     return StaffLines(
-        GameController(supervision, teacher, robot=robot, void=void),
+        GameController(supervision, teacher, robot=robot, void=void, past=past),
         workspace.name,
         lambda wanted: workspace.find_person(wanted).id,
         line_reader(None),

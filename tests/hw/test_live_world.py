@@ -335,9 +335,9 @@ def test_whoever_sits_at_somebody_elses_place_is_spoken_to_and_learnt_of(link: F
 
 def test_a_call_can_be_taken_back_and_comes_again(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
-    assert world.void_call() is None
+    assert world.calls.take_back() is None
     (first,) = do(world, "call number").numbers
-    assert world.void_call() == first and world.called == []
+    assert world.calls.take_back() == first and world.called == []
     rest = [do(world, "call number").numbers[0] for _ in range(75)]
     assert rest[-1] == first and sorted(rest) == list(BINGO.deck.numbers)
 

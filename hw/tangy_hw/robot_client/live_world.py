@@ -15,6 +15,7 @@ from random import Random
 from typing import Any, assert_never
 
 from tangy_hw.device_protocols import DeviceError, Picture, Pose
+from tangy_hw.robot_client.call_order import LAST_CALLS, CallOrder
 from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
@@ -29,6 +30,7 @@ from tangy_profiles.effects import DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import LIVE, GameWorld
 from tangy_profiles.health import OK, Health
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import Point, Room
 from tangy_profiles.scene import Scene
@@ -37,7 +39,6 @@ from tangy_profiles.tracker import Tracker
 
 PACE_SECONDS = 30.0
 """From one call to the next at least, so that all can look and mark; about as in the paper."""
-LAST_CALLS = 5  # that the chest screen shows
 FACING = pi / 2  # the heading at which the robot faces the people
 
 
@@ -92,8 +93,7 @@ class LiveWorld:
 
     def _begin(self) -> None:
         self.tracker = Tracker(self.activity, self.people)
-        self.called: list[int] = []
-        self._numbers = self.activity.deck.shuffled(self._order.random)
+        self.calls = CallOrder(self.activity.deck.shuffled(self._order.random))
         self.cards.begin()
         self.requests = HelpRequestTracker(
             self.people, self.commands, self._robot.devices.get("requests")
@@ -112,6 +112,21 @@ class LiveWorld:
             self._remedies.go_back(knows_place=not self.lost)
         self.commands.settle()
         return self.observe()
+
+    def resume(self, past: PastGame) -> ActivityState:
+        """Go on where a game was interrupted, or raise NotResumable; cards are learnt anew."""
+        for _ in range(past.beginning.number):
+            self._begin()  # each game of the run has an order of its own
+        past.follow(self.tracker)
+        self.calls.resume(past, self.activity)
+        self.over = False
+        self.commands.settle()
+        return self.observe()
+
+    @property
+    def called(self) -> list[int]:
+        """The numbers that count as called, the last one last."""
+        return self.calls.called
 
     @property
     def lost(self) -> bool:
@@ -169,7 +184,7 @@ class LiveWorld:
         """Return the numbers that an action is about; None if there is nothing to be asked."""
         match action.behaviour.effect:
             case "draw":
-                return tuple(self._numbers[len(self.called) : len(self.called) + 1])
+                return self.calls.next
             case "clear wrong marks" | "set missing marks":
                 return self.cards.asked_about(action.behaviour)
             case "none" | "bring card closer" | "go to user" | "go to front" | "finish":
@@ -185,7 +200,7 @@ class LiveWorld:
         self._announce(action, numbers)
         match behaviour.effect:
             case "draw":
-                self.called.extend(numbers)
+                self.calls.called.extend(numbers)
                 self._due = self.link.time + self._pace
                 with suppress(Preempted):  # it was called, whatever comes now
                     self.commands.wait(min(self._pace, LOOK_SECONDS), asks=True)
@@ -208,13 +223,12 @@ class LiveWorld:
 
     def _announce(self, action: Action, numbers: tuple[int, ...]) -> None:
         """Speak, show and gesture."""
-        name = self.name_of(action.target)
-        fill, deck = self.activity.fill, self.activity.deck
+        name, fill, deck = self.name_of(action.target), self.activity.fill, self.activity.deck
         called = numbers if action.behaviour.effect == "draw" else ()
         picture = Picture(
             fill(action.image, name, numbers),
             deck.label(called[0]) if called else "",
-            tuple(deck.label(number) for number in self.called[: -LAST_CALLS - 1 : -1]),
+            self.calls.labels(deck),
             name if action.behaviour.attends else "",
         )
         speech = fill(action.speech, name, numbers)
@@ -249,7 +263,7 @@ class LiveWorld:
         return self._names.get(sitting, sitting)
 
     def who(self, place: str) -> str:
-        """Return who sits at somebody's place, as far as the robot has seen."""
+        """Return who sits at a place, as far as the robot has seen."""
         return self.sitting.get(place, place)
 
     @property
@@ -267,11 +281,10 @@ class LiveWorld:
             return False
         self.tracker.arrive(place)
         self.cards.leave()
-        if place != FRONT:
-            if self._knows_faces:
-                self._see_who(place)
-            if place in self.tracker.queue:
-                self.read_card(place)
+        if place != FRONT and self._knows_faces:
+            self._see_who(place)
+        if place in self.tracker.queue:
+            self.read_card(place)
         return True
 
     def _see_who(self, place: str) -> None:
@@ -315,8 +328,7 @@ class LiveWorld:
 
     def _executed(self, behaviour: Behaviour, succeeded: bool) -> None:
         """Let a behaviour count; whose request it settled is to take the sign down."""
-        tracker = self.tracker
-        seen = tracker.seen
+        tracker, seen = self.tracker, self.tracker.seen
         tracker.executed(behaviour, succeeded=succeeded)
         closed = tracker.closed
         if closed is None or self.over:
@@ -336,17 +348,8 @@ class LiveWorld:
             DeviceError: it could not be said.
         """
         if self.called:
-            label, *before = map(self.activity.deck.label, self.called[: -LAST_CALLS - 2 : -1])
+            label, *before = self.calls.labels(self.activity.deck, LAST_CALLS + 1)
             self.say(label, Picture(label, label, tuple(before)))
-
-    def void_call(self) -> int | None:
-        """Take the last call back: its number counts as not called, and comes again later."""
-        if not self.called:
-            return None
-        number = self.called.pop()
-        self._numbers.remove(number)
-        self._numbers.append(number)
-        return number
 
     # ------------------------------------------------------------------------ what is there
 

@@ -20,6 +20,7 @@ from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.health import Health
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import EVERYBODY, ActivityState, Outcome, Response
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
@@ -74,6 +75,10 @@ class DeclaredWorld:
         self.over = False
         self._did: dict[str, str] = {}
         return self.observe()
+
+    def resume(self, past: PastGame) -> ActivityState:
+        """Go on where a game was interrupted, or raise NotResumable."""
+        return past.replay(self)
 
     def observe(self) -> ActivityState:
         """Return the joint state as it is now."""

@@ -18,6 +18,7 @@ from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.health import Health
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
@@ -84,6 +85,10 @@ class SimulatedWorld:
         self._in_view = False  # whether the card beside the robot can be read
         self._opened = False
         return self.tracker.state()
+
+    def resume(self, past: PastGame) -> ActivityState:
+        """Go on where a game was interrupted, or raise NotResumable."""
+        return past.replay(self)
 
     def observe(self) -> ActivityState:
         """Return the joint state as the robot's sensors have it now."""

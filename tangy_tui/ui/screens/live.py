@@ -17,6 +17,7 @@ from textual.content import Content
 from textual.screen import Screen
 
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import FRONT
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
@@ -81,9 +82,18 @@ class LiveScreen(PlayScreen):
         *,
         games: int = 1,
         teacher: str = "",
+        past: PastGame | None = None,
     ) -> None:
-        """Make the screen for games in a world that is there."""
-        super().__init__(workspace, supervision, games=games, speed=1, teacher=teacher, robot=world)
+        """Make the screen for games in a world that is there; a past one is taken up first."""
+        super().__init__(
+            workspace,
+            supervision,
+            games=games,
+            speed=1,
+            teacher=teacher,
+            robot=world,
+            past=past,
+        )
         self._world = world
         self._faults.beside = self._attend_beside
         self.working = 0  # how many things are being done, or wait for their turn

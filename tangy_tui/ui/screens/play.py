@@ -42,6 +42,7 @@ from tangy_tui.ui.widgets.transcript import Transcript
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
+    from tangy_profiles.past_game import PastGame
 
 T = TypeVar("T")
 
@@ -68,6 +69,7 @@ class PlayScreen(PlayStaff):
         leave_after: float | None = None,
         teacher: str = "",
         robot: LiveWorld | None = None,
+        past: PastGame | None = None,
     ) -> None:
         """Make the screen.
 
@@ -79,13 +81,15 @@ class PlayScreen(PlayStaff):
             leave_after: seconds after the last game at which the screen closes by itself.
             teacher: who answers where Tangy asks (default: whoever is logged in).
             robot: the world of a robot that is there.
+            past: a game that was interrupted, which is taken up first.
         """
         who = teacher or teacher_name()
 
         def void(person: str) -> bool:
             return void_last(workspace.store, supervision.game.game, person, who)
 
-        super().__init__(workspace, GameController(supervision, who, robot=robot, void=void))
+        control = GameController(supervision, who, robot=robot, void=void, past=past)
+        super().__init__(workspace, control)
         self._games = games
         self._speed = speed
         self._leave_after = leave_after

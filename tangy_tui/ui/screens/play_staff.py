@@ -71,7 +71,7 @@ class PlayStaff(PlayPanels):
 
     def _refused(self) -> bool:
         """Say, after a STOP or while Tangy asks, what has to be done first."""
-        refusal = self.control.refusal
+        refusal = self.control.refusal()
         if refusal is not None:
             self._take([refusal])
         return refusal is not None

@@ -1,0 +1,164 @@
+"""A game that was interrupted: what the log has of it, so that it can go on.
+
+The log keeps every behaviour with the state after it. From the seed, these behaviours and those of
+the games before it in the same run, a world comes to where the game was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Protocol
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action
+from tangy_profiles.errors import TangyError
+from tangy_profiles.game_records import GameBeginning, GameEnding, GameStep, StaffAction
+from tangy_profiles.game_world import SIMULATED, GameWorld
+from tangy_profiles.state import ActivityState, Outcome
+from tangy_profiles.store import Event, Store
+from tangy_profiles.tracker import Tracker
+
+
+class NotResumable(TangyError):
+    """A game cannot go on where it was interrupted; says why."""
+
+    def __init__(self, why: str) -> None:
+        super().__init__(f"{CANNOT_GO_ON}: {why}.")
+
+
+CANNOT_GO_ON = "The game cannot go on where it was interrupted"
+OTHER_PEOPLE = "other people take part now"
+OTHERWISE = "its steps do not come out as they did"
+
+
+class Replayed(Protocol):
+    """A simulated world, in which the same actions lead to the same states."""
+
+    activity: Activity
+    people: tuple[str, ...]
+
+    def begin(self) -> ActivityState:
+        """Begin a game."""
+        ...
+
+    def observe(self) -> ActivityState:
+        """Return the state now."""
+        ...
+
+    def execute(self, action: Action) -> Outcome:
+        """Carry out an action."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class PastGame:
+    """A game as far as the log tells of it."""
+
+    beginning: GameBeginning
+    at: datetime
+    """When its last event was logged (UTC)."""
+    steps: tuple[GameStep, ...] = ()
+    earlier: tuple[tuple[GameStep, ...], ...] = ()
+    """The games before it in the same run, the first one first."""
+    taken_back: tuple[int, ...] = ()
+    """The numbers that staff took back, in the order in which they did."""
+
+    @property
+    def world(self) -> GameWorld:
+        """Where it was played."""
+        return self.beginning.world or SIMULATED
+
+    def replay(self, world: Replayed) -> ActivityState:
+        """Play the games of the run again, as far as the log has them; return the last state.
+
+        Raises:
+            NotResumable: they do not come out as they did: other people take part, faults were
+                brought about, or the simulator has changed since.
+        """
+        if self.beginning.people != world.people:
+            raise NotResumable(OTHER_PEOPLE)
+        for steps in (*self.earlier, self.steps):
+            world.begin()
+            for step in steps:
+                behaviour = world.activity.behaviours.get(step.behaviour)
+                if behaviour is None:
+                    raise NotResumable(OTHERWISE)
+                world.execute(world.activity.action(behaviour, step.target, step.strategy))
+                if world.observe() != step.after:
+                    raise NotResumable(OTHERWISE)
+        return world.observe()
+
+    def follow(self, tracker: Tracker) -> None:
+        """Bring the tracker of a game that has just begun to where the game was.
+
+        Raises:
+            NotResumable: the log does not lead there.
+        """
+        if self.beginning.people != tracker.people:
+            raise NotResumable(OTHER_PEOPLE)
+        if not all(tracker.follow(step) for step in self.steps):
+            raise NotResumable(OTHERWISE)
+
+    def called(self, activity: Activity) -> list[int]:
+        """Return the numbers that were called and count, in their order."""
+        draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        called = [n for step in self.steps if step.behaviour in draws for n in step.numbers]
+        for number in self.taken_back:  # one that came again later stands there once more
+            if number in called:
+                called.remove(number)
+        return called
+
+    def order(self, shuffled: Sequence[int], called: Sequence[int]) -> list[int]:
+        """Return the order of all numbers from that of the game's beginning.
+
+        Those that were called come first, those that were taken back last.
+        """
+        last = [number for number in dict.fromkeys(self.taken_back) if number not in called]
+        rest = [number for number in shuffled if number not in {*called, *last}]
+        return [*called, *rest, *last]
+
+
+def interrupted_game(store: Store, activity: str) -> PastGame | None:
+    """Return the newest game of an activity, if it has no end in the log and was begun by a step.
+
+    Later games of other activities do not matter; an older interrupted game does not count any
+    more once another game of the activity was begun after it.
+    """
+    games: list[Event[GameBeginning]] = [
+        event for event in store.events(GameBeginning) if event.record.activity == activity
+    ]
+    if not games:
+        return None
+    newest = games[-1]
+    game = newest.record.game
+    if any(end.record.game == game for end in store.events(GameEnding, after=newest.seq)):
+        return None
+    run = _run(games)
+    steps: dict[str, list[GameStep]] = {event.record.game: [] for event in run}
+    at = newest.at
+    for event in store.events(GameStep, after=run[0].seq):
+        if event.record.game in steps:
+            steps[event.record.game].append(event.record)
+            at = event.at
+    if not steps[game]:
+        return None
+    *earlier, own = (tuple(steps[event.record.game]) for event in run)
+    taken = tuple(
+        note.record.taken_back
+        for note in store.events(StaffAction, after=newest.seq)
+        if note.record.game == game and note.record.taken_back
+    )
+    return PastGame(newest.record, datetime.fromisoformat(at), own, tuple(earlier), taken)
+
+
+def _run(games: list[Event[GameBeginning]]) -> list[Event[GameBeginning]]:
+    """Return the newest game with those before it that were begun in the same run."""
+    run = [games[-1]]
+    for event in reversed(games[:-1]):
+        first, before = run[0].record, event.record
+        if (before.number, before.seed) != (first.number - 1, first.seed):
+            break
+        run.insert(0, event)
+    return run

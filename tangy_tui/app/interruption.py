@@ -1,0 +1,24 @@
+"""Games that were interrupted: found at the next start, gone on with, or ended."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_profiles.game_records import GameEnding
+from tangy_profiles.game_world import GameWorld
+from tangy_profiles.past_game import PastGame, interrupted_game
+
+if TYPE_CHECKING:
+    from tangy_tui.app.workspace import Workspace
+
+
+def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
+    """Return the game of the workspace's activity that was interrupted in a world, if one was."""
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    return past if past is not None and past.world == world else None
+
+
+def end_interrupted(workspace: Workspace, past: PastGame, reason: str) -> None:
+    """Log the end of a game that was interrupted, with the reason that people read."""
+    game = past.beginning.game
+    workspace.store.append(GameEnding(game=game, steps=len(past.steps), stopped=reason))

@@ -1,0 +1,41 @@
+"""A game that was interrupted, in words: what it was, and how it can go on or end."""
+
+from __future__ import annotations
+
+from tangy_profiles.past_game import PastGame
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.times import day_and_time
+
+TITLE = "A game was interrupted"
+RESUME = ("resume", "go on with it", "paused at first")
+END = ("end", "end it", "with a report of it")
+DISCARD = ("discard", "discard it", "and play a new game")
+ENDED = "It was interrupted, and ended afterwards."
+"""Why such a game ended, as the log has it."""
+NONE = "No game was interrupted: there is nothing to go on with. Leave --resume out."
+BOTH = "Use either --resume or --discard."
+
+
+def interrupted_words(past: PastGame, calls: int) -> str:
+    """Say when a game was interrupted, and how far it had come."""
+    when = day_and_time(past.at)
+    far = counted(calls, "call") if calls else counted(len(past.steps), "step")
+    return f"A game was interrupted after {far} ({when})."
+
+
+def begins_anew(verb: str) -> str:
+    """Say that a new game begins beside an interrupted one, and how to go on with that."""
+    return (
+        f"A new game begins. `tangy {verb} --resume` would go on with the interrupted one, "
+        "until another game is played."
+    )
+
+
+def people_words(count: int) -> str:
+    """Say that other people took part in the interrupted game, and what to do."""
+    return f"The interrupted game has {counted(count, 'player')}: add --users {count}."
+
+
+def report_words(path: str) -> str:
+    """Say where the report of an ended game is."""
+    return f"The report is in {path}."

@@ -1,0 +1,68 @@
+"""The question about a game that was interrupted, before another one begins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import GameWorld
+from tangy_profiles.past_game import PastGame
+from tangy_tui.text import interruptions as text
+
+if TYPE_CHECKING:
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.ui.program import Program
+
+
+@dataclass(frozen=True, slots=True)
+class GameToPlay:
+    """What is played: a past game that goes on, or (None) a new one."""
+
+    past: PastGame | None
+
+
+async def ask_about_interrupted(program: Program, world: GameWorld) -> GameToPlay | None:
+    """Ask about a game that was interrupted in a world; None: nothing is played now."""
+    from tangy_tui.app.interruption import end_interrupted, find_interrupted
+    from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+
+    workspace = program.workspace
+    past = find_interrupted(workspace, world)
+    if past is None:
+        return GameToPlay(None)
+    words = text.interrupted_words(past, len(past.called(workspace.activity)))
+    ways = [text.RESUME, text.END, text.DISCARD]
+    if set(past.beginning.people) != set(workspace.names):
+        ways = ways[1:]
+    answer = await program.push_screen_wait(ChooseDialog(words, [Option(*way) for way in ways]))
+    match answer:
+        case "resume":
+            return GameToPlay(past)
+        case "discard":
+            end_interrupted(workspace, past, text.ENDED)
+            return GameToPlay(None)
+        case "end":
+            end_interrupted(workspace, past, text.ENDED)
+            await _report(program, workspace, past)
+    return None
+
+
+async def _report(program: Program, workspace: Workspace, past: PastGame) -> None:
+    """Write the report of an ended game into the data folder, and say where it is."""
+    from tangy_tui.monitoring.games import find_games, read_games
+    from tangy_tui.monitoring.session import read_session
+    from tangy_tui.pages import page
+    from tangy_tui.pages.session import session_page
+    from tangy_tui.ui.dialogs.message import MessageDialog
+
+    activity, store = workspace.activity, workspace.store
+    found = find_games(read_games(store), past.beginning.game)
+    session = read_session(store, found, {activity.name: activity}, workspace.names)
+    path = store.folder / f"report-{past.beginning.game}.html"
+    try:
+        page.write(path, session_page(session), "the report")
+        said = text.report_words(str(path))
+    except TangyError as error:
+        said = str(error)
+    await program.push_screen_wait(MessageDialog(said, title=text.TITLE))

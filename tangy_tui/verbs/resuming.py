@@ -1,0 +1,63 @@
+"""What the verbs that play share about a game that was interrupted."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import SIMULATED, GameWorld
+from tangy_tui.text import interruptions as text
+
+if TYPE_CHECKING:
+    from tangy_profiles.past_game import PastGame
+    from tangy_tui.app.workspace import Workspace
+
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Go on with the game that was interrupted, without asking.")
+]
+Discard = Annotated[
+    bool, typer.Option("--discard", help="End the game that was interrupted, and play a new one.")
+]
+
+
+def past_game(
+    workspace: Workspace, world: GameWorld, *, resume: bool, discard: bool, asks: bool
+) -> PastGame | None:
+    """Return the interrupted game that is to go on, None where a new game is to begin.
+
+    Args:
+        workspace: whose games.
+        world: where is played now.
+        resume: it goes on without a question.
+        discard: it is ended.
+        asks: a screen asks about it later; else a new game begins beside it, which is said.
+
+    Raises:
+        TangyError: nothing was interrupted, or other people took part in it.
+    """
+    from tangy_tui.app.interruption import end_interrupted, find_interrupted
+
+    if resume and discard:
+        raise TangyError(text.BOTH)
+    past = find_interrupted(workspace, world)
+    if past is None:
+        if resume:
+            raise TangyError(text.NONE)
+        return None
+    if discard:
+        end_interrupted(workspace, past, text.ENDED)
+        return None
+    if resume:
+        people = past.beginning.people
+        if set(people) != set(workspace.names):
+            raise TangyError(text.people_words(len(people)))
+        return past
+    if not asks:
+        calls = len(past.called(workspace.activity))
+        verb = "play" if world == SIMULATED else "live"
+        print(f"tangy: {text.interrupted_words(past, calls)}", file=sys.stderr)
+        print(f"tangy: {text.begins_anew(verb)}", file=sys.stderr)
+    return None

@@ -1,0 +1,250 @@
+"""A game that was interrupted goes on where it was: deck, calls, requests, stage, beliefs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.beliefs import Beliefs
+from tangy_profiles.game_records import GameBeginning, GameEnding, GameResumed, GameStep
+from tangy_profiles.game_world import BENCH, SIMULATED
+from tangy_profiles.past_game import NotResumable, PastGame, interrupted_game
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_profiles.state import ActivityState
+from tangy_profiles.tracker import Tracker
+from tangy_tui.app.game_commands import GoOn, TakeBackCall
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.interruption import end_interrupted, find_interrupted
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.monitoring.supervision import Supervision
+from tests.hw.links import FakeLink
+
+SEED = 31
+
+
+class Interrupted:
+    """A data folder in which games are played, and interrupted by leaving them as they are."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.workspace = Workspace(folder)
+        self.supervision = self.new()
+
+    def new(self) -> Supervision:
+        policy, _ = load_policy(self.workspace.store, self.workspace.activity)
+        return self.workspace.supervision(policy, SEED)
+
+    def play(self, steps: int, *, whole: int = 0) -> None:
+        """Play so many whole games, and so many steps of another one."""
+        control = scripted_controller(self.supervision)
+        for _ in range(whole):
+            control.begin()
+            while not self.supervision.over:
+                go_on_by_script(control, expert=False)
+        control.begin()
+        while self.supervision.steps < steps:
+            go_on_by_script(control, expert=False)
+
+    def interrupt(self) -> None:
+        """Leave the program as a crash does, and start it anew."""
+        self.workspace.close()
+        self.workspace = Workspace(self.folder)
+        self.supervision = self.new()
+
+    def past(self) -> PastGame:
+        past = find_interrupted(self.workspace, SIMULATED)
+        assert past is not None
+        return past
+
+    def resume(self) -> GameController:
+        control = scripted_controller(self.supervision, self.past())
+        control.begin()
+        return control
+
+    @property
+    def standing(self) -> tuple[ActivityState, tuple[int, ...], tuple[str, ...], Beliefs]:
+        """Where the game is: its state, the numbers called, who asks, what is believed."""
+        scene = self.supervision.world.scene()
+        believed = {
+            f"{person}: {strategy}": belief
+            for person, beliefs in self.supervision.persuasion.beliefs.items()
+            for strategy, belief in beliefs.items()
+        }
+        return self.supervision.world.observe(), scene.called, scene.requests, believed
+
+
+@pytest.fixture
+def room(taught: Path) -> Iterator[Interrupted]:
+    room = Interrupted(taught)
+    yield room
+    room.workspace.close()
+
+
+@pytest.mark.parametrize("steps", [1, 2, 7, 20, 33])
+def test_it_stands_where_it_stood_and_waits_for_staff(room: Interrupted, steps: int) -> None:
+    room.play(steps)
+    stood = room.standing
+    room.interrupt()
+    control = room.resume()
+    assert room.standing == stood and room.supervision.steps == steps
+    assert str(control.phase) == "paused" and control.next() == []
+    control.apply(GoOn())
+    assert str(control.phase) == "running"
+
+
+def test_the_numbers_come_as_they_would_have_come(room: Interrupted) -> None:
+    room.play(0)
+    control = scripted_controller(room.supervision)
+    while not room.supervision.over:
+        go_on_by_script(control, expert=False)
+    whole = room.supervision.world.scene().called
+    room.interrupt()
+    room.play(12)
+    room.interrupt()
+    control = room.resume()
+    while not room.supervision.over:
+        go_on_by_script(control, expert=False)
+    called = room.supervision.world.scene().called
+    shorter = min(len(called), len(whole))  # it may be won sooner: people are asked otherwise
+    assert called[:shorter] == whole[:shorter] and shorter > 12
+
+
+def test_the_second_game_of_a_run_goes_on_as_well(room: Interrupted) -> None:
+    room.play(9, whole=1)
+    stood = room.standing
+    room.interrupt()
+    assert len(room.past().earlier) == 1
+    room.resume()
+    assert room.standing == stood and room.supervision.games == 2
+
+
+def test_a_game_goes_on_again_and_again_and_its_log_is_one_game(room: Interrupted) -> None:
+    room.play(5)
+    room.interrupt()
+    control = room.resume()
+    while room.supervision.steps < 11:
+        go_on_by_script(control, expert=False)
+    room.interrupt()
+    control = room.resume()
+    while not room.supervision.over:
+        go_on_by_script(control, expert=False)
+    store = room.workspace.store
+    assert len(list(store.events(GameBeginning))) == len(list(store.events(GameEnding))) == 1
+    assert [event.record.steps for event in store.events(GameResumed)] == [5, 11]
+    (end,) = store.events(GameEnding)
+    assert end.record.stopped is None
+    assert end.record.steps == len(list(store.events(GameStep)))
+    assert find_interrupted(room.workspace, SIMULATED) is None
+
+
+def test_an_ended_game_is_not_offered_any_more(room: Interrupted) -> None:
+    room.play(4)
+    room.interrupt()
+    end_interrupted(room.workspace, room.past(), "over")
+    assert find_interrupted(room.workspace, SIMULATED) is None
+    (end,) = room.workspace.store.events(GameEnding)
+    assert (end.record.steps, end.record.stopped) == (4, "over")
+
+
+def test_no_game_without_a_step_or_of_another_world_is_offered(
+    room: Interrupted,
+) -> None:
+    room.play(0)
+    room.interrupt()
+    assert find_interrupted(room.workspace, SIMULATED) is None
+    room.play(3)
+    assert find_interrupted(room.workspace, BENCH) is None
+    assert interrupted_game(room.workspace.store, "another") is None
+
+
+def test_with_other_people_it_does_not_go_on(room: Interrupted) -> None:
+    room.play(4)
+    room.interrupt()
+    room.workspace.close()
+    room.workspace = Workspace(room.folder, users=3)
+    room.supervision = room.new()
+    with pytest.raises(NotResumable, match="other people"):
+        room.resume()
+
+
+def test_where_the_log_leads_elsewhere_the_game_does_not_go_on(room: Interrupted) -> None:
+    room.play(8)
+    room.interrupt()
+    past = room.past()
+    *steps, last = past.steps
+    assert last.after is not None
+    moved = replace(last, after=last.after._replace(place="user2"))
+    other = replace(past, steps=(*steps, moved))
+    with pytest.raises(NotResumable, match="do not come out"):
+        scripted_controller(room.supervision, other).begin()
+
+
+# ------------------------------------------------------------------------------ with a robot
+
+
+class Robot:
+    """A live game over a fake link."""
+
+    def __init__(self, workspace: Workspace, past: PastGame | None = None) -> None:
+        policy, _ = load_policy(workspace.store, workspace.activity)
+        self.link = FakeLink(tuple(workspace.names))
+        self.world = LiveWorld(
+            workspace.activity, tuple(workspace.names), cast(RobotLink, self.link),
+            load_robot(), load_room(), seed=SEED, names=workspace.names, pace=0.0,
+        )  # fmt: skip
+        supervision = workspace.supervision(policy, SEED, asks=True, world=self.world)
+        self.control = GameController(supervision, "Ada", robot=self.world, past=past)
+        self.control.begin()
+
+    def next(self, times: int) -> None:
+        for _ in range(times):
+            self.control.next()
+
+
+def test_a_live_game_goes_on_with_the_order_of_its_numbers(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.next(6)
+    before.control.apply(TakeBackCall())
+    gone, called = before.world.called, tuple(before.world.called)
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    after = Robot(workspace, past)
+    assert tuple(after.world.called) == called and after.control.phase == "paused"
+    assert not [said for said in after.link.told if said.startswith("go")]  # nothing moves
+    after.control.apply(GoOn())
+    for robot in (before, after):
+        robot.next(4)
+    assert after.world.called == gone and len(after.world.called) > len(called)
+    workspace.close()
+
+
+def test_the_log_of_every_game_leads_where_the_game_was(room: Interrupted) -> None:
+    policy, _ = load_policy(room.workspace.store, room.workspace.activity)
+    kinds = ("card-out-of-sight", "request-withdrawn", "no-effect", "carried-off", "request-stuck")
+    game = room.workspace.supervision(
+        policy, 5, asks=True, injections=[f"{kind}~0.05" for kind in kinds]
+    )
+    control = scripted_controller(game)
+    for _ in range(6):
+        with room.workspace.store.transaction():
+            control.begin()
+            while not game.over:
+                go_on_by_script(control, expert=True)
+    trackers: dict[str, Tracker] = {}
+    followed = 0
+    for event in room.workspace.store.events(GameStep):
+        people = tuple(user.id for user in event.record.state.users)
+        tracker = trackers.setdefault(event.record.game, Tracker(room.workspace.activity, people))
+        assert tracker.follow(event.record)
+        followed += 1
+    assert len(trackers) == 6 and followed > 200
