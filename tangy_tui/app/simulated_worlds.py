@@ -9,6 +9,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
+from tangy_profiles.store import Store
 from tangy_tui.world import World
 
 if TYPE_CHECKING:
@@ -44,15 +45,35 @@ def game_world(
     return FaultyWorld(activity, people, seed=seed, injections=injections)
 
 
-def teaching_world(activity: Activity, shown: Demonstration) -> World:
-    """Make the simulated world of a demonstration, in which people ask more often."""
-    if isinstance(activity, DeclaredActivity):
-        from tangy_sim.worlds.declared_world import DeclaredWorld
+def teaching_world(activity: Activity, shown: Demonstration, store: Store) -> World:
+    """Make the simulated world of a demonstration, in which people ask more often.
 
-        return DeclaredWorld(activity, shown.people, seed=shown.seed)
+    A guided one of an activity that is declared by facts brings about what the demonstrations
+    before it in the log have not shown.
+    """
+    if isinstance(activity, DeclaredActivity):
+        return _declared_teaching(activity, shown, store)
     from tangy_sim.worlds.guidance import GuidedWorld
     from tangy_sim.worlds.users import load_users
     from tangy_sim.worlds.world import SimulatedWorld
 
     kind = GuidedWorld if shown.guided else SimulatedWorld
     return kind(activity, shown.people, seed=shown.seed, users=load_users().teaching())
+
+
+def _declared_teaching(activity: DeclaredActivity, shown: Demonstration, store: Store) -> World:
+    from tangy_sim.worlds.declared_guidance import GuidedDeclaredWorld
+    from tangy_sim.worlds.declared_world import DeclaredWorld
+
+    if not shown.guided:
+        return DeclaredWorld(activity, shown.people, seed=shown.seed)
+    from tangy_profiles.declared.shown_moves import ShownMoves
+    from tangy_tui.learning.library import read_library
+
+    known = ShownMoves(activity.behaviours)
+    for id, entry in read_library(store, activity.name).entries.items():
+        if id == shown.id:
+            break
+        for step in () if entry.hidden else entry.demonstration.steps:
+            known.show(step.state, step.behaviour, step.target)
+    return GuidedDeclaredWorld(activity, shown.people, seed=shown.seed, shown=known)

@@ -264,7 +264,7 @@ class Workspace:
         """Make the simulated world of a demonstration, in which people ask more often."""
         from tangy_tui.app.simulated_worlds import teaching_world
 
-        return teaching_world(self.activity, shown)
+        return teaching_world(self.activity, shown, self.store)
 
     def supervision(
         self,

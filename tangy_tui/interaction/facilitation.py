@@ -12,6 +12,7 @@ from typing import TypeAlias
 from uuid import uuid4
 
 from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.declared.whom import Addressee, addressee
 from tangy_profiles.demonstration import Step
 from tangy_profiles.game_records import GameBeginning, GameEnding, GameResumed, GameStep
 from tangy_profiles.past_game import PastGame
@@ -39,7 +40,6 @@ from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.teaching_session import NOTHING_SAID
 from tangy_tui.learning.verification import Verifier
-from tangy_tui.learning.whom import Addressee, addressee
 from tangy_tui.world import World
 
 _LOG = logging.getLogger(__name__)

@@ -19,13 +19,13 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.declared.whom import Whom, learn_whom
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FACTS, Situation
 from tangy_profiles.teaching_records import ForestSettings as ForestSettings
 from tangy_profiles.teaching_records import LearntRow, PolicyLearnt
 from tangy_tui.learning.conflicts import Resolution, find_conflicts, training_rows
-from tangy_tui.learning.whom import Whom, learn_whom
 
 SURE = 0.7
 """The vote share below which a decision is called unsure."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import EVERYBODY
 from tangy_tui.learning.teaching_events import Next, TeachingEvent
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
-from tangy_tui.learning.whom import first_addressee
 
 SCRIPTED = "scripted"
 """The name under which its demonstrations are kept."""

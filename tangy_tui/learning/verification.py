@@ -11,10 +11,10 @@ from typing import TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import EVERYBODY, ActivityState
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
 from tangy_tui.language.stop_sentence import stops
-from tangy_tui.learning.whom import first_addressee
 
 ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
 LEAVE = "leave without executing it"

@@ -10,19 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_profiles.activity import load_activity, read_activity, shipped_activities
-from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.activity import read_activity, shipped_activities
 from tangy_profiles.declared.reader import read_declaration
 from tangy_profiles.declared.source import MistakesError
 from tangy_profiles.errors import ProfileError
+from tests.support.declared import DECLARED
 from tests.support.laws import tried
 
 SHIPPED = shipped_activities()["trivia"]
 TEXT = SHIPPED.read_text(encoding="utf-8")
 TOKENS = [match.span() for match in re.finditer(r"[a-z_]{3,}", TEXT)]
-DECLARED = [
-    name for name in shipped_activities() if isinstance(load_activity(name), DeclaredActivity)
-]
 
 
 @pytest.fixture

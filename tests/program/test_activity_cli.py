@@ -81,7 +81,7 @@ def test_the_list_names_what_can_be_played(tangy: Tangy) -> None:
     bingo = next(one for one in listed if one["name"] == "bingo")
     assert (bingo["name"], len(bingo["behaviours"]), len(bingo["situations"])) == ("bingo", 11, 11)
     assert "Bingo" in tangy("activity", "list").stdout
-    assert {"trivia", "team-trivia"} <= {one["name"] for one in listed}
+    assert {"exercises", "trivia", "team-trivia"} <= {one["name"] for one in listed}
     assert json.loads(tangy("activity", "--json").stdout) == listed
 
 

@@ -9,13 +9,9 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from tangy_profiles.activity import load_activity, shipped_activities
-from tangy_profiles.declared.activity import DeclaredActivity
+from tests.support.declared import DECLARED
 
 Tangy = Callable[..., CompletedProcess[str]]
-DECLARED = [
-    name for name in shipped_activities() if isinstance(load_activity(name), DeclaredActivity)
-]
 
 
 @pytest.mark.parametrize("name", DECLARED)
@@ -23,7 +19,9 @@ def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
     name: str, tangy: Tangy, tmp_path: Path
 ) -> None:
     options = ("--activity", name, "--data", tmp_path)
-    taught = tangy("teach", "--teacher", "scripted", "--games", 4, "--seed", 1, *options)
+    taught = tangy(
+        "teach", "--teacher", "scripted", "--guided", "--games", 2, "--seed", 1, *options
+    )
     assert (taught.returncode, taught.stderr) == (0, "")
     assert tangy("learn", *options).returncode == 0
     played = tangy("play", "--games", 100, "--headless", "--json", "--seed", 7, *options)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 import unicodedata
+from functools import lru_cache
 
 from tangy_profiles.declared.model import Fact, Items
 
@@ -15,6 +16,7 @@ ALIKE = 0.85
 LETTERS = "abcdefgh"
 
 
+@lru_cache(maxsize=4096)
 def plain_words(text: str) -> str:
     """Return a text as answers are compared: small letters, no accents, no marks, no article."""
     folded = unicodedata.normalize("NFKD", text.casefold())

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from tangy_profiles.declared.vocabulary import (
+    ADDRESSED,
     Comparison,
     Does,
     Kind,
@@ -154,17 +155,38 @@ class Declaration:
     patience: float = 10.0
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
+    def bounds_of(self, fact: Fact) -> tuple[int, ...]:
+        """Return the numbers between which a count or a timer (in s) is told apart, rising."""
+        numbers = {
+            one.number
+            for one in self.conditions
+            if one.fact == fact.name and one.comparison in (">=", "<")
+        }
+        return tuple(sorted(numbers.union(fact.bands)))
+
     @cached_property
-    def thresholds(self) -> dict[str, int]:
-        """Return up to which number a count or a timer matters to anything, by fact."""
-        found: dict[str, int] = {}
-        for fact in self.facts.values():
-            if fact.bands:
-                found[fact.name] = fact.bands[-1]
-        for condition in self.conditions:
-            if condition.comparison in (">=", "<"):
-                found[condition.fact] = max(found.get(condition.fact, 0), condition.number)
-        return found
+    def most_counted(self) -> int:
+        """Return the highest number that a count is compared with."""
+        counts = [fact for fact in self.facts.values() if fact.kind == "count"]
+        return max((bound for fact in counts for bound in self.bounds_of(fact)), default=0)
+
+    @cached_property
+    def looked_at(self) -> tuple[tuple[Fact, tuple[int, ...]], ...]:
+        """Return the facts that change and that anything looks at, with their bounds."""
+        names = {one.fact for one in self.conditions}
+        names.update(name for stage in self.stages for name in stage.sees)
+        return tuple(
+            (fact, self.bounds_of(fact))
+            for fact in self.facts.values()
+            if fact.name in names and not fact.built_in and fact.kind != "test"
+        )
+
+    @cached_property
+    def remembers_addressed(self) -> bool:
+        """Whether it matters who was spoken to last."""
+        looked = any(one.fact == ADDRESSED for one in self.conditions)
+        seen = any(ADDRESSED in stage.sees for stage in self.stages)
+        return looked or seen or bool(self.selectors & {"addressed", "next in circle"})
 
     @cached_property
     def conditions(self) -> tuple[FactCondition, ...]:

@@ -12,6 +12,7 @@ from random import Random
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.acts import Act, acts, take_in
 from tangy_profiles.declared.game import DeclaredGame, Execution
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.model import Items
@@ -24,7 +25,6 @@ from tangy_profiles.past_game import PastGame
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import EVERYBODY, ActivityState, Outcome, Response
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
-from tangy_sim.worlds.declared_people import Act, acts, take_in
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.users import load_users
 
@@ -96,7 +96,7 @@ class DeclaredWorld:
         seconds = 1.0 + SECONDS_A_WORD * len(speech.split())
         self._did.clear()
         response = self._respond(done, action)
-        game.now += seconds
+        self._pass(seconds)
         self.over = game.over
         if not game.over:
             self._let_people_act()
@@ -143,6 +143,10 @@ class DeclaredWorld:
                     self._take_in(Act(fact, one, value))
                 response = reply if person else None
         return response
+
+    def _pass(self, seconds: float) -> None:
+        """Let time pass while the robot speaks, in s."""
+        self.game.now += seconds
 
     def _let_people_act(self) -> None:
         self.game.now += PAUSE

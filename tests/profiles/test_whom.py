@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tangy_profiles.activity import load_activity
+from tangy_profiles.declared.whom import addressee, learn_whom
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import ActivityState, Situation, UserState
-from tangy_tui.learning.whom import addressee, learn_whom
 
 BEHAVIOUR = load_activity("trivia").behaviours["repeat question"]
 

@@ -1,0 +1,280 @@
+"""Searching the games that can come about: what is next to be shown, and what can be at all.
+
+A search follows the interpreter from state to state: a behaviour, then one thing that happens.
+States that differ in nothing that any condition, selector or stage looks at count as one.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections import deque
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from tangy_profiles.declared.acts import Act, acts, take_in
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.model import Declaration
+from tangy_profiles.declared.shown_moves import UNDECIDED, Move, ShownMoves
+from tangy_profiles.declared.vocabulary import ASKING
+from tangy_profiles.state import FRONT, Situation
+
+Event = tuple[Act, ...] | float
+"""What happens after a behaviour: acts of people, or that so many s pass without one."""
+FEW = 2
+_Node = tuple[bool, Hashable]
+"""Whether it is the robot's move, and the state."""
+SOON = 1.0
+"""So many s pass where nothing in particular is to happen."""
+MOST_STATES = 60_000
+MOST_AHEAD = 5_000
+"""States that are looked at for what is to happen next."""
+MOST_ASKING = 2
+"""More do not ask at once in a search."""
+FEWEST_ROUNDS = 2
+MOST_PLAYERS = 2
+"""A search of every game has no more: states grow with every one."""
+
+
+def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Event]:
+    """Yield what may happen now, one thing at a time.
+
+    Args:
+        game: the game.
+        last: whether people may do what ends a game as well.
+        few: of those who may all do the same, only two, or all of them together.
+    """
+    yield SOON
+    ends = {(habit.fact, value) for habit in game.declaration.habits for value in habit.last}
+    able: dict[tuple[str, str], list[Act]] = {}
+    for act in acts(game):
+        if act.fact == ASKING and len(game.queue) >= MOST_ASKING:
+            continue
+        if last or (act.fact, act.value) not in ends:
+            able.setdefault((act.fact, act.value), []).append(act)
+    for (fact, _), same in able.items():
+        yield from ((act,) for act in (same[:FEW] if few else same))
+        if few and len(same) > 1 and fact != ASKING:
+            yield tuple(same)
+    seconds = _until_next_band(game)
+    if seconds is not None:
+        yield seconds
+
+
+def happen(game: DeclaredGame, event: Event) -> None:
+    """Let something happen in a game."""
+    if isinstance(event, float):
+        game.now += event
+        return
+    for act in event:
+        take_in(game, act)
+
+
+def state_key(game: DeclaredGame) -> Hashable:
+    """Return all of a game's state that can matter to how it goes on."""
+    declaration, turn, order = game.declaration, game.turn, game.players
+    if not declaration.selectors & {"quietest", "next in circle"}:
+        order, turn = (*order[turn:], *order[:turn]), 0
+    place = {player: number for number, player in enumerate(order)}
+    values, counts, facts = game.values, game.counts, list[object]()
+    for fact, bounds in declaration.looked_at:
+        for player in order if fact.per_player else ("",):
+            if fact.kind in ("flag", "choice"):
+                value = values.get((fact.name, player))
+                facts.append(None if value == fact.values[0] else value)
+                continue
+            kept = counts.get((fact.name, player))
+            if kept is not None:
+                timer = fact.kind == "timer"
+                place_of = bisect_right(bounds, game.now - kept) if timer else 0
+                facts.append(place_of if timer else min(kept, bounds[-1]) if bounds else 0)
+            else:
+                facts.append(None if fact.kind == "timer" else 0)
+    acts_of: tuple[int, ...] = ()
+    if "quietest" in declaration.selectors:
+        least = min(game.acts.values())
+        acts_of = tuple(min(game.acts[one] - least, 2) for one in order)
+    return (
+        tuple(facts),
+        game.round,
+        turn,
+        tuple(place[one] for one in game.queue),
+        game.place if game.place == FRONT else place[game.place],
+        place.get(game.addressed or "", -1) if declaration.remembers_addressed else -1,
+        place.get(game.actor or "", -1) if "last to act" in declaration.selectors else -1,
+        acts_of,
+        game.over,
+    )
+
+
+@dataclass
+class Reach:
+    """Which situations games can come to, by what was taught or by any behaviour.
+
+    `open` are those reached in which nothing was shown, or in which selectors disagree. `whole`
+    says whether the search came to its end, so that nothing else can be reached. `stuck` is a
+    situation from which no game ends, if there is one.
+    """
+
+    reached: dict[Situation, int] = field(default_factory=dict)
+    open: dict[Situation, str] = field(default_factory=dict)
+    states: int = 0
+    whole: bool = True
+    stuck: Situation | None = None
+    played: dict[str, int] = field(default_factory=dict)
+
+
+def nearest_event(game: DeclaredGame, taught: ShownMoves, most: int = MOST_AHEAD) -> Event | None:
+    """Return what should happen now so that the nearest situation not shown comes about.
+
+    What ends a game comes last. None: nothing can be reached that was not shown.
+    """
+    for last in (False, True):
+        found = _nearest(game, taught, last, most)
+        if found is not None:
+            return found
+    return None
+
+
+def _nearest(game: DeclaredGame, taught: ShownMoves, last: bool, most: int) -> Event | None:
+    known: set[Hashable] = set()
+    waiting: deque[tuple[DeclaredGame, Event]] = deque()
+    for event in events(game, last=last, few=True):
+        other = game.copy()
+        happen(other, event)
+        waiting.append((other, event))
+    while waiting and len(known) < most:
+        one, first = waiting.popleft()
+        key = state_key(one)
+        if key in known:
+            continue
+        known.add(key)
+        move = taught.move(one)
+        if move is None or move[0] == UNDECIDED:
+            return first
+        done = _done(one, move)
+        for event in () if done.over else events(done, last=last, few=True):
+            other = done.copy()
+            happen(other, event)
+            waiting.append((other, first))
+    return None
+
+
+def _done(game: DeclaredGame, move: Move) -> DeclaredGame:
+    """Return the game after a behaviour, which people have followed."""
+    done = game.copy()
+    for person, fact, value in done.execute(*move).invited:
+        for one in (person,) if person else done.players:
+            take_in(done, Act(fact, one, value))
+    return done
+
+
+def explore(
+    game: DeclaredGame,
+    moves: Callable[[DeclaredGame], Sequence[Move]],
+    situation: Callable[[DeclaredGame], Situation],
+    most: int = MOST_STATES,
+) -> Reach:
+    """Search everything that can be reached from a game.
+
+    Between two behaviours any number of people may act, one after another, and time may pass.
+
+    Args:
+        game: where the search begins.
+        moves: the behaviours that may be done in a state; none where nothing was shown.
+        situation: gives the situation of a state.
+        most: the states that are looked at.
+    """
+    found = Reach()
+    begin = (True, state_key(game))
+    waiting: deque[tuple[DeclaredGame, _Node]] = deque([(game, begin)])
+    known: dict[_Node, DeclaredGame] = {begin: game}
+    before: dict[_Node, list[_Node]] = {}
+    ends: list[_Node] = []
+
+    def reach_node(other: DeclaredGame, robot: bool, node: _Node) -> None:
+        new = (robot, state_key(other))
+        before.setdefault(new, []).append(node)
+        if other.over:
+            ends.append(new)
+        elif new not in known:
+            if len(known) >= most:
+                found.whole = False
+                return
+            known[new] = other
+            waiting.append((other, new))
+
+    while waiting:
+        one, node = waiting.popleft()
+        if not node[0]:  # people act, and then it is the robot's move
+            reach_node(one, True, node)
+            for event in events(one, last=True):
+                other = one.copy()
+                happen(other, event)
+                reach_node(other, False, node)
+            continue
+        here = situation(one)
+        found.reached[here] = found.reached.get(here, 0) + 1
+        able = moves(one)
+        if not able or able[0][0] == UNDECIDED:
+            found.open[here] = able[0][0] if able else ""
+            ends.append(node)  # whoever is asked decides how it goes on
+            continue
+        for move in able:
+            found.played[move[0]] = found.played.get(move[0], 0) + 1
+            reach_node(_done(one, move), False, node)
+    found.states = sum(robot for robot, _ in known)
+    if found.whole:
+        stuck = _stuck(known, before, ends)
+        found.stuck = situation(stuck) if stuck is not None else None
+    return found
+
+
+def _stuck(
+    known: dict[_Node, DeclaredGame],
+    before: dict[_Node, list[_Node]],
+    ends: list[_Node],
+) -> DeclaredGame | None:
+    """Return a state from which no end can be reached, None if there is none."""
+    can, waiting = set(ends), deque(ends)
+    while waiting:
+        for earlier in before.get(waiting.popleft(), ()):
+            if earlier not in can:
+                can.add(earlier)
+                waiting.append(earlier)
+    return next((game for node, game in known.items() if node not in can), None)
+
+
+def search_game(game: DeclaredGame) -> DeclaredGame:
+    """Return a game to search: it has no more rounds than conditions can tell apart."""
+    most = max(FEWEST_ROUNDS, 1 + game.declaration.most_counted)
+    rounds = min(len(game.order), most)
+    return DeclaredGame(game.declaration, game.players, game.order[:rounds] or game.order)
+
+
+def _until_next_band(game: DeclaredGame) -> float | None:
+    """Return in how many s a timer comes into its next band, None if none runs to one."""
+    left: list[float] = []
+    for (name, player), _ in game.counts.items():
+        fact = game.declaration.facts[name]
+        if fact.kind == "timer":
+            number = game.number(fact, player or None)
+            bounds = game.declaration.bounds_of(fact)
+            left += [bound - number for bound in bounds if bound > number]
+    return min(left, default=None)
+
+
+def reach(declaration: Declaration, players: Sequence[str], taught: ShownMoves) -> Reach:
+    """Search every game that can come about by what was taught.
+
+    Args:
+        declaration: the activity.
+        players: those who take turns; more than `MOST_PLAYERS` add nothing that is new.
+        taught: what to do in which situation.
+    """
+    game = DeclaredGame(declaration, players[:MOST_PLAYERS], range(declaration.items.rounds))
+
+    def moves(now: DeclaredGame) -> list[Move]:
+        move = taught.move(now)
+        return [] if move is None else [move]
+
+    return explore(search_game(game), moves, taught.situation)

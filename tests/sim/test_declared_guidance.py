@@ -1,0 +1,85 @@
+"""A guided game of a declared activity shows what nobody has shown, and a search proves it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.search import reach
+from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
+from tangy_profiles.declared.vocabulary import Selector
+from tangy_profiles.declared.whom import first_addressee
+from tangy_profiles.state import ActivityState
+from tangy_sim.worlds.declared_guidance import GuidedDeclaredWorld
+from tangy_sim.worlds.declared_world import DeclaredWorld
+from tests.support.declared import DECLARED, declared
+
+MOST_STEPS = 400
+
+
+def whom(activity: DeclaredActivity, state: ActivityState, behaviour: str) -> str | None:
+    selector: Selector | None = activity.whom_expected(state.situation)
+    if selector is None:
+        return first_addressee(activity.behaviours[behaviour], state)
+    return dict(state.whom).get(selector)
+
+
+def play(world: DeclaredWorld, activity: DeclaredActivity) -> list[ActivityState]:
+    states = [world.begin()]
+    while not world.over:
+        state = states[-1]
+        name = activity.expected[state.situation]
+        target = whom(activity, state, name)
+        world.execute(activity.action(activity.behaviours[name], target, None))
+        states.append(world.observe())
+        assert len(states) < MOST_STEPS
+    return states
+
+
+@pytest.mark.parametrize("name", DECLARED)
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_two_guided_games_show_all_that_can_come_about(name: str, count: int) -> None:
+    activity = declared(name)
+    players = activity.teams or tuple(f"user{number}" for number in range(1, count + 1))
+    taught = ShownMoves(activity.behaviours)
+    for seed in (1, 2):
+        world = GuidedDeclaredWorld(activity, players, seed=seed, shown=taught)
+        play(world, activity)
+        taught = world.taught
+    found = reach(activity.declaration, players, taught)
+    assert found.whole
+    assert found.open == {}
+    assert found.stuck is None
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_the_same_seed_and_actions_give_the_same_states(name: str) -> None:
+    activity = declared(name)
+    players = activity.teams or ("user1", "user2")
+    one = play(DeclaredWorld(activity, players, seed=5), activity)
+    assert one == play(DeclaredWorld(activity, players, seed=5), activity)
+    assert one != play(DeclaredWorld(activity, players, seed=6), activity)
+
+
+def test_what_was_shown_before_is_not_brought_about_again() -> None:
+    activity = declared("trivia")
+    nothing = ShownMoves(activity.behaviours)
+    first = GuidedDeclaredWorld(activity, ("user1", "user2"), seed=1, shown=nothing)
+    long = play(first, activity)
+    second = GuidedDeclaredWorld(activity, ("user1", "user2"), seed=1, shown=first.taught)
+    play(second, activity)
+    assert second.covered
+    assert len({state.situation for state in long}) == len(activity.situations)
+
+
+def test_a_search_names_what_was_not_shown() -> None:
+    activity = load_activity("trivia")
+    assert isinstance(activity, DeclaredActivity)
+    taught = ShownMoves(activity.behaviours)
+    taught.shown = dict(activity.expected)
+    left_out = next(s for s in activity.situations if s.stage == "over")
+    del taught.shown[left_out]
+    found = reach(activity.declaration, ("user1", "user2"), taught)
+    assert found.open[left_out] == ""
+    assert all(why == UNDECIDED for one, why in found.open.items() if one != left_out)

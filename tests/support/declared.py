@@ -1,0 +1,21 @@
+"""The activities that ship and are declared by facts."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from tangy_profiles.activity import load_activity, shipped_activities
+from tangy_profiles.declared.activity import DeclaredActivity
+
+
+@cache
+def declared(name: str) -> DeclaredActivity:
+    """Return a declared activity that ships, by its name."""
+    activity = load_activity(name)
+    assert isinstance(activity, DeclaredActivity)
+    return activity
+
+
+DECLARED = [
+    name for name in shipped_activities() if isinstance(load_activity(name), DeclaredActivity)
+]
