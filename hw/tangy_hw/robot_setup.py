@@ -22,6 +22,7 @@ class RobotSetup:
     `requests` is a source of requests (see `perception.requests.sources`), `corners` the table's
     in its picture. `faces` are rows of features by person, of the kind `face_kind`. `pairing` is
     what tablets are known by (see `drivers.chest_pairing`); without one they pair anew.
+    `courtesies` are what it says to those for whom it stands on its way (see `Courtesies`).
     """
 
     robot: str
@@ -40,6 +41,7 @@ class RobotSetup:
     map: str = ""
     log: str = ""
     pairing: Mapping[str, str] = field(default_factory=dict)
+    courtesies: Mapping[str, str] = field(default_factory=dict)
 
     def to_json(self) -> str:
         """Write it as a line."""

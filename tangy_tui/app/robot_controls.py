@@ -67,6 +67,11 @@ class RobotControls:
         """Where it is driving to now, a person's id or the front; "" where it drives nowhere."""
         return "" if self._robot is None else self._robot.link.state.going
 
+    @property
+    def lets(self) -> str:
+        """For whom it stands on its way, as `RobotState.lets` has it; "" for nobody."""
+        return "" if self._robot is None else self._robot.link.state.lets
+
     def rests(self, decision: Decision) -> bool:
         """Say whether it is too early for the next call."""
         if self._robot is None or not (self.paced and decision.sure):

@@ -158,14 +158,15 @@ def open_robot(
     map_: str = "",
     lost: bool = False,
     cards: Mapping[str, int] | None = None,
+    courtesies: Mapping[str, str] | None = None,
     cancellation: Cancellation | None = None,
 ) -> Iterator[LiveWorld]:
     """Open a robot that is there, by the drivers of its profile; `pace` is in s.
 
     Who asks is told by `requests` (and the `corners` of the table in its pictures), or by what the
     robot's file names. It stands at the front, unless it is `lost`: then it is to find its place by
-    itself. `cards` are the numbers of the cards that were dealt, by person. Until it is open it
-    can be called off by `cancellation`.
+    itself. `cards` are the numbers of the cards that were dealt, by person, `courtesies` what it
+    says to people for whom it waits. Until it is open it can be called off by `cancellation`.
 
     Raises:
         Cancelled: it was called off.
@@ -189,6 +190,7 @@ def open_robot(
         robot=str(workspace.robot.file),
         activity=workspace.profile,
         people=tuple(workspace.names),
+        courtesies=courtesies or {},
         cameras=dict(named.split("=", 1) for named in cameras),
         requests=requests,
         corners=corners,

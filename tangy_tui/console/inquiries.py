@@ -59,5 +59,6 @@ class Inquiries:
         state = world.observe()
         seen = state_words(world.activity, state, world.scene(), self._name)
         now = world.activity.in_words(state.situation)
-        going = going_words(self._controller.robot.going, self._name)
+        robot = self._controller.robot
+        going = going_words(robot.going, self._name, robot.lets)
         return " ".join(filter(None, (f"Now: {now}.", going, f"{seen} ({self._controller.phase})")))

@@ -98,7 +98,7 @@ class StaffLines:
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._writing = threading.Lock()
         self._write_line = write
-        self._prompted = self._going = ""
+        self._prompted, self._going = "", ("", "")
         self._calls = 0
         self._alone = self._stopped = self._ended = self._by_turns = False
         self._leaves = False  # staff ended it while no game could begin
@@ -276,9 +276,10 @@ class StaffLines:
 
     def _tell_where_it_goes(self) -> None:
         """Say that the robot begins to drive: who reads lines does not see it."""
-        if (going := self._controller.robot.going) != self._going:
+        robot = self._controller.robot
+        if (going := (robot.going, robot.lets)) != self._going:
             self._going = going
-            if words := going_words(going, self._name):
+            if words := going_words(going[0], self._name, going[1]):
                 self._write(words)
 
     def _is_due(self, line: str, early: deque[str]) -> bool:

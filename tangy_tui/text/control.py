@@ -14,7 +14,23 @@ HELD = {
 }
 """What is said where the robot does not drive as it is told."""
 
+COURTESIES = {
+    "walking": "I let you pass.",
+    "standing": "May I pass, please?",
+}
+"""What the robot says to people for whom it waits on its way."""
+
 NOT_ACCEPTABLE = "Tangy asks about nothing that could be said to be all right."
+
+
+WAITS = {
+    "walking": "It lets somebody pass.",
+    "standing": "It waits: somebody is in the way.",
+}
+"""Why the robot stands on its way."""
+
+WAITS_SHORT = {"walking": "lets somebody pass", "standing": "somebody is in the way"}
+"""The same in a line with other things."""
 
 
 def autonomy_words(level: Autonomy) -> str:
@@ -30,11 +46,12 @@ def autonomy_words(level: Autonomy) -> str:
             assert_never(forgotten)
 
 
-def going_words(going: str, name: Callable[[str], str]) -> str:
-    """Say where the robot is driving to; "" where it drives nowhere."""
+def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
+    """Say where the robot is driving to, and for whom it waits; "" where it drives nowhere."""
     if not going:
         return ""
-    return f"Tangy drives to {'the front' if going == FRONT else name(going)}."
+    waits = f" {words}" if (words := WAITS.get(lets)) else ""
+    return f"Tangy drives to {'the front' if going == FRONT else name(going)}.{waits}"
 
 
 def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:

@@ -148,12 +148,13 @@ def live(
         number = workspace.game_seed(seed) if past is None else past.beginning.seed
         from tangy_tui.app.dealing import read_dealt
         from tangy_tui.app.robot_opening import check_map, opening_of
+        from tangy_tui.text.control import COURTESIES
 
         if map_:
             check_map(workspace, map_)
         own = {
             "cameras": camera or (), "requests": requests, "corners": read_corners(table),
-            "cards": read_dealt(card or (), workspace.people),
+            "cards": read_dealt(card or (), workspace.people), "courtesies": COURTESIES,
         }  # fmt: skip
 
         def opening(seed: int) -> Opening:

@@ -1,53 +1,24 @@
-"""How much room there is along an arc, by what the scanner sees: the one look of all who drive.
+"""How much room there is along an arc, by what the scanner sees, whatever that is.
 
-A scanner a hand's breadth above the floor sees legs. Of what may be somebody, room counts from
-where a torso and toes are; of what the map has, from what is seen.
+How much of a command may be driven past people is the guard's to say (`people_guard`).
 """
 
 from __future__ import annotations
 
-from math import inf, pi, sqrt
-from typing import NamedTuple, TypeAlias
+from math import inf, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Twist
 from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.people_guard import Around, passed
 from tangy_hw.navigation.poses import Floats, lengths
-
-Mask: TypeAlias = NDArray[np.bool_]
 
 REACH = 3.0  # metres beyond which nothing matters yet
 MARGIN = 0.02  # metres by which a scan may be wrong
 AWAY = 0.02  # metres by which driving must bring something nearer than it is, to count
 STRAIGHT = 0.02  # 1/m of curvature below which an arc is a line
-ASIDE = pi / 4  # radians off straight ahead within which a body counts as being before it
 SPOT = 0.02  # m/s below which a robot turns on the spot
-
-
-class Seen(NamedTuple):
-    """What a scanner sees around: points (n, 2) in the robot's frame in m, nearer than `REACH`.
-
-    `bodies` (n,) says which of them may be somebody.
-    """
-
-    points: Floats
-    bodies: Mask
-
-    def behind(self) -> Seen:
-        """Return the same as a robot sees it that drives backwards: what is behind is before it."""
-        return Seen(self.points * np.array([-1.0, 1.0]), self.bodies)
-
-
-class Clearance(NamedTuple):
-    """How far, in m, the robot may go along an arc (`free`), and how far a body is on it (`body`).
-
-    `free` ends short of what would be touched; `body` where the robot would come up to somebody.
-    """
-
-    free: float
-    body: float
 
 
 def free_ahead(points: Floats, curvature: float, half: float | Floats) -> float:
@@ -77,54 +48,47 @@ def free_ahead(points: Floats, curvature: float, half: float | Floats) -> float:
     return float(np.min(along - np.sqrt(wide[hit] ** 2 - off**2)))
 
 
-def room_ahead(seen: Seen, curvature: float, limits: MotionLimits) -> Clearance:
-    """Return how much room there is before a robot on an arc (1/m, positive to the left).
+def room_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
+    """Return how many metres the robot may go on an arc (1/m, positive to the left).
 
     What it stands near already does not count as long as driving brings it no nearer: it is
     possible to drive away from everything.
     """
-    points, bodies = seen
-    if not len(points):
-        return Clearance(inf, inf)
-    at_most = np.maximum(lengths(points) - AWAY, 0.0)
-    half = limits.radius + MARGIN + np.where(bodies, limits.torso, 0.0)
-    free = free_ahead(points, curvature, np.minimum(half, at_most)) - limits.gap
-    return Clearance(free, _body_ahead(points[bodies], curvature, limits))
-
-
-def _body_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
-    """Return how far a body is before the robot: on the arc, or aside from where it may step in."""
     if not len(points):
         return inf
-    reach = limits.radius + limits.torso
-    there = lengths(points)
-    aside = np.abs(np.arctan2(points[:, 1], points[:, 0])) < ASIDE
-    on_it = free_ahead(points, curvature, np.minimum(reach + limits.gap, there - AWAY))
-    return min(on_it, float(there[aside].min() - reach) if aside.any() else inf)
+    at_most = np.maximum(lengths(points) - AWAY, 0.0)
+    return free_ahead(points, curvature, np.minimum(limits.radius + MARGIN, at_most)) - limits.gap
 
 
-def speed_in(room: Clearance, limits: MotionLimits) -> float:
-    """Return how fast a robot may drive into some room, in m/s: it must be able to stop in it."""
-    fast = sqrt(2 * limits.brake * max(0.0, min(room.free, REACH)))
-    return min(fast, limits.careful) if room.body < limits.near else fast
+def speed_in(room: float, limits: MotionLimits) -> float:
+    """Return how fast a robot may drive into some room in m, in m/s: it must stop in it."""
+    return sqrt(2 * limits.brake * max(0.0, min(room, REACH)))
 
 
-def guarded(twist: Twist, seen: Seen, limits: MotionLimits) -> Twist:
-    """Return a twist as it may be driven by hand, past what is seen: on the same arc, or turning.
+def guarded(twist: Twist, points: Floats, around: Around, limits: MotionLimits) -> Twist:
+    """Return a twist as it may be driven by hand: on the same arc, or turning.
 
     It is slower before what is near and stands before what is close; then it still turns. Where a
     scanner sees little, which is behind, it is slow whatever is seen. A round robot touches nothing
     more by turning; beside what is close it does so slowly.
+
+    Args:
+        twist: what it is told.
+        points: what there is to run into (n, 2), in the robot's frame.
+        around: what of that may be people.
+        limits: how it may drive.
     """
     forward, turn = limits.clamped(twist)
     if abs(forward) >= SPOT:
-        view = seen if forward > 0 else seen.behind()
+        view = points if forward > 0 else points * np.array([-1.0, 1.0])
         most = speed_in(room_ahead(view, turn / forward, limits), limits)
         most = min(most, limits.unseen) if forward < 0 else most
         if most >= SPOT:
             slower = min(1.0, most / abs(forward))
-            return Twist(forward * slower, turn * slower)
-    near = float(lengths(seen.points).min()) if len(seen.points) else inf
-    if near < limits.radius + limits.torso + limits.gap:
+            safe = passed(Twist(forward * slower, turn * slower), around, limits)
+            if abs(safe.forward) >= SPOT:
+                return safe
+    near = float(lengths(points).min()) if len(points) else inf
+    if near < limits.radius + limits.close:
         turn = max(-limits.turn_close, min(limits.turn_close, turn))
     return Twist(0.0, turn)

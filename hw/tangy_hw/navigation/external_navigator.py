@@ -2,7 +2,8 @@
 
 What that tells the base does not pass through our hands. So a robot that must not drive has its
 goal called off, and goes on with it when it may again; until the robot has confirmed that, it
-counts as driving, and whoever holds this tells the base to stand.
+counts as driving, and whoever holds this tells the base to stand. It is so for somebody who walks
+into its way as well: how fast it drives cannot be changed here, whether it does can.
 """
 
 from __future__ import annotations
@@ -13,9 +14,13 @@ from math import pi
 import numpy as np
 
 from tangy_hw.device_protocols import STILL, Odometry, OwnNavigation, Pose, Scan, Twist
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import SPIN, State
-from tangy_hw.navigation.poses import Floats
+from tangy_hw.navigation.people_guard import WALKS, Around, passed
+from tangy_hw.navigation.people_tracker import PeopleTracker, Track
+from tangy_hw.navigation.poses import HERE, Floats
+from tangy_hw.navigation.surroundings import Held
 from tangy_profiles.health import Fact, Reading
 
 AGAIN_SECONDS = 0.5  # for which it must be allowed to drive until it goes on
@@ -25,12 +30,18 @@ CLEARING_SECONDS = 10.0  # that people have to clear a way, which cannot be look
 class ExternalNavigator:
     """Lets a robot's own navigation find place and way."""
 
-    def __init__(self, navigation: OwnNavigation) -> None:
-        """Begin without a goal."""
+    def __init__(
+        self, navigation: OwnNavigation, limits: MotionLimits | None = None, laser: Pose = HERE
+    ) -> None:
+        """Begin without a goal; `laser` is where the scanner sits on the robot."""
         self.state: State = "idle"
         self.why = ""
         """Why it failed or is blocked: one sentence."""
         self.path = None
+        self.lets: Held = ""
+        """Who is let pass: somebody who walks into its way."""
+        self.tracks: tuple[Track, ...] = ()
+        self._tracker, self._limits = PeopleTracker(laser), limits or MotionLimits()
         self.obstacles: Floats = np.zeros((0, 2))
         self.unseen: Floats = np.zeros((0, 2))
         self.particles: Floats = np.zeros((0, 3))
@@ -79,6 +90,7 @@ class ExternalNavigator:
         """Hand the goal over when it may drive, and turn to look round; `dt` in s."""
         self._allowed += dt
         self._since_blocked += dt
+        self._watch(odometry, scan, dt)
         if self.state == "spinning":
             self._turned += abs(odometry.twist.turn) * dt
             if self._turned < 2 * pi:
@@ -88,6 +100,20 @@ class ExternalNavigator:
         if goal is not None and self._allowed >= AGAIN_SECONDS:
             self._driving = asyncio.create_task(self._drive(goal))
         return STILL
+
+    def _watch(self, odometry: Odometry, scan: Scan | None, dt: float) -> None:
+        """Follow who is around, and have it wait for somebody who walks into its way."""
+        if scan is None:
+            return
+        tracks = self._tracker.update(odometry.pose, scan, dt)
+        self.tracks = tuple(one.seen_from(odometry.pose) for one in tracks)
+        if self.lets and self._allowed < AGAIN_SECONDS:
+            return  # it goes on when nobody has come for a moment
+        walking = [one for one in self.tracks if one.speed > WALKS]
+        meets = passed(odometry.twist, Around(walking, np.zeros((0, 2))), self._limits) == STILL
+        self.lets = "walking" if self.drives and meets and odometry.twist != STILL else ""
+        if self.lets:
+            self.held()
 
     # ------------------------------------------------------------------ what it knows
     @property

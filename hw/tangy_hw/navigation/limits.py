@@ -12,11 +12,14 @@ from tangy_hw.device_protocols import STILL, Twist
 class MotionLimits:
     """How a base may drive: m/s, rad/s, m/s^2, rad/s^2, and metres.
 
-    `radius` is the robot's own, `gap` what it always keeps free ahead. A laser sees legs: `torso`
-    is how far a body reaches out over what is seen of it. Within `near` before a body it drives at
-    no more than `careful`, and within `wary` of one, on any side, at no more than `gentle`.
-    `unseen` is how fast it drives where its laser does not look, `turn_close` how fast it turns
-    beside what is close.
+    `radius` is the robot's own, `gap` what it always keeps free ahead. Within `wary` of people, on
+    any side, it drives at no more than `gentle`. `unseen` is how fast it drives where its laser
+    does not look; within `close` of anything it turns no faster than `turn_close`.
+
+    Past people it must be able to stop before they meet (see `people_guard`): `late` is how many s
+    pass until it brakes, `stops` how hard it then does, `spare` how many metres are left at the
+    end. People are taken to come `approach` m/s faster than they do now, those who have just
+    appeared `approach_new`.
     """
 
     speed: float = 0.5
@@ -26,13 +29,16 @@ class MotionLimits:
     spin_up: float = 2.0
     radius: float = 0.25
     gap: float = 0.12
-    torso: float = 0.15
-    near: float = 1.0
-    careful: float = 0.15
     wary: float = 1.2
     gentle: float = 0.25
     unseen: float = 0.1
     turn_close: float = 0.4
+    close: float = 0.27
+    late: float = 0.3
+    stops: float = 1.0
+    spare: float = 0.09
+    approach: float = 0.35
+    approach_new: float = 0.8
 
     def clamped(self, twist: Twist) -> Twist:
         """Return a twist on the same arc that is no faster than it may be; no number is none.

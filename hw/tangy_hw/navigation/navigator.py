@@ -13,11 +13,11 @@ import numpy as np
 from numpy.random import Generator
 
 from tangy_hw.device_protocols import STILL, Odometry, Pose, Scan, Twist
-from tangy_hw.navigation.clearance import AWAY, REACH, Seen
+from tangy_hw.navigation.clearance import AWAY, REACH
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import WIDE, Estimate, Localisation
-from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import OccupancyMap
+from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.planning import (
     BESIDE,
     KEEP,
@@ -28,9 +28,10 @@ from tangy_hw.navigation.planning import (
     near_ends,
     plan,
 )
-from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, placed
+from tangy_hw.navigation.poses import HERE, Floats, between, lengths, placed
 from tangy_hw.navigation.pursuit import Pursuit
 from tangy_hw.navigation.slip_detection import Disagreement
+from tangy_hw.navigation.surroundings import Held, Surroundings
 from tangy_profiles.health import OK, Fact, Reading
 
 State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived", "failed"]
@@ -38,6 +39,7 @@ State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived"
 can never be a way, or it does not find itself."""
 
 PATIENCE = 1.0  # seconds something may stand in the way until another way is looked for
+PATIENCE_WALKING = 3.0  # the same for somebody who walks
 AGAIN = 1.0  # seconds between two looks for a way while there is none
 NO_WAY = 2.0  # seconds without a way until it is said that there is none
 PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres that must be made in so long
@@ -90,8 +92,10 @@ class Navigator:
         self.still = 0.0
         self._radius, self._keep, self._laser = radius, keep, laser
         self._localisation = Localisation(map_, rng, start, laser)
-        self._obstacles = Obstacles(map_, laser)
+        self._around = Surroundings(map_, laser, self.limits)
         self._disagreement = Disagreement(laser)
+        self.lets: Held = ""
+        """Who is let pass, or stands in the way, while it stands for somebody."""
         self._pursuit: Pursuit | None = None
         self._given_up: Floats | None = None
         self._way = "clear"
@@ -150,7 +154,7 @@ class Navigator:
     def place(self, pose: Pose | None) -> None:
         """Take it that the robot is at a pose now (None: anywhere), as staff say."""
         self._localisation.place(pose)
-        self._obstacles.forget()
+        self._around.forget()
         self._stop_following()
 
     def finds_way(self, goal: Pose) -> bool:
@@ -165,9 +169,14 @@ class Navigator:
         return self._estimate
 
     @property
+    def tracks(self) -> tuple[Track, ...]:
+        """Who and what is around and not on the map, in the robot's frame."""
+        return self._around.tracks
+
+    @property
     def obstacles(self) -> Floats:
         """What it sees and the map does not have (n, 2)."""
-        return self._obstacles.points
+        return self._around.points
 
     @property
     def unseen(self) -> Floats:
@@ -219,8 +228,7 @@ class Navigator:
             return STILL
         estimate = self._estimate = self._localisation.update(odometry.pose, scan)
         self.slip = self._disagreement.update(odometry.pose, scan)
-        if estimate.spread < 0.3:
-            self._obstacles.see(estimate.pose, scan, dt)
+        self._around.see(estimate, odometry.pose, scan, dt)
         self._told = self._command(estimate, odometry, scan, dt)
         return self._told
 
@@ -245,7 +253,7 @@ class Navigator:
             self._turned, self._turn_to = 0.0, 2 * pi
             self.state = "spinning"
             self._stop_following()
-            self._obstacles.forget()
+            self._around.forget()
             return STILL
         self._since_plan += dt
         if self._pursuit is None:
@@ -283,7 +291,9 @@ class Navigator:
 
     def _plan(self, pose: Pose, goal: Pose) -> Path | None:
         ends = (pose.x, pose.y), (goal.x, goal.y)
-        return plan(self.map, *ends, self.obstacles, self._radius, self._keep)
+        around = self._around
+        standing, walking = around.standing, around.walking
+        return plan(self.map, *ends, standing, self._radius, self._keep, walking)
 
     def _take(self, path: Path, goal: Pose, pose: Pose) -> None:
         """Follow a way; one that leaves the way that was given up is told when it has been gone."""
@@ -303,6 +313,7 @@ class Navigator:
 
     def _stop_following(self) -> None:
         self.path = self._pursuit = self._given_up = None
+        self.lets = ""
         self._waited = self._without = self._marked = 0.0
         self._mark = self._detour = None
 
@@ -316,19 +327,22 @@ class Navigator:
         gone = self._detour
         if gone is not None and hypot(pose.x - gone[0], pose.y - gone[1]) > TAKEN:
             self.state, self._way, self._detour = "replanned", "replanned", None
-        obstacles = self.obstacles
+        obstacles = self._around.standing
         wary_of = np.vstack((self.people, obstacles))
-        twist = pursuit.command(pose, odometry.twist, scan, dt, wary_of, self._seen(pose, scan))
+        wanted = pursuit.command(pose, odometry.twist, scan, dt, wary_of)
+        twist = self._around.passed(wanted)
         if pursuit.state == "arrived":
             self.state, self._way = "arrived", "clear"
             self._stop_following()
             return STILL
-        stands = pursuit.state == "waiting"
+        self.lets = self._around.held(wanted)
+        stands = pursuit.state == "waiting" or self.lets != ""
         if stands or self._touches(ahead[:LOOK_AHEAD], obstacles, pose, goal):
             self._waited += dt
         else:
             self._waited = 0.0
-        if self._waited >= PATIENCE and self._since_plan >= AGAIN:
+        patience = PATIENCE_WALKING if self.lets == "walking" else PATIENCE
+        if self._waited >= patience and self._since_plan >= AGAIN:
             self._since_plan = 0.0
             path, self._given_up = self._plan(pose, goal), ahead
             if path is not None:
@@ -342,11 +356,6 @@ class Navigator:
             self._block("It comes no further.")
             return STILL
         return twist
-
-    def _seen(self, pose: Pose, scan: Scan) -> Seen:
-        """Return what the scanner sees around, and what of it the map does not have."""
-        points = endpoints(scan, REACH, self._laser)
-        return Seen(points, self._obstacles.among(placed(points, pose)))
 
     def _touches(self, path: Floats, obstacles: Floats, pose: Pose, goal: Pose) -> bool:
         """Say whether a path comes nearer to an obstacle than ways keep, and than it is now."""

@@ -8,8 +8,10 @@ from typing import Protocol
 from tangy_hw.device_protocols import Odometry, Pose, Scan, Twist
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import State
+from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.planning import Path
 from tangy_hw.navigation.poses import Floats
+from tangy_hw.navigation.surroundings import Held
 from tangy_profiles.health import Fact, Reading
 
 
@@ -34,6 +36,16 @@ class NavigatorProtocol(Protocol):
     @property
     def path(self) -> Path | None:
         """The way it follows, as far as that is known."""
+        ...
+
+    @property
+    def lets(self) -> Held:
+        """Who is let pass, or stands in the way, while it stands for somebody."""
+        ...
+
+    @property
+    def tracks(self) -> tuple[Track, ...]:
+        """Who and what is around and not on the map, in the robot's frame."""
         ...
 
     @property

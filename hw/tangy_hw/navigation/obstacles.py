@@ -12,6 +12,10 @@ from tangy_hw.navigation.poses import HERE, Floats, compose, endpoints, placed, 
 
 OFF = 0.1  # metres from all that is on the map beyond which a return is not of it
 FIDGETING = 0.2  # the same where people sit who move their feet
+AWAY, AWAY_SHARE = (
+    0.15,
+    0.02,
+)  # metres, and of the range, off the map from which a beam is not of it
 RANGE = 6.0  # metres beyond which a beam is too uncertain to plan by
 SURE = 3  # scans in which a cell was hit until it counts
 KEPT = 30.0  # seconds after which what is not seen any more is forgotten
@@ -52,6 +56,25 @@ class Obstacles:
         found = np.ones(len(points), dtype=np.bool_)
         found[inside] = self._new[rows[inside], columns[inside]]
         return found
+
+    def unmapped(self, pose: Pose, scan: Scan) -> NDArray[np.bool_]:
+        """Say of each beam (n,) whether it ends off all that is on the map, if it does end."""
+        eye = compose(pose, self._laser)
+        met = np.isfinite(scan.ranges)
+        ranges = np.where(met, scan.ranges, 0.0)
+        angles = eye.heading + scan.first + scan.step * np.arange(len(ranges), dtype=np.float64)
+        x = eye.x + ranges * np.cos(angles) - self._map.origin[0]
+        y = eye.y + ranges * np.sin(angles) - self._map.origin[1]
+        columns = np.floor(x / self._map.resolution).astype(np.intp)
+        rows = np.floor(y / self._map.resolution).astype(np.intp)
+        inside = (rows >= 0) & (columns >= 0) & (rows < self._map.shape[0])
+        inside &= columns < self._map.shape[1]
+        away = np.zeros(len(ranges))  # what lies outside the map is seen through a door
+        away[inside] = self._map.seen_distance[rows[inside], columns[inside]]
+        beyond = AWAY + AWAY_SHARE * ranges
+        fidgets = np.zeros(len(ranges), dtype=np.bool_)
+        fidgets[inside] = self._map.feet[rows[inside], columns[inside]]
+        return met & (away > np.where(fidgets, np.maximum(beyond, FIDGETING), beyond))
 
     def _clear(self, pose: Pose, scan: Scan) -> None:
         """Forget what is old, and what a beam goes through now."""

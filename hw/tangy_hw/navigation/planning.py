@@ -32,6 +32,8 @@ begin and end elsewhere for that, and the torso over the legs is still not touch
 COMFORT = 0.25  # metres over which the cost of being near something falls to a third
 DISLIKE = 4.0  # how much dearer a metre is right beside something than far off it
 SQUEEZE = 12.0  # how much dearer again one is that is nearer to somebody than ways keep
+YIELD, YIELD_WITHIN = 6.0, 0.45
+"""How much dearer a metre is where somebody walks, and in how many metres that falls to a third."""
 STEP = 0.05  # metres between the points of a path
 OUT = 0.5  # metres by which a robot that stands too near to something may get away from it
 SLACK = 0.1  # metres: two cells, within which an end and its surroundings are told apart
@@ -73,6 +75,7 @@ def inflate(
     radius: float = RADIUS,
     keep: float = KEEP,
     ends: Sequence[tuple[float, float]] = (),
+    walking: Floats | None = None,
 ) -> Costs:
     """Return what each cell costs, with more obstacles at the points `blocked` (n, 2).
 
@@ -82,6 +85,7 @@ def inflate(
         radius: how near the robot's middle may come to what is on the map, in metres.
         keep: how near it may come to what is blocked, in metres.
         ends: where a way begins and ends: beside what stands there it may come nearer.
+        walking: where those who walk are and will be (n, 2): ways avoid that where they can.
     """
     distance = _distance(map_, ~map_.obstacles)
     spare = distance - radius
@@ -98,6 +102,10 @@ def inflate(
                 spare = np.minimum(spare, away - keep)
                 distance = np.minimum(distance, away)
     cost = 1.0 + DISLIKE * np.exp(-spare / COMFORT) + SQUEEZE * squeezed
+    if walking is not None and len(walking):
+        free = np.ones(map_.shape, dtype=np.bool_)
+        free[map_.cells_of(walking)] = False
+        cost += YIELD * np.exp(-_distance(map_, free) / YIELD_WITHIN)
     cost[closed] = inf
     return Costs(map_, cost, distance)
 
@@ -146,20 +154,22 @@ def plan(
     blocked: Floats | None = None,
     radius: float = RADIUS,
     keep: float = KEEP,
+    walking: Floats | None = None,
 ) -> Path | None:
     """Find the cheapest way from one point to another; None if there is none.
 
     A robot that stands nearer to something than it should first gets away from it. A goal that only
     the obstacles of `blocked` (n, 2) take away is no error: there is no way to it just now. From
-    those the way keeps `keep` metres, but where somebody stands beside its beginning or its end.
+    those the way keeps `keep` metres, but where somebody stands beside its beginning or its end;
+    it avoids where those are `walking` (m, 2) if it can.
 
     Raises:
         PlanError: the goal lies outside the map, or where the map says that something is.
     """
     costs = inflate(map_, None, radius)
     _check(costs, goal, radius)
-    if blocked is not None and len(blocked):
-        costs = inflate(map_, blocked, radius, keep, (start, goal))
+    if any(points is not None and len(points) for points in (blocked, walking)):
+        costs = inflate(map_, blocked, radius, keep, (start, goal), walking)
     if not np.isfinite(costs.at(*goal)):
         return None
     try:

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
-from tangy_hw.navigation.clearance import REACH, Seen, room_ahead, speed_in
+from tangy_hw.navigation.clearance import REACH, room_ahead, speed_in
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, wrap
 
@@ -75,7 +75,6 @@ class Pursuit:
         scan: Scan,
         dt: float,
         wary_of: Floats | None = None,
-        seen: Seen | None = None,
     ) -> Twist:
         """Return how to drive for the next `dt` seconds.
 
@@ -85,7 +84,6 @@ class Pursuit:
             scan: what the laser sees now.
             dt: seconds until the next command.
             wary_of: where people may be (n, 2), in the frame of the path.
-            seen: what of the scan may be somebody; None: all of it.
         """
         if self.state == "arrived":
             return STILL
@@ -95,11 +93,7 @@ class Pursuit:
         if off < THERE or (off < PASSED and (self._close or goal.x < 0)):
             self._close = off < PASSED
             return self._face(pose, twist, dt)
-        return self._drive(pose, twist, seen or self._seen(scan), dt, wary_of)
-
-    def _seen(self, scan: Scan) -> Seen:
-        points = endpoints(scan, REACH, self.laser)
-        return Seen(points, np.ones(len(points), dtype=np.bool_))
+        return self._drive(pose, twist, endpoints(scan, REACH, self.laser), dt, wary_of)
 
     def _advance(self, pose: Pose) -> None:
         """Go along the path to the point nearest to the robot, never back."""
@@ -115,7 +109,7 @@ class Pursuit:
         return self._turn(off, twist, dt)
 
     def _drive(
-        self, pose: Pose, twist: Twist, seen: Seen, dt: float, wary_of: Floats | None
+        self, pose: Pose, twist: Twist, seen: Floats, dt: float, wary_of: Floats | None
     ) -> Twist:
         limits = self.limits
         look = min(FURTHEST, NEAREST + PER_SPEED * abs(twist.forward))
@@ -136,8 +130,8 @@ class Pursuit:
         if abs(curvature) > 0.01:
             most = min(most, limits.turn / abs(curvature))
         room = room_ahead(seen, curvature, limits)
-        if room.free + limits.gap > left:  # what stands behind the goal leaves it free
-            room = room._replace(free=max(room.free, left))
+        if room + limits.gap > left:  # what stands behind the goal leaves it free
+            room = max(room, left)
         most = min(most, speed_in(room, limits))
         if wary_of is not None and len(wary_of):
             near = float(lengths(wary_of - (pose.x, pose.y)).min())

@@ -19,7 +19,8 @@ class RobotState:
     `failed` what has failed of its control, for which only another robot process helps. `frozen` is
     for how many s its control stood still, until staff have seen to that; `held` is what it does
     about who drives it by hand: "" as told, "slow", or "stands". `waits` says which data is late,
-    while it stands for that; `pauses` is how often it has, and for how many s.
+    while it stands for that; `pauses` is how often it has, and for how many s. `lets` is for whom
+    it stands on its way: "walking" for somebody who passes, "standing" for somebody in the way.
     """
 
     number: int = 0
@@ -38,6 +39,7 @@ class RobotState:
     held: str = ""
     waits: str = ""
     pauses: tuple[int, float] = (0, 0.0)
+    lets: str = ""
 
     @classmethod
     def from_json(cls, body: dict[str, Any]) -> RobotState:
@@ -59,6 +61,7 @@ class RobotState:
             body["held"],
             body["waits"],
             (body["pauses"][0], body["pauses"][1]),
+            body["lets"],
         )
 
 

@@ -26,6 +26,18 @@ class Body:
         own = (self.base, self.laser, self.stop_button, self.arms, self.voice, self.screen)
         return (*self.others, *(device for device in own if device is not None))
 
+    async def restart(self, device: str) -> None:
+        """Switch a device off and on again."""
+        for one in self.all:
+            if one.name == device:
+                await one.close()
+                await one.start()
+
+    async def relax(self) -> None:
+        """Let the arms hang without torque."""
+        if self.arms is not None:
+            await self.arms.relax()
+
     @property
     def at_hand(self) -> dict[str, str]:
         """What staff need once it is on: the address of the chest screen, and the code there.

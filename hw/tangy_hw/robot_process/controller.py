@@ -21,6 +21,7 @@ from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.control_loop import ControlLoop
+from tangy_hw.robot_process.courtesies import Courtesies
 from tangy_hw.robot_process.device_diagnostics import device_diagnostics
 from tangy_hw.robot_process.drive_monitor import DriveMonitor
 from tangy_hw.robot_process.hand_drive import HandDrive
@@ -56,6 +57,7 @@ class LiveRobot:
         senses: CardAndFacePerception | None = None,
         requests: RequestSource | None = None,
         stepped: bool = False,
+        courtesies: Mapping[str, str] | None = None,
     ) -> None:
         """Put it together.
 
@@ -67,11 +69,11 @@ class LiveRobot:
             senses: what reads its pictures.
             requests: who asks for help.
             stepped: its time stands still while nothing is done.
+            courtesies: what it says to those for whom it stands on its way (see `Courtesies`).
         """
         self.robot = robot
         self.navigator = navigator
-        self.senses = senses
-        self.requests = requests
+        self.senses, self.requests = senses, requests
         self.alone: Callable[[], str] = str
         """Says why nobody holds the reins any more, "" as long as somebody does."""
         self.left: Callable[[str], None] = lambda why: None
@@ -79,9 +81,7 @@ class LiveRobot:
         self.going = ""
         """Where it is driving to."""
         self.passing = ControlLoop(clock, self._tick, stepped=stepped)
-        self._body = body
-        self._clock = clock
-        self._stepped = stepped
+        self._body, self._clock, self._stepped = body, clock, stepped
         limits = MotionLimits(speed=robot.speed)
         self.hand = HandDrive(limits)
         self.watch = TickWatch(late=robot.liveness.fault_after)
@@ -90,6 +90,7 @@ class LiveRobot:
         self._alone_since: float | None = None
         self._left_alone = False
         self._performer = Performer(body, self.passing, robot.gaze, lambda: self._halted)
+        self._courtesies = Courtesies(courtesies or {}, lambda text: self.perform(text=text))
         self._wanted: Pose | None = None
         self._was = ""  # how the last drive ended
         self._evidence = DriveMonitor(navigator, clock.now)
@@ -302,15 +303,11 @@ class LiveRobot:
 
     async def restart(self, device: str) -> None:
         """Switch a device off and on again."""
-        for one in self._body.all:
-            if one.name == device:
-                await one.close()
-                await one.start()
+        await self._body.restart(device)
 
     async def relax(self) -> None:
         """Let the arms hang without torque."""
-        if self._body.arms is not None:
-            await self._body.arms.relax()
+        await self._body.relax()
 
     # ------------------------------------------------------------------------ in each tick
 
@@ -353,10 +350,11 @@ class LiveRobot:
         if odometry is not None:
             command = self.navigator.tick(odometry.value, seen, passed)
             self._evidence.note()
-        by_hand = self.hand.command(seen, now, self.navigator.unseen)
+        by_hand = self.hand.command(seen, now, self.navigator.unseen, self.navigator.tracks)
         command = command if by_hand is None else by_hand
         self._mind()
-        if self.hazard:
+        self._courtesies.note(self.navigator.lets, now)
+        if self.hazard or (self.navigator.lets and self.navigator.drives):
             command = STILL
             self._stand()
         elif command != STILL or not self._wheels.stand:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 
 from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
-from tangy_hw.navigation.clearance import REACH, Seen, guarded
+from tangy_hw.navigation.clearance import REACH, guarded
 from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.people_guard import Around
+from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.poses import HERE, Floats, endpoints
 
 HOLDS_SECONDS = 0.4  # for which a command of somebody at the keys holds
@@ -37,13 +40,20 @@ class HandDrive:
         """Forget the command."""
         self._told, self.held = STILL, ""
 
-    def command(self, scan: Scan | None, now: float, unseen: Floats | None = None) -> Twist | None:
+    def command(
+        self,
+        scan: Scan | None,
+        now: float,
+        unseen: Floats | None = None,
+        tracks: Sequence[Track] = (),
+    ) -> Twist | None:
         """Return how to drive now; None where nobody drives by hand.
 
         Args:
             scan: what the laser sees.
             now: the time in s.
             unseen: what is there as well (n, 2), in the robot's frame.
+            tracks: who is around, in the robot's frame.
         """
         if self._told == STILL:
             return None
@@ -54,12 +64,10 @@ class HandDrive:
             self.held = "stands"
             return STILL
         points = endpoints(scan, REACH, self._laser)
-        bodies = np.ones(len(points), dtype=np.bool_)
+        around = Around(tracks, points)
         if unseen is not None and len(unseen):
             points = np.vstack((points, unseen))
-            bodies = np.append(bodies, np.zeros(len(unseen), dtype=np.bool_))
-        seen = Seen(points, bodies)
-        twist = guarded(self._told, seen, self._limits)
+        twist = guarded(self._told, points, around, self._limits)
         self.held = _held(self._told, twist)
         return twist
 

@@ -42,6 +42,7 @@ from tangy_tui.text.control import (
     BUSY,
     NOT_WHILE_WORKING,
     VOID_DETAIL,
+    WAITS_SHORT,
     WHO_NEEDS_HELP,
     void_call_words,
 )
@@ -308,9 +309,12 @@ class LiveScreen(PlayScreen):
         """Say what keeps the robot busy on its wheels, "" if nothing does."""
         if self.working and self._world.lost:
             return "finds its place"
-        going = self._world.link.state.going
+        state = self._world.link.state
+        going = state.going
         if not going:
             return ""
+        if waits := WAITS_SHORT.get(state.lets):
+            return waits
         return f"drives to {'the front' if going == FRONT else self._workspace.name(going)}"
 
     def _until_call(self) -> str:

@@ -1,0 +1,128 @@
+"""Legs and bodies in one scan: clusters of returns, and which two of them are a person's legs."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import cos, hypot, sin
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tangy_hw.device_protocols import Pose, Scan
+from tangy_hw.navigation.likelihood import NEAREST
+from tangy_hw.navigation.poses import HERE, Floats, bearings, compose
+
+FARTHEST = 5.0  # metres beyond which a leg catches too few beams
+SPLIT, SPLIT_SHARE = 0.10, 0.02  # metres, and of the range, between the returns of two things
+SKIPPED = 3  # beams that met nothing of which one thing may have lost so many
+LEG = (0.03, 0.30)  # metres across
+BEHIND = 0.06  # metres from the side of a leg that is seen to its middle
+APART = (0.10, 0.45)  # metres between the two legs of a person
+CHAIR, SOLID = 0.25, 0.06  # legs further apart must both be so many metres across: chairs' are thin
+WIDEST = 0.9  # metres across, from which on it is a piece of furniture
+TORSO = 0.22  # metres from the middle of a person to the outermost of the torso
+REACH = 0.2  # metres that a torso and toes reach out beyond the middle of one leg, at least
+
+
+class Sighting(NamedTuple):
+    """A person, a leg or a thing in one scan: its middle, in m in the robot's frame.
+
+    `half` is how far it reaches out from there, in m; `legs` says whether two legs were seen.
+    """
+
+    x: float
+    y: float
+    half: float
+    legs: bool
+
+
+class Cluster(NamedTuple):
+    """Returns that belong to one thing: the middle behind its seen side, and how wide that is."""
+
+    x: float
+    y: float
+    width: float
+
+
+def sightings(
+    scan: Scan, laser: Pose = HERE, unmapped: NDArray[np.bool_] | None = None
+) -> list[Sighting]:
+    """Return the people and things in a scan that the map does not have.
+
+    Args:
+        scan: what was measured.
+        laser: where the scanner sits on the robot.
+        unmapped: (n,) for each beam, whether it ends off all that is on the map; None: all do.
+    """
+    found = clusters(scan, laser, unmapped)
+    legs = [one for one in found if LEG[0] <= one.width <= LEG[1]]
+    pairs = _pairs(legs)
+    paired = {number for pair in pairs for number in pair}
+    people = [
+        Sighting((legs[a].x + legs[b].x) / 2, (legs[a].y + legs[b].y) / 2, TORSO, True)
+        for a, b in pairs
+    ]
+    single = [
+        Sighting(leg.x, leg.y, REACH, False)
+        for number, leg in enumerate(legs)
+        if number not in paired
+    ]
+    wide = [
+        Sighting(one.x, one.y, max(one.width / 2, REACH), False)
+        for one in found
+        if LEG[1] < one.width <= WIDEST
+    ]
+    return people + single + wide
+
+
+def clusters(scan: Scan, laser: Pose, unmapped: NDArray[np.bool_] | None) -> list[Cluster]:
+    """Return the things of which a scan has returns, nearer than `FARTHEST`."""
+    kept = (scan.ranges > NEAREST) & (scan.ranges < min(FARTHEST, scan.farthest))
+    if unmapped is not None:
+        kept &= unmapped
+    beams = np.flatnonzero(kept)
+    if not len(beams):
+        return []
+    ranges, angles = scan.ranges[beams], bearings(scan)[beams]
+    points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
+    gaps = np.hypot(*np.diff(points, axis=0).T)
+    cut = (gaps > SPLIT + SPLIT_SHARE * ranges[1:]) | (np.diff(beams) > SKIPPED + 1)
+    bounds = [0, *(np.flatnonzero(cut) + 1).tolist(), len(beams)]
+    return [
+        _cluster(points[a:b], float(ranges[a:b].mean()), abs(scan.step), laser)
+        for a, b in pairwise(bounds)
+    ]
+
+
+def _cluster(points: Floats, far: float, step: float, laser: Pose) -> Cluster:
+    first, last = points[0], points[-1]
+    width = hypot(*(last - first)) + far * step
+    x, y = points.mean(axis=0)
+    out = 1.0 + BEHIND / max(hypot(x, y), BEHIND)
+    middle = compose(laser, Pose(float(x * out), float(y * out), 0.0))
+    return Cluster(middle.x, middle.y, width)
+
+
+def _pairs(legs: list[Cluster]) -> list[tuple[int, int]]:
+    """Return which legs belong together, the nearest to one another first."""
+    near = []
+    for a, one in enumerate(legs):
+        for b in range(a + 1, len(legs)):
+            apart = hypot(one.x - legs[b].x, one.y - legs[b].y)
+            solid = min(one.width, legs[b].width) >= SOLID
+            if APART[0] <= apart <= (APART[1] if solid else CHAIR):
+                near.append((apart, a, b))
+    taken: set[int] = set()
+    found = []
+    for _, a, b in sorted(near):
+        if a not in taken and b not in taken:
+            taken |= {a, b}
+            found.append((a, b))
+    return found
+
+
+def turned(x: float, y: float, heading: float) -> tuple[float, float]:
+    """Return a vector turned by an angle in rad."""
+    c, s = cos(heading), sin(heading)
+    return c * x - s * y, s * x + c * y

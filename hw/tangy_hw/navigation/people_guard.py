@@ -1,0 +1,103 @@
+"""The guard over people: how much of a command may be driven, past everybody who is around.
+
+A robot keeps apart from each of them by what it takes to stop before they meet, while they go on as
+they do and come towards it a little faster (separation and speed, as in ISO 13855; how fast they
+are taken to come is data, `MotionLimits.approach`, and slower than the 1.6 m/s of that standard, by
+which a robot would never get beside a seat). Only what driving brings nearer than standing counts:
+a robot that somebody walks up to may drive away from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tangy_hw.device_protocols import STILL, Twist
+from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.people_tracker import Track
+from tangy_hw.navigation.poses import Floats, lengths
+
+SHARES = (1.0, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2, 0.12)  # of a command that are tried
+REACH = 3.0  # metres beyond which nobody is met while the robot stops
+STEP = 0.1  # seconds between the moments that are looked at
+NEARER = 0.005  # metres by which driving must bring who stands nearer than standing, to count
+FURTHER, WALKS = 0.01, 0.25  # metres by which it must get away from who walks, at so many m/s
+SPOT = 0.02  # m/s below which a robot turns on the spot
+FRESH = 0.5  # seconds for which a person who has just appeared is taken to come fast
+END = 0.15  # metres that a body reaches out beyond a return of which nothing more is known
+
+
+class Around(NamedTuple):
+    """Who is around, in the robot's frame: tracks, and returns (n, 2) that the map has not."""
+
+    tracks: Sequence[Track]
+    ends: Floats
+
+
+def passed(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
+    """Return how much of a twist may be driven, on the same arc: all of it, less, or nothing."""
+    if abs(twist.forward) < SPOT:
+        return twist
+    bodies = _bodies(around, limits)
+    if not len(bodies.at):
+        return twist
+    for share in SHARES:
+        if _keeps_apart(twist.forward * share, twist.turn / twist.forward, bodies, limits):
+            return Twist(twist.forward * share, twist.turn * share)
+    return STILL
+
+
+class _Bodies(NamedTuple):
+    """Places (n, 2) in m, velocities (n, 2), how far each must be off, and how fast it may come.
+
+    Driving must leave it further off than standing would, by `leeway` in m, where both are too
+    near: no nearer than what stands, and further than who walks.
+    """
+
+    at: Floats
+    velocity: Floats
+    apart: Floats
+    approach: Floats
+    leeway: Floats
+
+
+def _bodies(around: Around, limits: MotionLimits) -> _Bodies:
+    tracks = [one for one in around.tracks if np.hypot(one.x, one.y) < REACH]
+    ends = around.ends[lengths(around.ends) < REACH]
+    rows = [
+        (
+            one.x,
+            one.y,
+            one.vx,
+            one.vy,
+            one.half + limits.spare,
+            limits.approach_new if one.age < FRESH else limits.approach,
+        )
+        for one in tracks
+    ]
+    rows += [(x, y, 0.0, 0.0, END + limits.spare, limits.approach) for x, y in ends]
+    table = np.array(rows, dtype=np.float64).reshape(-1, 6)
+    apart = table[:, 4] + limits.radius
+    walks = np.hypot(table[:, 2], table[:, 3]) > WALKS
+    leeway = np.where(walks, FURTHER, -NEARER)
+    return _Bodies(table[:, :2], table[:, 2:4], apart, table[:, 5], leeway)
+
+
+def _keeps_apart(speed: float, curvature: float, bodies: _Bodies, limits: MotionLimits) -> bool:
+    """Say whether the robot, driving so and then braking, comes too near to nobody."""
+    fast = abs(speed)
+    until = limits.late + fast / limits.stops
+    times = np.append(np.arange(STEP, until, STEP), until)
+    braking = np.maximum(times - limits.late, 0.0)
+    along = np.sign(speed) * (fast * times - limits.stops * braking**2 / 2)
+    turned = curvature * along
+    half = turned / 2
+    chord = along * np.sinc(half / np.pi)
+    robot = np.column_stack((chord * np.cos(half), chord * np.sin(half)))
+    people = bodies.at + times[:, None, None] * bodies.velocity
+    driving = np.hypot(*(people - robot[:, None]).transpose(2, 0, 1))
+    standing = np.hypot(*people.transpose(2, 0, 1))
+    near = driving < bodies.apart + bodies.approach * times[:, None]
+    return not bool((near & (driving < standing + bodies.leeway)).any())

@@ -1,0 +1,217 @@
+"""People and what else stands or moves around, followed from scan to scan: where, and how fast.
+
+Each is followed by a Kalman filter of constant velocity (Y. Bar-Shalom et al., "Estimation with
+applications to tracking and navigation", 2001, ch. 6) in the frame of the wheels, which never jumps
+as that of the map does. Of what stands still too little is known to tell a person from a chair, so
+that all of it is followed; `person` is only a word for staff.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import atan2, hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tangy_hw.device_protocols import Pose, Scan
+from tangy_hw.navigation.leg_detection import Sighting, sightings, turned
+from tangy_hw.navigation.poses import HERE, between, compose, wrap
+
+ACCELERATION = 1.5  # m/s^2, the deviation of how people change their pace
+MEASURED = 0.07  # metres, the deviation of a person's middle as a scan shows it
+FIRST_SPEED = 1.0  # m/s, the deviation of the speed of a person who has just appeared
+GATE = 0.55  # metres from where a person is expected within which a sighting is of them
+SURE = 3  # sightings from which on a track counts
+DROPPED, DROPPED_HIDDEN = 0.5, 1.5  # seconds unseen; hidden behind something, or out of view
+SETTLED, SETTLED_WAY, SETTLED_SECONDS = 1.0, 0.15, 0.9  # s of age, metres in so many s: it stands
+RUNS = 0.5  # m/s from which on it does not stand, however little way it has made
+WALKED, WALKED_SECONDS = 0.8, 0.8  # metres and seconds of walking that make a person
+LEGS_SHARE, LEGS_SECONDS = 0.7, 2.0  # of so many s with two legs that make a person
+
+
+@dataclass(frozen=True)
+class Track:
+    """Somebody or something around: its middle in m, velocity in m/s, in one frame.
+
+    `half` is how far it reaches out from its middle, in m; `age` and `stood` are since when it has
+    been followed, and has stood still, in s. `hidden` says that it is not seen just now.
+    """
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    half: float
+    age: float
+    stood: float
+    person: bool
+    hidden: bool
+
+    @property
+    def speed(self) -> float:
+        """How fast it moves, in m/s."""
+        return hypot(self.vx, self.vy)
+
+    def seen_from(self, pose: Pose) -> Track:
+        """Return the same in the frame of a pose that is told in the present frame."""
+        there = between(pose, Pose(self.x, self.y, 0.0))
+        vx, vy = turned(self.vx, self.vy, -pose.heading)
+        return Track(there.x, there.y, vx, vy, self.half, self.age, self.stood, self.person,
+                     self.hidden)  # fmt: skip
+
+
+@dataclass
+class _Followed:
+    """One track as it is followed; x and y share a covariance of place and velocity."""
+
+    state: NDArray[np.float64]  # (2, 2): place and velocity, x and y
+    half: float
+    covariance: NDArray[np.float64] = field(
+        default_factory=lambda: np.diag([MEASURED**2, FIRST_SPEED**2])
+    )
+    hits: int = 1
+    age: float = 0.0
+    unseen: float = 0.0
+    stood: float = 0.0
+    hidden: bool = False
+    person: bool = False
+    past: deque[tuple[float, float, float, bool]] = field(default_factory=deque)
+
+    def predict(self, dt: float) -> None:
+        step = np.array([[1.0, dt], [0.0, 1.0]])
+        drift = np.array([dt * dt / 2, dt])
+        self.state = step @ self.state
+        noise = np.outer(drift, drift) * ACCELERATION**2
+        self.covariance = step @ self.covariance @ step.T + noise
+        self.age += dt
+        self.unseen += dt
+
+    def correct(self, sighting: Sighting) -> None:
+        gain = self.covariance[:, 0] / (self.covariance[0, 0] + MEASURED**2)
+        self.state = self.state + np.outer(gain, (sighting.x, sighting.y) - self.state[0])
+        self.covariance = self.covariance - np.outer(gain, self.covariance[0])
+        self.half += 0.3 * (sighting.half - self.half)
+        self.hits += 1
+        self.unseen = 0.0
+        self.hidden = False
+
+    def note(self, legs: bool, dt: float) -> None:
+        """Take note of where it was, and judge by that whether it stands, and what it is."""
+        x, y = self.state[0]
+        self.past.append((self.age, float(x), float(y), legs))
+        while self.age - self.past[0][0] > LEGS_SECONDS:
+            self.past.popleft()
+        way = self._way(SETTLED_SECONDS)
+        if self.age > SETTLED and way < SETTLED_WAY and self._fast < RUNS:
+            self.stood += dt
+        else:
+            self.stood = 0.0
+        walked = self.age >= WALKED_SECONDS and self._way(LEGS_SECONDS) >= WALKED
+        pairs = sum(one[3] for one in self.past)
+        stands = self.age >= LEGS_SECONDS and pairs >= LEGS_SHARE * len(self.past)
+        self.person |= walked or stands
+
+    def _way(self, seconds: float) -> float:
+        x, y = self.state[0]
+        then = next(one for one in self.past if self.age - one[0] <= seconds)
+        return hypot(x - then[1], y - then[2])
+
+    @property
+    def _fast(self) -> float:
+        return float(np.hypot(*self.state[1]))
+
+    @property
+    def track(self) -> Track:
+        (x, y), (vx, vy) = self.state
+        if self.stood > 0:
+            vx = vy = 0.0
+        return Track(float(x), float(y), float(vx), float(vy), self.half, self.age, self.stood,
+                     self.person, self.hidden)  # fmt: skip
+
+
+class PeopleTracker:
+    """Follows everybody and everything that a scanner sees and a map does not have."""
+
+    def __init__(self, laser: Pose = HERE) -> None:
+        """Begin, with the scanner at a pose on the robot."""
+        self._laser = laser
+        self._followed: list[_Followed] = []
+
+    def update(
+        self,
+        odometry: Pose,
+        scan: Scan,
+        dt: float,
+        unmapped: NDArray[np.bool_] | None = None,
+    ) -> tuple[Track, ...]:
+        """Take in a scan, and return who and what is around, in the frame of the wheels.
+
+        Args:
+            odometry: where the wheels count the robot.
+            scan: what it sees from there.
+            dt: seconds since the scan before.
+            unmapped: (n,) for each beam, whether it ends off all that is on the map; None: all do.
+        """
+        for one in self._followed:
+            one.predict(dt)
+        found = [_placed(one, odometry) for one in sightings(scan, self._laser, unmapped)]
+        matched = self._matched(found)
+        for number, one in enumerate(self._followed):
+            sighting = matched.get(number)
+            if sighting is not None:
+                one.correct(found[sighting])
+            else:
+                one.hidden = _hidden(one, scan, compose(odometry, self._laser))
+            one.note(sighting is not None and found[sighting].legs, dt)
+        self._followed = [
+            one
+            for one in self._followed
+            if one.unseen <= (DROPPED_HIDDEN if one.hidden and one.hits >= SURE else DROPPED)
+        ]
+        taken = set(matched.values())
+        for number, sighting_ in enumerate(found):
+            if number not in taken:
+                state = np.array([[sighting_.x, sighting_.y], [0.0, 0.0]])
+                self._followed.append(_Followed(state, sighting_.half))
+        return self.tracks
+
+    @property
+    def tracks(self) -> tuple[Track, ...]:
+        """Who and what is around, in the frame of the wheels, once it was seen often enough."""
+        return tuple(one.track for one in self._followed if one.hits >= SURE)
+
+    def _matched(self, found: Sequence[Sighting]) -> dict[int, int]:
+        """Return which sighting belongs to which track, the nearest first."""
+        if not found or not self._followed:
+            return {}
+        at = np.array([one.state[0] for one in self._followed])
+        seen = np.array([(one.x, one.y) for one in found])
+        apart = np.hypot(*(at[:, None] - seen[None]).transpose(2, 0, 1))
+        matched: dict[int, int] = {}
+        taken: set[int] = set()
+        for number in np.argsort(apart, axis=None):
+            track, sighting = divmod(int(number), len(found))
+            if apart[track, sighting] > GATE:
+                break
+            if track not in matched and sighting not in taken:
+                matched[track] = sighting
+                taken.add(sighting)
+        return matched
+
+
+def _placed(one: Sighting, pose: Pose) -> Sighting:
+    there = compose(pose, Pose(one.x, one.y, 0.0))
+    return one._replace(x=there.x, y=there.y)
+
+
+def _hidden(one: _Followed, scan: Scan, eye: Pose) -> bool:
+    """Say whether a track could not be seen: something is before it, or no beam looks there."""
+    x, y = one.state[0]
+    there = between(eye, Pose(float(x), float(y), 0.0))
+    beam = round((wrap(atan2(there.y, there.x) - scan.first)) % (2 * np.pi) / scan.step)
+    if not 0 <= beam < len(scan.ranges):
+        return True
+    return bool(scan.ranges[beam] < hypot(there.x, there.y) - 0.3)

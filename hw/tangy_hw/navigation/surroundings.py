@@ -1,0 +1,117 @@
+"""All that is around the robot and not on the map: what stands there, and who walks by."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+
+from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
+from tangy_hw.navigation.clearance import REACH
+from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.localisation import Estimate
+from tangy_hw.navigation.obstacles import Obstacles
+from tangy_hw.navigation.occupancy import OccupancyMap
+from tangy_hw.navigation.people_guard import Around, passed
+from tangy_hw.navigation.people_tracker import PeopleTracker, Track
+from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
+
+Held = Literal["", "walking", "standing"]
+"""Who is let pass, or stands in the way: nobody, somebody who walks, somebody who stands."""
+
+SURE = 0.3  # metres of spread up to which what is seen is put on the map
+WALKS = 0.25  # m/s from which on somebody walks
+WALKERS = 0.5  # metres around somebody who walks in which what is seen is them
+AHEAD = (0.0, 0.7, 1.4, 2.1)  # seconds after which ways avoid those who walk
+
+
+class Surroundings:
+    """Keeps what a scanner sees and a map does not have, as things, as people, as an obstacle."""
+
+    def __init__(self, map_: OccupancyMap, laser: Pose, limits: MotionLimits) -> None:
+        """Begin with nothing around.
+
+        Args:
+            map_: what need not be minded.
+            laser: where the scanner sits on the robot.
+            limits: how the robot may drive past people.
+        """
+        self._obstacles = Obstacles(map_, laser)
+        self._tracker = PeopleTracker(laser)
+        self._laser, self._limits = laser, limits
+        self._pose = HERE
+        self._tracks: tuple[Track, ...] = ()
+        self._ends: Floats = np.zeros((0, 2))
+
+    def see(self, estimate: Estimate, odometry: Pose, scan: Scan, dt: float) -> None:
+        """Take in a scan, `dt` s after the one before, from where the robot thinks that it is."""
+        self._pose = estimate.pose
+        if estimate.spread < SURE:
+            self._obstacles.see(estimate.pose, scan, dt)
+        unmapped = self._obstacles.unmapped(estimate.pose, scan) if estimate.found else None
+        tracks = self._tracker.update(odometry, scan, dt, unmapped)
+        self._tracks = tuple(one.seen_from(odometry) for one in tracks)
+        points = endpoints(scan, REACH, self._laser)
+        if unmapped is not None:
+            points = points[self._obstacles.among(placed(points, estimate.pose))]
+        self._ends = points
+
+    def forget(self) -> None:
+        """Forget what stands where, as when the robot was somewhere else than it thought."""
+        self._obstacles.forget()
+
+    @property
+    def tracks(self) -> tuple[Track, ...]:
+        """Who and what is followed, in the robot's frame."""
+        return self._tracks
+
+    @property
+    def points(self) -> Floats:
+        """Where something is that is not on the map (n, 2), in the map's frame."""
+        return self._obstacles.points
+
+    @property
+    def standing(self) -> Floats:
+        """The same without those who walk."""
+        points, walkers = self.points, self._walkers
+        if not len(points) or not walkers:
+            return points
+        at = placed(np.array([(one.x, one.y) for one in walkers]), self._pose)
+        apart = ((points[:, None] - at[None]) ** 2).sum(axis=2).min(axis=1)
+        return np.asarray(points[apart > WALKERS**2])
+
+    @property
+    def walking(self) -> Floats:
+        """Where those who walk are and soon will be (n, 2), in the map's frame."""
+        found = [
+            (one.x + one.vx * after, one.y + one.vy * after)
+            for one in self._walkers
+            for after in AHEAD
+        ]
+        return placed(np.array(found, dtype=np.float64).reshape(-1, 2), self._pose)
+
+    def passed(self, twist: Twist) -> Twist:
+        """Return how much of a command may be driven past everybody who is around."""
+        return passed(twist, Around(self._tracks, self._ends), self._limits)
+
+    def held(self, twist: Twist) -> Held:
+        """Say who is in the way of a command that may not be driven at all."""
+        if self.passed(twist) != STILL or twist == STILL:
+            return ""
+        walkers = self._walkers
+        standing = [one for one in self._tracks if one not in walkers]
+        ends = self._ends[~_near(self._ends, walkers)]
+        without = passed(twist, Around(standing, ends), self._limits)
+        return "standing" if without == STILL else "walking"
+
+    @property
+    def _walkers(self) -> list[Track]:
+        return [one for one in self._tracks if one.speed > WALKS]
+
+
+def _near(points: Floats, tracks: Sequence[Track]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    near = np.zeros(len(points), dtype=np.bool_)
+    for one in tracks:
+        near |= lengths(points - (one.x, one.y)) < WALKERS
+    return near

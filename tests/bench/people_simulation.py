@@ -1,0 +1,221 @@
+"""People on legs or wheels in a simulated room, and a robot that drives among them.
+
+The geometry here is the bench's own, and knows what the robot does not: where torsos are. People
+are discs of which a laser sees the legs alone; the robot is a disc of .25 m, or what its body says,
+with a scanner of 270 degrees at 10 Hz (2 cm of noise, 3 % of beams and 1 % of scans lost) whose
+commands come .1 s late. Nobody walks through the robot: who comes up against it steps back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from math import atan2, cos, hypot, inf, pi, sin
+from typing import Literal
+
+import numpy as np
+from numpy.random import Generator
+
+from tangy_hw.device_protocols import STILL, Odometry, Pose, Scan, Twist
+from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.navigation.occupancy import map_of_room
+from tangy_hw.navigation.poses import wrap
+from tangy_profiles.room import load_room
+from tangy_sim.device_simulator.lidar import cast
+from tests.hw.raycast import Wheels, driven, room_sides
+
+TICK = 0.1  # s
+LATE = 1  # ticks until a command is carried out
+BEAMS, ANGLE = 360, 1.5 * pi
+NOISE, NO_BEAM, NO_SCAN = 0.02, 0.03, 0.01
+ROBOT, TORSO, LEG, APART = 0.25, 0.22, 0.06, 0.1  # m; the last: of a leg from the middle
+STRIDE, STEPS = 0.2, 1.0  # m that a leg swings to either side; swings a second
+GAIN, BRAKE, TURNS = 0.8, 1.0, 3.0  # m/s^2, m/s^2, rad/s^2 of the base
+MOVES = 0.02  # m/s from which on the robot drives
+LONGEST = 120.0  # s
+BACK, BUMPED = 0.5, 2.0  # m/s and s for which people step back who came against the robot
+CHAIR = 0.35  # m, the radius of a wheelchair with somebody in it
+ROOM = load_room()
+MAP = map_of_room(ROOM)
+WALLS = room_sides(ROOM)
+
+Kind = Literal["ahead", "behind", "stood"]
+"""Who touched whom: the robot somebody before it, or aside and behind; somebody the robot."""
+
+
+@dataclass
+class Person:
+    """Somebody on two legs, or in a wheelchair; `step` moves them, knowing where the robot is."""
+
+    x: float
+    y: float
+    heading: float
+    step: Callable[[Person, Drive], None] = lambda person, drive: None
+    gone: float = 0.0
+    radius: float = TORSO
+    touches: bool = False
+    bumped: float = 0.0
+    """Until when they step back from a robot against which they came, in s."""
+    now: tuple[float, float] = (0.0, 0.0)
+    """How far the last step led, in m."""
+
+    def walk(self, heading: float, speed: float) -> None:
+        """Walk for a tick."""
+        self.heading = heading
+        self.now = speed * TICK * cos(heading), speed * TICK * sin(heading)
+        self.x += self.now[0]
+        self.y += self.now[1]
+        self.gone += speed * TICK
+
+    def circles(self) -> Iterator[tuple[float, float, float]]:
+        """Yield what a laser sees: where legs or wheels are, and their radius."""
+        if self.radius > TORSO:
+            yield from self._wheels()
+            return
+        for side in (-1, 1):
+            swing = side * STRIDE * sin(2 * pi * STEPS * self.gone) if self.gone else 0.0
+            yield (*self._at(swing, side * APART), LEG)
+
+    def _wheels(self) -> Iterator[tuple[float, float, float]]:
+        """Yield two large wheels, two castors, and the feet of who sits there."""
+        for side in (-1, 1):
+            for along in np.linspace(-0.3, 0.2, 11):
+                yield (*self._at(float(along), side * 0.28), 0.02)
+            yield (*self._at(0.28, side * 0.22), 0.03)
+            yield (*self._at(0.33, side * 0.09), 0.05)
+
+    def _at(self, along: float, aside: float) -> tuple[float, float]:
+        c, s = cos(self.heading), sin(self.heading)
+        return self.x + along * c - aside * s, self.y + along * s + aside * c
+
+    def gap(self, pose: Pose, away: Away) -> float:
+        """Return how many metres are between this torso and a robot."""
+        return away(pose, self.x, self.y) - self.radius
+
+
+Away = Callable[[Pose, float, float], float]
+"""How many metres a point is from the edge of a robot at a pose."""
+
+
+def disc(pose: Pose, x: float, y: float) -> float:
+    """Return how far a point is from a round robot."""
+    return hypot(x - pose.x, y - pose.y) - ROBOT
+
+
+@dataclass(frozen=True)
+class Touch:
+    """One touch, as it began: who touched whom, and how fast the robot drove, in m/s."""
+
+    kind: Kind
+    speed: float
+
+
+@dataclass
+class Drive:
+    """One drive from a start to a goal."""
+
+    start: Pose
+    goal: Pose
+    people: list[Person]
+    rng: Generator
+    away: Away = disc
+    pose: Pose = field(init=False)
+    twist: Twist = STILL
+    time: float = 0.0
+    arrived: bool = False
+    told: str = ""
+    touches: list[Touch] = field(default_factory=list)
+    nearest: float = inf
+    near: list[float] = field(default_factory=list)
+    """How fast it drove while somebody was within a metre before it, in m/s."""
+    silent: float = 0.0
+    """For how long at most it stood and said nothing of why, in s."""
+    ticks: list[float] = field(default_factory=list)
+    """How long the navigator took for each tick, in s of the processor."""
+    _quiet: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.pose = self.start
+
+    def run(self, navigator: Navigator | None = None) -> Drive:
+        """Drive until it has arrived, or for as long as a drive may take."""
+        navigator = navigator or Navigator(MAP, self.rng, self.start)
+        wheels, sent = Wheels(self.rng), [STILL] * LATE
+        navigator.go(self.goal)
+        scan: Scan | None = None
+        while self.time < LONGEST and not self.arrived:
+            if scan is None or self.rng.random() >= NO_SCAN:
+                scan = self.look()
+            told = navigator.tick(Odometry(wheels.pose, self.twist), scan, TICK)
+            sent.append(told)
+            self.twist = followed(self.twist, sent.pop(0))
+            wheels.turn(self.twist, TICK)
+            self.move()
+            self.arrived = navigator.state == "arrived"
+            if navigator.state == "blocked":
+                self.told = "blocked"
+            self._listen(navigator)
+        return self
+
+    def move(self) -> None:
+        """Let the robot and everybody move for a tick, and take note of who touches whom."""
+        self.pose = driven(self.pose, self.twist, TICK)
+        for person in self.people:
+            self._note(person)
+            before = person.gap(self.pose, self.away)
+            was, person.now = (person.x, person.y), (0.0, 0.0)
+            if self.time < person.bumped:
+                person.walk(atan2(person.y - self.pose.y, person.x - self.pose.x), BACK)
+            else:
+                person.step(person, self)
+            if person.gap(self.pose, self.away) < min(0.0, before):  # they stop against it
+                self._note(person)
+                person.x, person.y = was
+        self.time += TICK
+
+    def look(self) -> Scan:
+        """Return what the laser sees."""
+        first, step = -ANGLE / 2, ANGLE / (BEAMS - 1)
+        angles = self.pose.heading + first + step * np.arange(BEAMS, dtype=np.float64)
+        legs = [leg for person in self.people for leg in person.circles()]
+        circles = np.array(legs, dtype=np.float64).reshape(-1, 3)
+        ranges = cast(self.pose.x, self.pose.y, angles, WALLS, circles)
+        ranges += self.rng.normal(0, NOISE, BEAMS)
+        ranges[self.rng.random(BEAMS) < NO_BEAM] = inf
+        return Scan(first, step, np.maximum(ranges, 0.02), 30.0)
+
+    def _note(self, person: Person) -> None:
+        """Take note of how near somebody is, and of a touch as it begins."""
+        gap = person.gap(self.pose, self.away)
+        self.nearest = min(self.nearest, gap)
+        bearing = atan2(person.y - self.pose.y, person.x - self.pose.x)
+        off = abs(wrap(bearing - self.pose.heading))
+        if 0 < gap < 0.9 and off < pi / 4:
+            self.near.append(self.twist.forward)
+        if gap < 0 and not person.touches:
+            drives = abs(self.twist.forward) > MOVES
+            ahead = off < pi / 2 if self.twist.forward >= 0 else off > pi / 2
+            kind: Kind = "stood" if not drives else "ahead" if ahead else "behind"
+            self.touches.append(Touch(kind, abs(self.twist.forward)))
+            person.bumped = self.time + BUMPED
+        person.touches = gap < 0.02 if person.touches else gap < 0
+
+    def _listen(self, navigator: Navigator) -> None:
+        moves = abs(self.twist.forward) > MOVES or abs(self.twist.turn) > 0.05
+        says = navigator.lets != "" or navigator.state in ("blocked", "spinning", "failed")
+        self._quiet = 0.0 if moves or says else self._quiet + TICK
+        self.silent = max(self.silent, self._quiet)
+
+    def count(self, kind: Kind) -> bool:
+        """Say whether anybody was touched so."""
+        return any(touch.kind == kind for touch in self.touches)
+
+
+def followed(twist: Twist, told: Twist) -> Twist:
+    """Return how fast a base drives a tick after it was told how."""
+    brakes = abs(told.forward) < abs(twist.forward)
+    most = (BRAKE if brakes else GAIN) * TICK
+    return Twist(
+        twist.forward + float(np.clip(told.forward - twist.forward, -most, most)),
+        twist.turn + float(np.clip(told.turn - twist.turn, -TURNS * TICK, TURNS * TICK)),
+    )

@@ -1,0 +1,55 @@
+"""What the robot says to people for whom it waits: soon, once, and again only after a while."""
+
+from __future__ import annotations
+
+import asyncio
+
+from tangy_hw.navigation.surroundings import Held
+from tangy_hw.robot_process.courtesies import AFTER_SECONDS, AGAIN_SECONDS, Courtesies
+from tangy_hw.robot_process.stop_latch import Preempted
+
+WORDS = {"walking": "After you.", "standing": "May I?"}
+LONGEST = 5.0  # s for which nobody has to wait without hearing why
+
+
+async def said(lets: list[Held], *, halted: bool = False) -> list[tuple[float, str]]:
+    """Return what is said when, while it stands so for a tenth of a second each."""
+    heard: list[tuple[float, str]] = []
+    now = 0.0
+
+    async def says(text: str) -> None:
+        heard.append((now, text))
+        if halted:
+            raise Preempted("stopped")
+
+    courtesies = Courtesies(WORDS, says)
+    for one in lets:
+        courtesies.note(one, now)
+        await asyncio.sleep(0)
+        now += 0.1
+    return heard
+
+
+async def test_who_is_waited_for_hears_why_within_seconds() -> None:
+    ((at, words),) = await said(["walking"] * 40)
+    assert words == WORDS["walking"] and AFTER_SECONDS <= at <= LONGEST
+
+
+async def test_who_only_passes_hears_nothing() -> None:
+    assert await said([*["walking"] * 8, *[""] * 5] * 3) == []  # type: ignore[list-item]
+
+
+async def test_the_same_is_said_again_only_after_a_while() -> None:
+    heard = await said(["standing"] * 200)
+    assert [words for _, words in heard] == [WORDS["standing"]] * 3
+    assert heard[1][0] - heard[0][0] >= AGAIN_SECONDS
+
+
+async def test_a_robot_that_is_stopped_meanwhile_is_quiet_and_lives() -> None:
+    assert len(await said(["walking"] * 30, halted=True)) == 1
+
+
+async def test_without_words_nothing_is_said() -> None:
+    courtesies = Courtesies({}, lambda text: asyncio.sleep(0))
+    for tick in range(60):
+        courtesies.note("walking", tick / 10)

@@ -1,0 +1,157 @@
+"""People in scans: legs are paired, people are followed with their speed, and the map is not."""
+
+from __future__ import annotations
+
+from math import cos, hypot, inf, pi, sin
+
+import numpy as np
+import pytest
+
+from tangy_hw.device_protocols import Pose, Scan, Twist
+from tangy_hw.navigation.leg_detection import sightings
+from tangy_hw.navigation.obstacles import Obstacles
+from tangy_hw.navigation.people_tracker import PeopleTracker, Track
+from tests.bench.people_simulation import CHAIR, MAP, TICK, Drive, Person
+from tests.hw.raycast import driven
+
+STANDS = Pose(5.0, 1.2, pi / 2)
+
+
+def walks(heading: float, speed: float) -> Person:
+    """Return somebody who walks straight on."""
+
+    def step(person: Person, drive: Drive) -> None:
+        person.walk(heading, speed)
+
+    return Person(0, 0, heading, step)
+
+
+def drive(people: list[Person], seed: int = 1, pose: Pose = STANDS) -> Drive:
+    return Drive(pose, pose, people, np.random.default_rng(seed))
+
+
+class Watching:
+    """A tracker that watches a drive; the wheels count exactly, and the place is known."""
+
+    def __init__(self, drive: Drive, *, knows_map: bool = True) -> None:
+        self.drive, self.tracker = drive, PeopleTracker()
+        self.obstacles = Obstacles(MAP) if knows_map else None
+
+    def watch(self, seconds: float, twist: Twist | None = None) -> list[tuple[Track, ...]]:
+        seen = []
+        for _ in range(round(seconds / TICK)):
+            if twist is not None:
+                self.drive.pose = driven(self.drive.pose, twist, TICK)
+            scan, pose = self.drive.look(), self.drive.pose
+            mask = None if self.obstacles is None else self.obstacles.unmapped(pose, scan)
+            seen.append(self.tracker.update(pose, scan, TICK, mask))
+            for person in self.drive.people:
+                person.step(person, self.drive)
+        return seen
+
+
+def nearest(tracks: tuple[Track, ...], person: Person) -> tuple[float, Track]:
+    return min(((hypot(one.x - person.x, one.y - person.y), one) for one in tracks),
+               key=lambda found: found[0])  # fmt: skip
+
+
+class TestSightings:
+    def test_two_legs_are_one_person_whose_middle_lies_between_them(self) -> None:
+        person = Person(5.0, 2.7, pi / 2)
+        scene = drive([person])
+        scan = scene.look()
+        people = [
+            one
+            for one in sightings(scan, unmapped=Obstacles(MAP).unmapped(STANDS, scan))
+            if one.legs
+        ]
+        assert len(people) == 1
+        assert hypot(people[0].x - 1.5, people[0].y) < 0.1
+
+    def test_a_wall_and_what_the_map_has_are_nobody(self) -> None:
+        scan = drive([]).look()
+        assert sightings(scan, unmapped=Obstacles(MAP).unmapped(STANDS, scan)) == []
+
+    @pytest.mark.parametrize("far", [1.0, 2.5, 4.0])
+    def test_a_thing_as_wide_as_a_wheelchair_is_minded_as_wide_as_it_is(self, far: float) -> None:
+        ranges = np.full(360, inf)
+        beams = np.arange(360)
+        wide = np.abs((beams - 180) * 0.75 * pi / 180) < 0.3 / far
+        ranges[wide] = far
+        found = sightings(Scan(-135 * pi / 180, 0.75 * pi / 180, ranges, 30.0))
+        assert len(found) == 1 and found[0].half == pytest.approx(0.3, abs=0.06)
+
+    def test_the_scanners_place_on_the_robot_counts(self) -> None:
+        ranges = np.full(360, inf)
+        ranges[178:183] = 1.0
+        (one,) = sightings(Scan(-3.14, 0.0175, ranges, 30.0), Pose(0.25, 0.1, 0.0))
+        assert one.x == pytest.approx(0.25 + 1.06, abs=0.02)
+        assert one.y == pytest.approx(0.1, abs=0.03)
+
+
+class TestTracks:
+    @pytest.mark.parametrize("speed", [0.4, 0.8, 1.3])
+    def test_a_walker_is_followed_with_the_speed(self, speed: float) -> None:
+        person = walks(0.0, speed)
+        person.x, person.y = 3.5, 2.9
+        watching = Watching(drive([person]))
+        for tracks in watching.watch(3.0)[12:]:
+            assert tracks
+        off, track = nearest(watching.tracker.tracks, person)
+        assert off < 0.3 + 0.1 * speed and track.person
+        assert abs(track.vx - speed) < 0.35 and abs(track.vy) < 0.35
+
+    def test_who_stands_has_no_speed_and_is_a_person_after_a_while(self) -> None:
+        person = Person(5.2, 2.6, 0.4)
+        watching = Watching(drive([person]))
+        watching.watch(2.5)
+        off, track = nearest(watching.tracker.tracks, person)
+        assert off < 0.1 and track.speed == 0.0 and track.stood > 1.0 and track.person
+
+    def test_the_robots_own_driving_makes_nobody_move(self) -> None:
+        person = Person(5.3, 3.4, 0.4)
+        watching = Watching(drive([person]))
+        watching.watch(3.0, Twist(0.4, 0.15))
+        off, track = nearest(watching.tracker.tracks, person)
+        assert off < 0.15 and track.speed == 0.0
+
+    @pytest.mark.parametrize("seed", [1, 2, 3])
+    def test_in_an_empty_room_there_is_nobody(self, seed: int) -> None:
+        watching = Watching(drive([], seed))
+        seen = watching.watch(12.0, Twist(0.1, 0.5))
+        assert not any(track.person for tracks in seen for track in tracks)
+
+    def test_somebody_behind_somebody_is_remembered_for_a_moment(self) -> None:
+        person = walks(0.0, 0.8)
+        person.x, person.y = 4.0, 3.3
+        stands = Person(5.0, 2.2, 0.0)
+        watching = Watching(drive([person, stands]))
+        for _ in range(25):
+            watching.watch(TICK)
+            if person.x > 4.5:
+                assert nearest(watching.tracker.tracks, person)[0] < 0.6
+
+    def test_who_has_gone_is_forgotten(self) -> None:
+        person = Person(5.2, 2.6, 0.4)
+        watching = Watching(drive([person]))
+        watching.watch(1.5)
+        watching.drive.people.clear()
+        watching.watch(2.0)
+        assert watching.tracker.tracks == ()
+
+    def test_a_wheelchair_is_minded_at_least_as_wide_as_half_of_it(self) -> None:
+        chair = walks(0.0, 0.5)
+        chair.x, chair.y, chair.radius = 4.2, 2.8, CHAIR
+        watching = Watching(drive([chair]))
+        watching.watch(2.0)
+        near = [
+            one for one in watching.tracker.tracks
+            if hypot(one.x - chair.x, one.y - chair.y) < CHAIR + 0.15
+        ]  # fmt: skip
+        assert near and max(one.speed for one in near) > 0.2
+
+    def test_a_track_is_seen_from_where_the_robot_is(self) -> None:
+        track = Track(1.0, 2.0, 0.5, 0.0, 0.22, 1.0, 0.0, True, False)
+        seen = track.seen_from(Pose(1.0, 1.0, pi / 2))
+        assert (seen.x, seen.y) == pytest.approx((1.0, 0.0))
+        assert (seen.vx, seen.vy) == pytest.approx((0.5 * cos(-pi / 2), 0.5 * sin(-pi / 2)))
