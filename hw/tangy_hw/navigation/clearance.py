@@ -51,6 +51,8 @@ def free_ahead(points: Floats, curvature: float, half: float | Floats) -> float:
 def room_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
     """Return how many metres the robot may go on an arc (1/m, positive to the left).
 
+    Points (n, 2) are what is around, in the robot's frame in m.
+
     What it stands near already does not count as long as driving brings it no nearer: it is
     possible to drive away from everything.
     """

@@ -25,7 +25,7 @@ TORSO = 0.22  # metres from the middle of a person to the outermost of the torso
 REACH = 0.2  # metres that a torso and toes reach out beyond the middle of one leg, at least
 
 
-class Sighting(NamedTuple):
+class LegSighting(NamedTuple):
     """A person, a leg or a thing in one scan: its middle, in m in the robot's frame.
 
     `half` is how far it reaches out from there, in m; `legs` says whether two legs were seen.
@@ -47,7 +47,7 @@ class Cluster(NamedTuple):
 
 def sightings(
     scan: Scan, laser: Pose = HERE, unmapped: NDArray[np.bool_] | None = None
-) -> list[Sighting]:
+) -> list[LegSighting]:
     """Return the people and things in a scan that the map does not have.
 
     Args:
@@ -60,16 +60,16 @@ def sightings(
     pairs = _pairs(legs)
     paired = {number for pair in pairs for number in pair}
     people = [
-        Sighting((legs[a].x + legs[b].x) / 2, (legs[a].y + legs[b].y) / 2, TORSO, True)
+        LegSighting((legs[a].x + legs[b].x) / 2, (legs[a].y + legs[b].y) / 2, TORSO, True)
         for a, b in pairs
     ]
     single = [
-        Sighting(leg.x, leg.y, REACH, False)
+        LegSighting(leg.x, leg.y, REACH, False)
         for number, leg in enumerate(legs)
         if number not in paired
     ]
     wide = [
-        Sighting(one.x, one.y, max(one.width / 2, REACH), False)
+        LegSighting(one.x, one.y, max(one.width / 2, REACH), False)
         for one in found
         if LEG[1] < one.width <= WIDEST
     ]
@@ -77,7 +77,10 @@ def sightings(
 
 
 def clusters(scan: Scan, laser: Pose, unmapped: NDArray[np.bool_] | None) -> list[Cluster]:
-    """Return the things of which a scan has returns, nearer than `FARTHEST`."""
+    """Return the things of which a scan has returns, nearer than `FARTHEST`.
+
+    Beams (n,) that are not `unmapped` are left out.
+    """
     kept = (scan.ranges > NEAREST) & (scan.ranges < min(FARTHEST, scan.farthest))
     if unmapped is not None:
         kept &= unmapped

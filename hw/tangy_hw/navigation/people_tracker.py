@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Pose, Scan
-from tangy_hw.navigation.leg_detection import Sighting, sightings, turned
+from tangy_hw.navigation.leg_detection import LegSighting, sightings, turned
 from tangy_hw.navigation.poses import HERE, between, compose, wrap
 
 ACCELERATION = 1.5  # m/s^2, the deviation of how people change their pace
@@ -89,7 +89,7 @@ class _Followed:
         self.age += dt
         self.unseen += dt
 
-    def correct(self, sighting: Sighting) -> None:
+    def correct(self, sighting: LegSighting) -> None:
         gain = self.covariance[:, 0] / (self.covariance[0, 0] + MEASURED**2)
         self.state = self.state + np.outer(gain, (sighting.x, sighting.y) - self.state[0])
         self.covariance = self.covariance - np.outer(gain, self.covariance[0])
@@ -183,7 +183,7 @@ class PeopleTracker:
         """Who and what is around, in the frame of the wheels, once it was seen often enough."""
         return tuple(one.track for one in self._followed if one.hits >= SURE)
 
-    def _matched(self, found: Sequence[Sighting]) -> dict[int, int]:
+    def _matched(self, found: Sequence[LegSighting]) -> dict[int, int]:
         """Return which sighting belongs to which track, the nearest first."""
         if not found or not self._followed:
             return {}
@@ -202,7 +202,7 @@ class PeopleTracker:
         return matched
 
 
-def _placed(one: Sighting, pose: Pose) -> Sighting:
+def _placed(one: LegSighting, pose: Pose) -> LegSighting:
     there = compose(pose, Pose(one.x, one.y, 0.0))
     return one._replace(x=there.x, y=there.y)
 

@@ -73,7 +73,7 @@ class Surroundings:
 
     @property
     def standing(self) -> Floats:
-        """The same without those who walk."""
+        """The same (n, 2) without those who walk."""
         points, walkers = self.points, self._walkers
         if not len(points) or not walkers:
             return points
