@@ -85,7 +85,7 @@ class GamePicture:
                     room = self._screen.query_one(RoomView)
                     room.say("")
                     room.put(state.place)
-                    self._screen.query_one(Transcript).clear()
+                    self._screen.query_one(Transcript).clear(resumed)
                     self.grounds.clear()
                     self.lesson = ""
                     self._stage, self._game, self._step = state.stage, number, None

@@ -118,9 +118,10 @@ class Transcript(Choosable):
         self._mark()
         self.post_message(self.Moved(self, None))
 
-    def clear(self) -> None:
-        """Begin again at step 1."""
+    def clear(self, after: int = 0) -> None:
+        """Begin again; the next step is the one after so many that are not shown."""
         self.fill([])
+        self._count = after
 
     def action_choose(self, by: int) -> None:
         """Move the cursor; past the end it lets go, and the newest step is followed again."""

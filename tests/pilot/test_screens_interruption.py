@@ -1,0 +1,86 @@
+"""A game that was interrupted is asked about before another begins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.game_records import GameBeginning, GameEnding
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import Run, StillClock, TangyPilot
+from tests.support.waiting import until
+
+STEPS = 9
+
+
+@pytest.fixture
+def data_folder(taught: Path) -> Path:
+    """A folder in which three demonstrations were given and learnt from."""
+    return taught
+
+
+@pytest.fixture
+def interrupted(workspace: Workspace, learnt: Policy) -> Workspace:
+    """A workspace in whose log the last game has no end."""
+    supervision = workspace.supervision(learnt, 5)
+    control = scripted_controller(supervision)
+    control.begin()
+    while supervision.steps < STEPS:
+        go_on_by_script(control, expert=False)
+    return workspace
+
+
+async def asked(pilot: TangyPilot) -> None:
+    await pilot.press("p")
+    await until(lambda: isinstance(pilot.app.screen, ChooseDialog))
+
+
+async def test_it_goes_on_paused_with_its_steps_counted(interrupted: Workspace, run: Run) -> None:
+    async with run(app=Program(interrupted, clock=StillClock())) as pilot:
+        await asked(pilot)
+        await pilot.press("enter")
+        await until(lambda: isinstance(pilot.app.screen, PlayScreen))
+        screen = pilot.app.screen
+        assert isinstance(screen, PlayScreen)
+        await until(lambda: screen.query_one(Transcript).count == STEPS)
+        assert str(screen.control.phase) == "paused"
+        await pilot.press("n")
+        await until(lambda: screen.query_one(Transcript).count == STEPS + 1)
+
+    assert len(list(interrupted.store.events(GameBeginning))) == 1
+
+
+async def test_it_ends_with_a_report(interrupted: Workspace, run: Run) -> None:
+    async with run(app=Program(interrupted, clock=StillClock())) as pilot:
+        await asked(pilot)
+        await pilot.press("down", "enter")
+        await until(lambda: isinstance(pilot.app.screen, MessageDialog))
+
+    (end,) = interrupted.store.events(GameEnding)
+    (report,) = interrupted.store.folder.glob("report-*.html")
+    assert end.record.steps == STEPS and end.record.game in report.name
+
+
+async def test_it_is_discarded_and_a_new_game_begins(interrupted: Workspace, run: Run) -> None:
+    async with run(app=Program(interrupted, clock=StillClock())) as pilot:
+        await asked(pilot)
+        await pilot.press("down", "down", "enter")
+        await until(lambda: len(list(interrupted.store.events(GameBeginning))) == 2)
+
+
+async def test_esc_leaves_it_as_it_is(interrupted: Workspace, run: Run) -> None:
+    async with run(app=Program(interrupted, clock=StillClock())) as pilot:
+        await asked(pilot)
+        await pilot.press("escape")
+        await until(lambda: isinstance(pilot.app.screen, HomeScreen))
+
+    assert not list(interrupted.store.events(GameEnding))
