@@ -39,12 +39,22 @@ from tangy_tui.app.game_commands import (
     TakeOver,
     VoidResponse,
 )
+from tangy_tui.app.keymap import ACTIONS
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.remarks import answers_to
-from tangy_tui.learning.teaching_events import Next, Redo, Remark, RemarkAnswer, Settle, Undo
+from tangy_tui.learning.teaching_events import (
+    Discard,
+    Finish,
+    Next,
+    Redo,
+    Remark,
+    RemarkAnswer,
+    Settle,
+    Undo,
+)
 from tangy_tui.learning.verification import Reply, StopCommand
 
-Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "voice"]
+Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases"]
 """What can be asked of the program; it changes nothing."""
 
 INQUIRIES: dict[str, Inquiry] = {
@@ -54,12 +64,11 @@ INQUIRIES: dict[str, Inquiry] = {
     **dict.fromkeys(("what", "what to do", "what should i do", "what should i do?"), "what to do"),
     "faults": "faults",
     "phrases": "phrases",
-    "voice": "voice",
 }
 
 ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
 LONGEST_NUMBER = 4  # digits
-LEAVING = ("quit", "exit", "leave")
+LEAVING = ("quit", "exit", "leave", "leave the game", "go home")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +83,43 @@ class AgainFrom:
     step: int | None
 
 
-TeachingWord: TypeAlias = Undo | Redo | Next | AgainFrom | Leave | StopCommand | Inquiry
+@dataclass(frozen=True, slots=True)
+class Perform:
+    """Do what a key does: `action` is one of the keymap; `on` where it was said, of a switch."""
+
+    action: str
+    on: bool | None = None
+
+
+TeachingWord: TypeAlias = (
+    Undo | Redo | Next | Discard | Finish | AgainFrom | Leave | StopCommand | Perform | Inquiry
+)
+
+TEACHING: dict[str, TeachingWord] = {
+    **dict.fromkeys(("undo", "take that back"), Undo()),
+    "redo": Redo(),
+    **dict.fromkeys(("next", "next game", "new game", "another game"), Next()),
+    **dict.fromkeys(
+        ("discard the game", "discard game", "discard this game", "throw the game away"), Discard()
+    ),
+    **dict.fromkeys(("finish the demonstration", "finish here", "that is all"), Finish()),
+    **dict.fromkeys(("start over", "begin again", "begin anew", "start again"), AgainFrom(1)),
+    **dict.fromkeys(("shown", "seen"), "shown"),
+    **dict.fromkeys(("voice on", "speak"), Perform("voice", on=True)),
+    **dict.fromkeys(("voice off", "be quiet"), Perform("voice", on=False)),
+    **dict.fromkeys(("pause listening", "stop listening"), Perform("listen", on=False)),
+    **dict.fromkeys(("listen", "listen again"), Perform("listen", on=True)),
+    "guided game": Perform("guided"),
+}
+"""What may be typed while teaching; beside it, the word of every action of the keymap."""
+
+PERFORMED = frozenset(
+    {
+        *("palette", "draw", "talk", "listen", "zoom", "picture", "mouse", "voice"),
+        *("learn", "library", "guided", "filter", "quit"),
+    }
+)
+"""Actions of the keymap whose words do on the teaching screen what their keys do elsewhere."""
 
 FIXED: dict[str, GameCommand] = {
     **dict.fromkeys(("pause", "wait a moment"), Pause()),
@@ -176,16 +221,18 @@ def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
     if again := _AGAIN.fullmatch(words):
         number = again[1]
         return AgainFrom(int(number) if number and number.isdecimal() else None)
-    match words:
-        case "undo":
-            return Undo()
-        case "redo":
-            return Redo()
-        case "next":
-            return Next()
-        case "seen":
-            return "shown"
-    return Leave() if words in LEAVING else read_inquiry(text)
+    if words in TEACHING:
+        return TEACHING[words]
+    return Leave() if words in LEAVING else read_program(text)
+
+
+def read_program(text: str) -> Perform | Inquiry | None:
+    """Return what words want of the program itself: what a key does, or to be told something."""
+    words = " ".join(text.split()).casefold()
+    if isinstance(word := TEACHING.get(words), Perform):
+        return word
+    action = next((a.id for a in ACTIONS if a.id in PERFORMED and a.word == words), None)
+    return Perform(action) if action is not None else read_inquiry(text)
 
 
 SETTLING: dict[str, RemarkAnswer] = {

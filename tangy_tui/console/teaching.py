@@ -18,6 +18,7 @@ from tangy_tui.app.command_grammar import (
     AgainFrom,
     Inquiry,
     Leave,
+    Perform,
     read_answer,
     read_settling,
     read_teaching,
@@ -50,6 +51,7 @@ from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
 from tangy_tui.text.teaching_commands import (
     NOTHING_CHANGED,
+    ON_THE_SCREEN,
     STOPPED,
     WHICH_STEP,
     learn_next,
@@ -255,6 +257,8 @@ class TeachingLines:
             self._write(NO_QUESTION)
         elif isinstance(word, str):
             self._inquire(word)
+        elif isinstance(word, Perform):
+            self._write(ON_THE_SCREEN)
         elif isinstance(word, AgainFrom):
             if word.step is not None:
                 return Again(self._teaching.demonstration.id, word.step - 1)

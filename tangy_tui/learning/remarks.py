@@ -74,6 +74,10 @@ class Remarks:
         """Read what was shown before, unless it is known: a step that is new is not in it yet."""
         _ = self._shown
 
+    def reread(self) -> None:
+        """Read anew what was shown before: a demonstration was put away."""
+        self._contradictions, self.open = None, None
+
     def notice(self, shown: Shown, *, over: bool) -> None:
         """Take a new step; what is to be said of it, if that is news, is open from then on.
 

@@ -38,6 +38,16 @@ class Next:
 
 
 @dataclass(frozen=True, slots=True)
+class Discard:
+    """Put the present demonstration away (the library brings it back), and begin another."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finish:
+    """Take the present demonstration as complete, although its game could go on."""
+
+
+@dataclass(frozen=True, slots=True)
 class Again:
     """Show a demonstration again from some step on: its first `kept` steps stay as they are.
 
@@ -61,7 +71,7 @@ class Settle:
     answer: RemarkAnswer
 
 
-TeacherCommand: TypeAlias = Say | Reply | Undo | Redo | Next | Again | Settle
+TeacherCommand: TypeAlias = Say | Reply | Undo | Redo | Next | Discard | Finish | Again | Settle
 
 
 # ---------------------------------------------------------------------------- what follows

@@ -26,14 +26,16 @@ from tangy_profiles.teaching_records import (
 )
 from tangy_tui.language.commands import Learnt, Phrasebook
 from tangy_tui.learning.conflicts import Shown
-from tangy_tui.learning.editing import new_id
+from tangy_tui.learning.editing import Editor, NotPossible, new_id
 from tangy_tui.learning.game_replay import MakeWorld, replay_game, shown_again
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.remarks import Remarks
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
+    Discard,
     Executed,
+    Finish,
     Finished,
     Next,
     Redo,
@@ -102,14 +104,12 @@ class TeachingSession:
         self.teacher = teacher
         self.demonstration: Demonstration
         self.world: World
-        self.guided = guided
-        self._first = again
+        self.guided, self._first = guided, again
         self._verifier: Verifier
         self._undone: list[Step] = []
         self._people = {person.id: person for person in people}
         self._names = {person.id: person.name for person in people}
-        self._store = store
-        self._make_world = make_world
+        self._store, self._make_world = store, make_world
         self._seed = seed
         self._logged = False
         self._remarks = Remarks(activity, teacher, store)
@@ -218,20 +218,38 @@ class TeachingSession:
                 if self.demonstration.finished:
                     return self._begin_new()
                 return [Refused("This demonstration is not finished yet.")]
+            case Discard():
+                return self._discard()
+            case Finish():
+                return self._finish()
             case Again(id, kept) if id == self.demonstration.id:
                 return self._go_back(kept)
             case Again():
                 return self._begin_again(command)
 
     def _begin_new(self) -> list[TeachingEvent]:
-        people = tuple(self._names)
-        new = Demonstration(
-            new_id(), self.activity.name, self.teacher, self._seed, people, guided=self.guided
-        )
+        who, of = tuple(self._names), self.activity.name
+        new = Demonstration(new_id(), of, self.teacher, self._seed, who, guided=self.guided)
         self._seed += 1
         self._enter(new, self._make_world(new))
         self._logged = False
         return [Begun(new, resumed=False)]
+
+    def _discard(self) -> list[TeachingEvent]:
+        """Put the present demonstration away, and begin another."""
+        if self._logged:
+            Editor(self._store, self.activity).delete(self.demonstration.id)
+            self._remarks.reread()
+        return self._begin_new()
+
+    def _finish(self) -> list[TeachingEvent]:
+        """Take the present demonstration as complete."""
+        if self.demonstration.finished or not (self._logged and self.demonstration.steps):
+            raise NotPossible("There is no unfinished game with steps that could be finished.")
+        shown = replace(self.demonstration, finished=True)
+        self._store.append(DemonstrationFinished(demonstration=shown.id))
+        self.demonstration = shown
+        return [Finished(shown)]
 
     def _go_back(self, kept: int) -> list[TeachingEvent]:
         """Undo the last steps of the present demonstration, all of them or none."""
@@ -286,18 +304,13 @@ class TeachingSession:
         behaviour = verified.behaviour
 
         def log(step: Step) -> Step:
-            shown = DemonstrationStep(
-                demonstration=self.demonstration.id,
-                step=step,
-                heard=verified.heard,
-                confidence=verified.confidence,
-            )
+            id, heard, sure = self.demonstration.id, verified.heard, verified.confidence
+            shown = DemonstrationStep(demonstration=id, step=step, heard=heard, confidence=sure)
             return replace(step, id=self._store.append(shown))
 
         events = self._carry_out(behaviour, verified.target, log)
         self._undone = []
-        remark = self.remark
-        if remark is not None:
+        if (remark := self.remark) is not None:
             events.insert(1, remark)
         return events
 

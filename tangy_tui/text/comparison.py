@@ -51,6 +51,9 @@ class ComparisonRow:
     source: Source = "predicted"
 
 
+WHY_A, WHY_B = "Why A does that", "Why B does that"
+
+
 def compare(document: Document) -> list[ComparisonRow]:
     """Return the rows for the document of a scenario."""
     return {1: _learning, 2: _persuasion, 3: _recovery}[document["experiment"]](document)

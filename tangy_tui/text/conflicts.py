@@ -9,9 +9,15 @@ ANSWER_HELP = (
     "the number before the answer if it is right."
 )
 
+THIS_IS_RIGHT = "This answer is right"
+ALL_ARE_RIGHT = "All of them are right"
+ANOTHER_IS_RIGHT = "Something else is right"
+OPEN_OR_GO_ON = "Open the step, or go on at the end"
+LEAVE_OPEN = "Leave it open"
+"""What the keys do, in help and palette."""
 ASKED = (
-    "Which is right? Press its number, b if all of them are, o for something else. Esc leaves it "
-    "open: Tangy will not act there in a game, but ask."
+    "Which is right? Press its number, 0 if all of them are, {another} for something else. Esc "
+    "leaves it open: Tangy will not act there in a game, but ask."
 )
 OTHER = "What is right here?"
 TAKEN_BACK = "Your last answer is taken back."

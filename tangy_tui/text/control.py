@@ -22,6 +22,11 @@ COURTESIES = {
 
 NOT_ACCEPTABLE = "Tangy asks about nothing that could be said to be all right."
 
+ACCEPT = "Is all well, and shall Tangy go on?"
+MOVE_AGAIN = ("Let the robot move again?", "It goes on with the game at once.")
+TAKE_CALL_BACK = "Take the last call back"
+"""What undo does in a live game."""
+
 
 WAITS = {
     "walking": "It lets somebody pass.",

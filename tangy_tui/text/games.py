@@ -28,6 +28,17 @@ from tangy_tui.text.situations import Name, once_words
 
 Demonstrations = Callable[[], Sequence[Demonstration]]
 
+SHOWS = {
+    "room": "Show the room",
+    "transcript": "Show the steps",
+    "policy": "Show the policy",
+    "posteriors": "Show the posteriors",
+    "log": "Show the log",
+    "faults": "Show the faults of this game",
+}
+SENSORS = "Show the sensors, and what cameras see"
+"""What the numbers show."""
+
 
 def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str = "") -> list[str]:
     """Put one event of a game into lines; `teacher` is who answered, where Tangy had asked."""
@@ -115,11 +126,16 @@ def why_lines(supervision: Supervision, demonstrations: Demonstrations | None) -
     return [reason, f"Votes of the trees: {votes}."]
 
 
+SKIP = "Play the rest of the game at once?"
+SKIP_DETAIL = "You will see how it ended, and what was learnt of the people."
+ANOTHER = "Play another game?"
+SEEN = "Have you seen this fault?"
 LEAVE = "Leave in the middle of the game?"
 LEAVE_DETAIL = "The game ends here, and the log says so. Tangy keeps what it has learnt."
 STOPPED = "The game stopped"
-LEADS_HOME = "Esc leads home, where t teaches; g plays another game."
-TRIES_AGAIN = "p tries again; esc leads home."
+LEADS_HOME = "Esc leads home, where you can teach; {next} plays another game."
+GOES_ON, PLAYS_AGAIN = "{pause} goes on", "{next} plays again"
+TRIES_AGAIN = "{pause} tries again; esc leads home."
 NOT_IN_THE_DEMO = "The demo shows a game in which nothing goes wrong."
 NOTHING_DECIDED = "Nothing has been decided yet."
 NO_UNSEEN_FAULT = "No fault that nobody has seen."

@@ -9,14 +9,14 @@ from tangy_tui.text.calls import expert_words
 from tangy_tui.text.faults import kind_words, mark_of, move_words
 from tangy_tui.text.times import clock
 
-SEEN_FIRST = "Press a first to say that you have seen this."
-SEEN = "You have seen it. Press e to see whom to call, or c when all is well."
-WHEN_WELL = "Press c when all is well."
-REACHED_TOO = "Press r when you have reached them."
-SIMULATED = "The simulated expert has looked at it. Press c when all is well."
+SEEN_FIRST = "Press {acknowledge} first to say that you have seen this."
+SEEN = "You have seen it. Press {expert} to see whom to call, or {accept} when all is well."
+WHEN_WELL = "Press {accept} when all is well."
+REACHED_TOO = "Press {reached} when you have reached them."
+SIMULATED = "The simulated expert has looked at it. Press {accept} when all is well."
 RESTARTED = "The robot process was started again."
-STILL_THERE = "It is still there. Tangy stands still. Press e to see whom to call."
-STOPPED = "STOP. After you have cleared this, p lets Tangy go on."
+STILL_THERE = "It is still there. Tangy stands still. Press {expert} to see whom to call."
+STOPPED = "STOP. After you have cleared this, {pause} lets Tangy go on."
 RESTARTING = "The robot process is started again ..."
 CALLING = "The simulated expert looks at it ..."
 LOOKING = "Looking whether it is gone ..."

@@ -136,15 +136,16 @@ STRATEGIES_HELP = (
     "For each way of asking: the curve of what Tangy believes from 0 (never) to 1 (always), how "
     "often it was tried and how often the person complied, the mean, the interval in which the "
     "truth lies with 90%, and the probability of being the best of those that are on. Then how "
-    "the next one is chosen, and where the beliefs began. x switches the chosen one off for this "
-    "person, or on again."
+    "the next one is chosen, and where the beliefs began. {put_away} switches the chosen one off "
+    "for this person, or on again."
 )
 HISTORY_HELP = (
-    "What was asked and what came of it, the newest game first. v voids the chosen response; what "
-    "is void, or has no response yet, can be answered with f."
+    "What was asked and what came of it, the newest game first. {put_away} leaves the chosen "
+    "response out; {feedback} answers for one that is left out, or has no response yet."
 )
 CHOOSE_COUNTING = "Choose a response that counts: tab goes to the history, arrows choose."
-CHOOSE_OPEN = "Choose a request without an answer; void a wrong answer first, with v."
+CHOOSE_OPEN = "Choose a request without an answer; leave a wrong answer out first."
+PUT_AWAY = "Leave the chosen response out, or switch the way of asking off or on"
 VOID = "Shall this response no longer count?"
 SWITCH_DETAIL = "What Tangy has learnt of it stays."
 

@@ -51,6 +51,10 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
             return [f"The game is over; {len(demonstration.steps)} steps were demonstrated."]
 
 
+CHOOSE_STEP, CANCEL = "Choose a step", "Cancel"
+LEAVE = "Leave; your steps are kept"
+"""What keys do while teaching."""
+
 ALL_SHOWN = "Everything that can happen was shown."
 NO_STEPS = "No steps yet."
 
@@ -86,6 +90,18 @@ def again_words(first: int, last: int) -> tuple[str, str]:
     return (
         f"Go back before step {first} and show it again?",
         f"{gone} taken back; F3 brings {back} until you show another.",
+    )
+
+
+DISCARD, KEEP = "discard it", "go on with it"
+
+
+def discard_words(steps: int) -> tuple[str, str]:
+    """Ask whether a game is to be put away, and say what becomes of it."""
+    return (
+        "Discard this game?",
+        f"Tangy does not learn from its {counted(steps, 'step')}. The library keeps it, and can "
+        "bring it back.",
     )
 
 

@@ -6,6 +6,7 @@ from tangy_tui.text.numbers import counted
 
 STOPPED = "STOP: the simulated robot stands still until your next command."
 NOTHING_CHANGED = "You confirmed nothing, so nothing has changed."
+ON_THE_SCREEN = "That works on the screen only: run tangy without --plain."
 WHICH_STEP = "Say which step: `again 5` goes back to before step 5."
 
 

@@ -24,3 +24,8 @@ HANDS_FREE = "No key is needed: just speak."
 def shown_words(why: str) -> str:
     """Say why nothing is heard of what Tangy says."""
     return f"{why} What Tangy says is shown as text."
+
+
+NO_MICROPHONE = "There is no microphone: start Tangy with --mic to talk to it."
+LISTENS = "Tangy listens again."
+LISTENS_NOT = "Tangy takes no commands by voice now. It still hears stop."

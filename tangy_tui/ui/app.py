@@ -31,23 +31,25 @@ from datetime import datetime
 from pathlib import Path
 from threading import Thread
 from time import monotonic
-from typing import Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from rich.console import RenderableType
 from textual import events
 from textual._compositor import ChopsUpdate, LayoutUpdate
 from textual.app import App, SystemCommand
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.css.query import NoMatches
 from textual.notifications import SeverityLevel
 from textual.screen import Screen
 from textual.widgets import Input
 
+from tangy_tui.app.keymap import Keymap
 from tangy_tui.app.terminal_session import QuestionKey, terminal_session
 from tangy_tui.language.stop_sentence import prepare, stops
 from tangy_tui.text import program as text
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import CleanOutput, clean
+from tangy_tui.ui.keys import DEFAULT, bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
 from tangy_tui.ui.screen_diff import ScreenDiff, Written
@@ -55,6 +57,9 @@ from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
 from tangy_tui.ui.type_ahead_guard import Clock
 from tangy_tui.ui.typed_stop import Taken, TypedStop
+
+if TYPE_CHECKING:
+    from textual.command import Provider
 
 HANGUP_CODE = 129
 TERMINATED_CODE = 143
@@ -73,17 +78,18 @@ class TangyApp(App[None]):
     TITLE = "Tangy"
     CSS_PATH = Path(__file__).with_name("tangy.tcss")
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+x", "stop", "STOP the robot", priority=True, id="app.stop"),
-        Binding("ctrl+c,ctrl+q", "quit", "Leave Tangy", priority=True, id="app.quit"),
-        Binding("ctrl+p", "command_palette", "All commands", priority=True, id="app.palette"),
-        Binding("f1", "help", "Help", priority=True, show=False, id="app.help.f1"),
-        Binding("question_mark", "help", "Help", key_display="?", id="app.help"),
-        Binding("colon", "command", "Type a command", key_display=":", id="app.command"),
-        Binding("escape", "back", "Back", id="app.back"),
-        Binding("plus", "zoom", "Enlarge the panel", key_display="+", id="app.zoom"),
-        Binding("s", "picture", "Save a picture of the screen", id="app.picture"),
-        Binding("ctrl+l", "draw_again", "Draw the screen again", show=False, id="app.draw"),
-        Binding("m", "mouse", "Mouse on or off", id="app.mouse"),
+        *bind("stop", priority=True),
+        *bind("quit", priority=True),
+        *bind("palette", "command_palette", priority=True),
+        *bind("help", priority=True),
+        *bind("command"),
+        *bind("back"),
+        *bind("zoom"),
+        *bind("picture"),
+        *bind("draw", "draw_again"),
+        *bind("filter"),
+        *bind("phrases"),
+        *bind("mouse"),
     ]
 
     def __init__(
@@ -94,6 +100,7 @@ class TangyApp(App[None]):
         pictures: Path | None = None,
         clock: Clock = monotonic,
         question: QuestionKey = "auto",
+        keymap: Keymap = DEFAULT,
     ) -> None:
         """Make the program.
 
@@ -103,6 +110,7 @@ class TangyApp(App[None]):
             pictures: the folder that pictures of the screen are saved to (default: the current).
             clock: seconds, on the scale of `time.monotonic`; dialogs and the room use it.
             question: how a question takes a yes.
+            keymap: which keys do what.
         """
         kind = kind or TerminalKind()
         super().__init__(ansi_color=True if kind.ansi else None)
@@ -121,6 +129,8 @@ class TangyApp(App[None]):
         self._typed_stop = TypedStop()
         self._shown = ScreenDiff()
         self._question = question
+        self.keymap = keymap
+        self.set_keymap(keymap.overrides())
         self.round_trip: RoundTrip | None = None
         """What asks the terminal whether a question was seen; None where there is none."""
 
@@ -335,36 +345,25 @@ class TangyApp(App[None]):
         self.notify(clean(sentence), severity=severity, timeout=seconds, markup=False)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """List what the command palette offers: the keys of the screen, and the program's own."""
-        seen: set[str] = set()
-        for active in screen.active_bindings.values():
-            binding = active.binding
-            if binding.description and binding.show and binding.description not in seen:
-                seen.add(binding.description)
-                key = self.get_key_display(binding)
-
-                async def run(action: str = binding.action, node: Any = active.node) -> None:
-                    await self.run_action(action, node)
-
-                yield SystemCommand(binding.description, f"key {key}", run)
+        """List what the command palette offers beside the keys."""
         for (name, like), theme in zip(text.COLOURS.items(), (DARK, LIGHT, ANSI), strict=True):
             yield SystemCommand(name, like, self._themed(theme.name))
 
     def action_command_palette(self) -> None:
-        """Show the command palette, without a blinking cursor."""
-        from textual.command import CommandPalette
-        from textual.widgets import Input
+        """Show the command palette, unless it is there."""
+        from tangy_tui.ui.palette import Palette
 
-        if isinstance(self.screen, CommandPalette):
-            return
-        palette = CommandPalette()
-        self.push_screen(palette)
+        if not isinstance(self.screen, Palette):
+            self.push_screen(Palette([_actions_provider]))
 
-        def calm() -> None:
-            for line in palette.query(Input):
-                line.cursor_blink = False
-
-        palette.call_after_refresh(calm)
+    def action_filter(self) -> None:
+        """Filter the list that has the keys, or the first one of the screen."""
+        lists = (self.screen.focused, *self.screen.query("*"))
+        for panel in lists:
+            begin = getattr(panel, "begin_filter", None)
+            if begin is not None and panel is not None and panel.display:
+                begin()
+                return
 
     def _themed(self, name: str) -> Callable[[], None]:
         def use() -> None:
@@ -384,6 +383,12 @@ class TangyApp(App[None]):
 
     def _signalled(self, name: str, code: int) -> None:
         self.leave(code, f"{name} was received")
+
+
+def _actions_provider() -> type[Provider]:
+    from tangy_tui.ui.palette import ActionsProvider
+
+    return ActionsProvider
 
 
 def run_app(app: TangyApp, *, mouse: bool = True) -> int:

@@ -6,12 +6,13 @@ import asyncio
 from typing import Any, ClassVar, TypeVar
 
 from textual import events
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.messages import Prune
 from textual.screen import ModalScreen, Screen
 from textual.strip import Strip
 from textual.widget import Widget
 
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.terminal import too_small
 from tangy_tui.ui.themes import INK_CLASSES
@@ -147,7 +148,7 @@ class Dialog(ModalScreen[ResultT]):
     """
     VERTICAL_BREAKPOINTS = LOW_OR_TALL
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("question_mark", "app.help", "Help", show=False),
+        *bind("help", "app.help", show=False),
     ]
     HELP: ClassVar[str] = ""
 

@@ -40,11 +40,13 @@ from tangy_tui.text.faults import (
     told_in_banner,
 )
 from tangy_tui.text.halts import ALL_WELL, uncleared_words
+from tangy_tui.text.keys import with_keys
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
+from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.widgets.command_bar import CommandInput
 from tangy_tui.ui.widgets.fault_banner import ESC_SEEN, SEEN, FaultBanner
 from tangy_tui.ui.widgets.fault_list import FaultList
@@ -172,12 +174,13 @@ class FaultConsole:
         if told:
             fault = told[0]
             typing = isinstance(screen.focused, CommandInput)
+            keys = keymap_of(screen.app)
             banner.show(
                 tuple(map(clean, banner_words(fault, doing_words(fault, supervision.book)))),
                 said=clean(said_words(fault)),
                 more=len(told) - 1,
                 critical=fault.critical,
-                key="" if supervision.over else ESC_SEEN if typing else SEEN,
+                key="" if supervision.over else with_keys(ESC_SEEN if typing else SEEN, keys),
             )
         else:
             banner.show(())

@@ -76,6 +76,8 @@ class Hearing:
             hush: lets Tangy fall silent, and returns when it is.
         """
         self.ears = ears
+        self.on = True
+        """Whether commands are taken; what stops the robot is heard in any case."""
         self._app = app
         self._stop = stop
         self._hush = hush
@@ -145,6 +147,12 @@ class Hearing:
             self._understood = spoken
             self.ears.understand_by(spoken)
 
+    def pause(self, paused: bool) -> None:
+        """Take no commands by voice for a while, or take them again."""
+        self.on = not paused
+        self._kept.clear()
+        self.look()
+
     def look(self) -> None:
         """Look whether commands are taken now, and give what was kept until they are."""
         if self.ears.live:
@@ -208,7 +216,7 @@ class Hearing:
                 self.tell(f"Heard: {text}.", "warn")
             case Reply(yes):
                 self._answer(yes)
-            case Say() if self._listeners:
+            case Say() if self._listeners and self.on:
                 self._kept.append(heard)
                 self.look()
 
@@ -232,7 +240,7 @@ class Hearing:
 
     @property
     def _free(self) -> bool:
-        return bool(self._listeners) and self._listeners[-1].listens
+        return self.on and bool(self._listeners) and self._listeners[-1].listens
 
     @property
     def _question(self) -> VerifyingDialog | None:

@@ -8,6 +8,8 @@ from textual import events
 from textual.widget import Widget
 from textual.widgets import Static
 
+from tangy_tui.ui.keys import Key, foot
+
 if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.ui.widgets.room_view import RoomView
@@ -32,14 +34,19 @@ class KeyLine(Static):
     KeyLine { height: 1; padding: 0 1; }
     """
 
-    def __init__(self, *keys: tuple[str, str]) -> None:
+    def __init__(self, *keys: str | Key, typing: bool = False) -> None:
         super().__init__(id="keys")
         self._keys = keys
+        self._typing = typing
 
-    def show(self, *keys: tuple[str, str]) -> None:
-        """Show other keys."""
-        self._keys = keys
-        self._write()
+    def show(self, *keys: str | Key, typing: bool = False) -> None:
+        """Show other keys: actions of the keymap, or pairs of a key and a word.
+
+        `typing` where letters go to a line: then others are shown, as far as there are any.
+        """
+        if (keys, typing) != (self._keys, self._typing):
+            self._keys, self._typing = keys, typing
+            self._write()
 
     def on_resize(self, event: events.Resize) -> None:
         """Show as many as there is room for."""
@@ -48,7 +55,8 @@ class KeyLine(Static):
     def _write(self) -> None:
         from textual.content import Content
 
-        first, last = list(self._keys[:-ALWAYS_SHOWN]), self._keys[-ALWAYS_SHOWN:]
+        keys = foot(self.app, *self._keys, typing=self._typing)
+        first, last = keys[:-ALWAYS_SHOWN], keys[-ALWAYS_SHOWN:]
         width = self.size.width
         while first and sum(len(key) + len(word) + 3 for key, word in (*first, *last)) - 2 > width:
             first.pop()
@@ -58,7 +66,7 @@ class KeyLine(Static):
         self.update(Content.assemble(*parts), layout=False)
 
 
-def key_line(*keys: tuple[str, str]) -> KeyLine:
+def key_line(*keys: str | Key) -> KeyLine:
     """Make the last line of a screen: its keys, each with a word on what it does."""
     return KeyLine(*keys)
 

@@ -100,7 +100,7 @@ class Program(SoundingApp):
             case "guided":
                 self.teach(self.workspace.teaching(teacher_name(), None, guided=True))
             case "library":
-                self.library()
+                self.action_library()
             case "learn":
                 self._open(self._learn())
             case "play":
@@ -141,12 +141,6 @@ class Program(SoundingApp):
         from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 
         self.push_screen(DemonstrationScreen(self.workspace, event.demonstration, event.number))
-
-    def library(self) -> None:
-        """Open the screen of all demonstrations."""
-        from tangy_tui.ui.screens.demonstrations import DemonstrationsScreen
-
-        self.push_screen(DemonstrationsScreen(self.workspace))
 
     async def show_again(self, id: str, kept: int) -> None:
         """Let a demonstration be shown again after its first `kept` steps.
@@ -190,6 +184,23 @@ class Program(SoundingApp):
     async def on_unmount(self) -> None:
         """End the cameras with the program, whatever it was doing."""
         await self.eyes.close()
+
+    def action_library(self) -> None:
+        """Open the library, unless it is open."""
+        from tangy_tui.ui.screens.demonstrations import DemonstrationsScreen
+
+        if not any(isinstance(screen, DemonstrationsScreen) for screen in self.screen_stack):
+            self.push_screen(DemonstrationsScreen(self.workspace))
+
+    def action_guided(self) -> None:
+        """Teach in a guided game, in the place of one that is being taught."""
+        from tangy_tui.ui.screens.teach import TeachScreen
+
+        if self._busy or self._opening:
+            return
+        if isinstance(self.screen, TeachScreen):
+            self.screen.dismiss(False)
+        self.call_next(self.teach, self.workspace.teaching(teacher_name(), None, guided=True))
 
     def action_learn(self) -> None:
         """Learn from all finished demonstrations."""
@@ -307,10 +318,9 @@ class Program(SoundingApp):
             await self.push_screen(CompareScreen(workspace, a, b, [*of_a, *of_b]))
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """List what the command palette offers, with what no key of home leads to."""
+        """List what the command palette offers beside the keys."""
         yield from super().get_system_commands(screen)
         yield SystemCommand(*text.COMPARE_POLICIES, self.action_compare)
-        yield SystemCommand(*text.PHRASES, self.action_phrases)
 
     async def action_phrases(self) -> None:
         """Open the phrasebook; while it says a word aloud, the microphone is shut."""
@@ -318,7 +328,7 @@ class Program(SoundingApp):
         from tangy_tui.ui.screens.phrases import PhrasesScreen
 
         async def say(phones: str) -> None:
-            with self.hearing.deaf() if self.hearing is not None else nullcontext():
+            with nullcontext() if self.hearing is None else self.hearing.deaf():
                 await hear(phones)
 
         if not any(isinstance(screen, PhrasesScreen) for screen in self.screen_stack):

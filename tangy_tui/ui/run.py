@@ -194,5 +194,6 @@ def _run(
         sensors=sensors,
         live=live,
         question=workspace.settings.question,
+        keymap=workspace.settings.keymap,
     )
     return run_app(program)

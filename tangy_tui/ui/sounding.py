@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from textual.app import SystemCommand
-from textual.binding import Binding, BindingType
-from textual.screen import Screen
+from textual.binding import BindingType
 
 from tangy_profiles.activity import Activity
-from tangy_tui.text.program import VOICE
-from tangy_tui.text.voice import OFF, ON
+from tangy_tui.text.voice import LISTENS, LISTENS_NOT, NO_MICROPHONE, OFF, ON
 from tangy_tui.ui.app import FirstScreen, TangyApp
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.hearing import Hearing
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.speaking import Speaker
 
 if TYPE_CHECKING:
@@ -28,8 +25,9 @@ class SoundingApp(TangyApp):
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+t", "talk", "Talk to Tangy", priority=True, show=False, id="app.talk"),
-        Binding("v", "voice", VOICE[0], id="app.voice"),
+        *bind("talk", priority=True),
+        *bind("listen"),
+        *bind("voice"),
     ]
 
     def __init__(
@@ -82,6 +80,14 @@ class SoundingApp(TangyApp):
         if self.hearing is not None:
             await self.hearing.talk()
 
+    def action_listen(self) -> None:
+        """Stop listening, or listen again."""
+        if self.hearing is None:
+            self.say(NO_MICROPHONE)
+        else:
+            self.hearing.pause(self.hearing.on)
+            self.say(LISTENS if self.hearing.on else LISTENS_NOT)
+
     def action_voice(self) -> None:
         """Switch the voice on or off."""
         if self.speaker.on:
@@ -89,13 +95,6 @@ class SoundingApp(TangyApp):
             self.say(OFF)
         elif self.speaker.switch(True):
             self.say(ON)
-
-    def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """List what the command palette offers, with the voice."""
-        listed = list(super().get_system_commands(screen))
-        yield from listed
-        if VOICE[0] not in (command.title for command in listed):  # v is another key there
-            yield SystemCommand(*VOICE, self.action_voice)
 
     def _told_to_stop(self) -> None:
         self.action_stop()

@@ -38,7 +38,7 @@ async def test_a_key_that_comes_twice_opens_one_screen(
 
 async def test_two_keys_make_one_demonstration(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        pilot.type("t", "t")
+        pilot.type("t", "enter", "enter")
         await pilot.pause()
         assert isinstance(pilot.app.screen, TeachScreen)
         pilot.type(*"greet everyone", "enter")
@@ -56,7 +56,7 @@ async def test_stop_at_home_says_that_nothing_moves(
         monkeypatch.setattr(pilot.app, "say", lambda sentence, **more: said.append(sentence))
         await pilot.press("ctrl+x")
         assert said == ["Nothing is moving."]
-        await pilot.press("t")
+        await pilot.press("t", "enter")
         await pilot.pause()
         await pilot.press("ctrl+x")
         assert said == ["Nothing is moving."]
@@ -79,7 +79,7 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
         await until_shown(pilot, lambda: "no robot is named" in screen_text(pilot.app))
         for answer in ("n", "y"):
             assert opened == []
-            await pilot.press("v")
+            await pilot.press("v", "enter")
             await until_shown(pilot, lambda: "Play on the bench?" in screen_text(pilot.app))
             await pilot.press(answer)
             await until_shown(pilot, lambda: not screen_text(pilot.app).count("Play on the bench?"))
@@ -95,7 +95,7 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
 
 async def test_v_needs_something_that_was_learnt(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await pilot.press("v")
+        await pilot.press("v", "enter")
         await until_shown(pilot, lambda: "has not learnt" in screen_text(pilot.app))
 
 

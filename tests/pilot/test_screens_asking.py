@@ -177,7 +177,7 @@ async def test_keys_typed_ahead_answer_nothing(
         await pilot.press("p")
         screen: Any = pilot.app.screen
         while screen.query_one(Transcript).count < 1:
-            await pilot.press("n")
+            await pilot.press("full_stop")
             await pilot.pause()
         pilot.type("n", *"xxx", "enter", "y")
         screen = await asked(pilot)
@@ -226,7 +226,7 @@ async def test_the_game_is_given_up_on_purpose(
             await pilot.press("escape", "escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, ConfirmDialog)
-        await pilot.press("n")
+        await pilot.press("full_stop")
         await pilot.pause()
         assert screen.control.supervision.question is not None
         if way == "word":
@@ -259,7 +259,7 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
         assert isinstance(pilot.app.screen, PlayScreen)
         assert "STOPPED" in screen_text(pilot.app)
         assert "press p to go on first" in screen_text(pilot.app)
-        await pilot.press("n", "e")
+        await pilot.press("full_stop", "E")
         await pilot.press("colon", "enter")
         await pilot.pause()
         assert list(workspace.store.events()) == before
@@ -290,7 +290,7 @@ async def test_pausing_while_tangy_asks_pauses_after_the_answer(
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
-        await pilot.press("escape", "p", "e", "colon")
+        await pilot.press("escape", "p", "E", "colon")
         assert "Tangy asks first" in screen.query_one(LogView).sentences[-1]
         count = screen.query_one(Transcript).count
         await answer(pilot)

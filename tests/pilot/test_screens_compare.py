@@ -87,10 +87,10 @@ async def test_teacher_is_compared_with_teacher(
         assert (first.situation, first.same) == (found(workspace, "call number"), False)
         assert {first.a.behaviour, first.b.behaviour} == {"call number", "joke"}
         assert "A call number 100%" in screen_text(pilot.app)
-        await pilot.press("d")
+        await pilot.press("D")
         await pilot.pause()
         assert len(screen.rows) == 1
-        await pilot.press("b")
+        await pilot.press("2")
         await pilot.pause()
         assert isinstance(pilot.app.screen, WhyDialog)
         assert "by ben." in screen_text(pilot.app)
@@ -107,7 +107,7 @@ async def test_the_policy_screen_tells_why_and_says_what_is_contested(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock()), size=LARGE) as pilot:
-        await pilot.press("o")
+        await pilot.press("o", "enter")
         screen = await shown(pilot, PolicyScreen)
         kept = last_policy(workspace.store, workspace.activity.name)
         assert kept is not None
@@ -127,9 +127,9 @@ async def test_before_is_compared_with_after_from_the_policy_screen(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await pilot.press("o")
+        await pilot.press("o", "enter")
         await shown(pilot, PolicyScreen)
-        await pilot.press("c")
+        await pilot.press("C")
         await shown(pilot, ChooseDialog)
         await pilot.press("enter")
         screen = await shown(pilot, CompareScreen)
@@ -139,9 +139,9 @@ async def test_before_is_compared_with_after_from_the_policy_screen(
 
 async def test_an_earlier_policy_can_be_looked_at(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await pilot.press("o")
+        await pilot.press("o", "enter")
         last = await shown(pilot, PolicyScreen)
-        await pilot.press("o")
+        await pilot.press("o", "enter")
         await shown(pilot, ChooseDialog)
         await pilot.press("end", "enter")
         while not isinstance(pilot.app.screen, PolicyScreen) or pilot.app.screen is last:
@@ -166,7 +166,7 @@ async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
     spoil(workspace)
     before = sum(1 for _ in workspace.store.events(PolicyLearnt))
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await pilot.press("o")
+        await pilot.press("o", "enter")
         dialog = await shown(pilot, DifferenceDialog)
         while dialog._keys._from is None:
             await pilot.pause(0.02)
@@ -196,6 +196,6 @@ async def test_how_a_policy_looks(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:
-        await pilot.press("o")
+        await pilot.press("o", "enter")
         await shown(pilot, PolicyScreen)
         looks(pilot.app)

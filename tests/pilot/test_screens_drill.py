@@ -271,7 +271,7 @@ async def test_it_is_opened_from_home_and_its_score_is_told_there(
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         assert "what to do when things go wrong" in pilot.text()
-        await pilot.press("r")
+        await pilot.press("r", "enter")
         while not isinstance(pilot.app.screen, DrillScreen):
             await pilot.pause(0.02)
         screen = pilot.app.screen

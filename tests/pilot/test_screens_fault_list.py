@@ -48,12 +48,12 @@ async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
         assert "going on without" in line
         assert line.endswith("[a] seen")
         assert "robot WARN: An arm does not work" in pilot.lines()[0]
-        await pilot.press("a")
+        await pilot.press("a", "y")
         await pilot.pause()
         assert not banner.display
         assert game.faults[0].acknowledged
         assert "robot WARN" in pilot.lines()[0]
-        await pilot.press("a")
+        await pilot.press("a", "y")
         await pilot.pause()
         assert screen.query_one(LogView).sentences[-1] == NO_UNSEEN_FAULT
 
@@ -65,7 +65,7 @@ async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
         screen, game, _ = game_of(pilot)
         await pilot.press("p")
         while not any("asked" in kinds_of(fault) for fault in game.faults):
-            await pilot.press("n")
+            await pilot.press("full_stop")
             await pilot.pause()
         said = "Something covers my eyes. Could somebody please take it away?"
         assert said in screen.query_one(LogView).sentences
@@ -92,7 +92,7 @@ async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
         assert "robot WARN: Head camera covered" in pilot.lines()[0]
         assert room.size.height == height or size == MIDDLE  # where the list comes up as well
         assert not any("recovered" in said for said in sentences(screen))
-        await pilot.press("a")
+        await pilot.press("a", "y")
         await pilot.pause()
         assert not screen.query_one(FaultBanner).display
         assert NO_UNSEEN_FAULT not in sentences(screen)
@@ -158,7 +158,7 @@ async def test_the_timeline_has_times_evidence_and_steps_for_staff(
 ) -> None:
     async with run(app=playing(workspace, policy), size=MIDDLE) as pilot:
         await halting(pilot)
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: not isinstance(pilot.app.screen, CriticalDialog))
         await pilot.press("6", "enter")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))

@@ -105,7 +105,7 @@ async def test_how_standing_still_looks(
 ) -> None:
     async with run(app=playing(workspace, policy), size=size) as pilot:
         await halting(pilot, "laser-disconnected")
-        await pilot.press("a")
+        await pilot.press("a", "y")
         await pilot.pause()
         looks(pilot.app)
 
@@ -125,7 +125,7 @@ async def test_how_banner_and_list_look(
             world.inject(kind)
             await until_shown(pilot, lambda: len(game.faults) == len(world.present))
         while [fault.status for fault in game.faults] != [BORNE, BORNE]:
-            await pilot.press("n")
+            await pilot.press("full_stop")
             await pilot.pause()
         await pilot.press("6")
         await pilot.pause()

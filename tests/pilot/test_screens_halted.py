@@ -43,15 +43,15 @@ async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
         count = screen.query_one(Transcript).count
         assert "! robot HALTED: Emergency stop press" in seen(pilot)
         assert "Somebody pressed the emergency stop." in seen(pilot)
-        await pilot.press("c")
+        await pilot.press("r")
         await pilot.pause()
         assert "Press a first" in seen(pilot)
-        await pilot.press("a", "c")
+        await pilot.press("a", "r")
         await pilot.pause()
         assert "It is still there." in seen(pilot)
         assert game.halted is fault
         assert "g give up" in seen(pilot)
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert kinds_of(fault) == [
             "halted",
@@ -106,7 +106,7 @@ async def test_keys_typed_before_the_dialog_could_be_seen_do_nothing(
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
         dialog = await halting(pilot)
-        pilot.type("a", "e", "c", "g", "escape", at=0.0)
+        pilot.type("a", "e", "r", "g", "escape", at=0.0)
         await pilot.pause()
         assert kinds_of(dialog.fault) == ["halted"]
         assert pilot.app.screen is dialog
@@ -180,12 +180,12 @@ async def test_stop_works_inside_and_leaves_the_dialog(
         assert "STOPPED, HALTED" in seen(pilot)
         assert "p lets Tangy go on" in seen(pilot)
         count = screen.query_one(Transcript).count
-        await pilot.press("g")
+        await pilot.press("escape")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
         await pilot.press("ctrl+x")
         await pilot.pause()
         assert pilot.app.screen is dialog
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert "STOPPED" in seen(pilot)
         for _ in range(3):
@@ -204,11 +204,11 @@ async def test_two_critical_faults_are_cleared_one_after_the_other(
         world.inject("camera-disconnected")
         await until_shown(pilot, lambda: len(game.faults) == 2)
         assert "Also wrong" in seen(pilot)
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is not first)
         second = await halted(pilot)
         assert second.fault.code == "camera-disconnected"
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert game.halted is None
         assert [fault.status for fault in game.faults] == [OVER, OVER]
@@ -223,7 +223,7 @@ async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
         await pilot.pause()
         world.inject("emergency-stop")
         await halted(pilot)
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
         await pilot.press("escape")
         await pilot.pause()
@@ -251,7 +251,7 @@ async def test_skipping_stops_where_tangy_stands_still(
         assert dialog.fault.code == "base-stuck"
         assert screen.query_one(RoomView).going is None
         count = screen.query_one(Transcript).count
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert screen.query_one(Transcript).count - count <= 1
         await pilot.press("e")
@@ -271,7 +271,7 @@ async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
         await halted(pilot)
         await until_shown(pilot, lambda: not screen.query(AskingPanel))
         assert not any(isinstance(s, QuestionDialog) for s in pilot.app.screen_stack)
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert await asked(pilot) is not first
         assert "This was not to be expected" in seen(pilot)
@@ -322,14 +322,14 @@ async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
         screen, _, world = game_of(pilot)
         room = screen.query_one(RoomView)
         while room.going is None:
-            await pilot.press("n")
+            await pilot.press("full_stop")
             await pilot.pause()
         caught, going = room.place_of_robot, room.going
         await pilot.press("ctrl+x")
         world.inject("emergency-stop")
         await halted(pilot)
         assert (room.place_of_robot, room.going) == (caught, going)
-        await pilot.press("e", "c")
+        await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert (room.place_of_robot, room.going) == (caught, going)
         assert room._timer is None

@@ -60,14 +60,14 @@ async def test_the_help_of_a_screen_with_a_command_line_tells_of_both(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await pilot.press("t")
+        await pilot.press("t", "enter")
         await pilot.pause()
         await pilot.press("escape")
         await pilot.pause()
         told = dict(help_for(pilot.app.screen).everywhere)
         assert ":" in told
         assert "+" not in told  # no panel has the keys
-        await pilot.press("up", "c")
+        await pilot.press("up", "ctrl+o")
         await pilot.pause()
         assert "+" in dict(help_for(pilot.app.screen).everywhere)
 
@@ -76,7 +76,7 @@ async def test_when_all_conflicts_were_looked_at_the_keys_are_those_that_are_lef
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await pilot.press("l")
+        await pilot.press("l", "enter")
         await pilot.pause()
         keys = pilot.lines()[-1]
         assert "1-9 right" in keys
@@ -86,7 +86,7 @@ async def test_when_all_conflicts_were_looked_at_the_keys_are_those_that_are_lef
         keys = pilot.lines()[-1]
         assert "1-9" not in keys
         assert "enter let Tangy learn" in keys
-        assert "u undo" in keys
-        await pilot.press("u")
+        assert "f2 undo" in keys
+        await pilot.press("f2")
         await pilot.pause()
         assert "1-9 right" in pilot.lines()[-1]

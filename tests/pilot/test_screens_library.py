@@ -110,7 +110,7 @@ async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "i")
+        await press(pilot, "i", "enter")
         assert isinstance(pilot.app.screen, DemonstrationsScreen)
         shown = pilot.text()
         assert "2 of 3 in use" in shown
@@ -126,7 +126,7 @@ async def test_deleting_is_asked_about_and_restored_by_the_same_key(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "i", "x")
+        await press(pilot, "i", "enter", "x")
         assert isinstance(pilot.app.screen, ConfirmDialog)
         await press(pilot, "n")
         assert states(workspace) == ["", "", ""]
@@ -139,38 +139,38 @@ async def test_deleting_is_asked_about_and_restored_by_the_same_key(
 
 async def test_changes_are_undone_and_done_again_in_order(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
-        await press(pilot, "i", "x", "y", "down", "x", "y")
+        await press(pilot, "i", "enter", "x", "y", "down", "x", "y")
         assert states(workspace) == ["deleted", "deleted", ""]
-        await press(pilot, "u")
+        await press(pilot, "f2")
         assert states(workspace) == ["deleted", "", ""]
         await press(pilot, "ctrl+z")
         assert states(workspace) == ["", "", ""]
-        await press(pilot, "u")
+        await press(pilot, "f2")
         assert "no change of the demonstrations to undo" in told(pilot)
-        await press(pilot, "U", "ctrl+y")
+        await press(pilot, "f3", "ctrl+y")
         assert states(workspace) == ["deleted", "deleted", ""]
 
 
 async def test_marked_ones_are_merged_and_taken_apart_again(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
-        await press(pilot, "i", "space", "g")
+        await press(pilot, "i", "enter", "asterisk", "M")
         assert "Mark two or more" in told(pilot)
-        await press(pilot, "down", "space", "g")
+        await press(pilot, "down", "asterisk", "M")
         assert "Merge demonstrations 1 and 2?" in pilot.text()
         await press(pilot, "y")
         assert states(workspace) == ["merged", "merged", "", ""]
         assert len(library_of(workspace).find("4").demonstration.steps) == sum(
             len(library_of(workspace).find(n).demonstration.steps) for n in "12"
         )
-        await press(pilot, "u")
+        await press(pilot, "f2")
         assert states(workspace)[:3] == ["", "", ""]
 
 
 async def test_one_is_split_after_the_chosen_step(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
-        await press(pilot, "i", "slash")
+        await press(pilot, "i", "enter", "S")
         assert "Choose the step that ends the first part" in told(pilot)
-        await press(pilot, "tab", "home", "down", "slash", "y")
+        await press(pilot, "tab", "home", "down", "S", "y")
         assert states(workspace) == ["split", "", "", "", ""]
         first = library_of(workspace).find("4").demonstration
         assert len(first.steps) == 2
@@ -180,7 +180,7 @@ async def test_an_unfinished_one_cannot_be_merged_and_says_why(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
-        await press(pilot, "i", "space", "down", "down", "space", "g")
+        await press(pilot, "i", "enter", "asterisk", "down", "down", "asterisk", "M")
         assert isinstance(pilot.app.screen, DemonstrationsScreen)
         refusal = "Demonstration 3 by Cem is not finished yet."
         assert refusal in told(pilot)
@@ -192,10 +192,10 @@ async def test_an_unfinished_one_cannot_be_merged_and_says_why(
 
 async def test_after_its_last_step_nothing_is_split_off(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
-        await press(pilot, "i", "tab")
+        await press(pilot, "i", "enter", "tab")
         steps = pilot.app.screen.query_one(Transcript)
         steps.point(steps.count)
-        await press(pilot, "slash")
+        await press(pilot, "S")
         assert isinstance(pilot.app.screen, DemonstrationsScreen)
         assert "Nothing comes after step" in told(pilot)
 
@@ -204,11 +204,11 @@ async def test_what_was_made_and_taken_back_is_not_in_the_list(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "i", "space", "down", "space", "g", "y", "u")
+        await press(pilot, "i", "enter", "asterisk", "down", "asterisk", "M", "y", "f2")
         assert states(workspace) == ["", "", "", "undone"]
         assert "undone" not in pilot.text()
         assert "2 of 3 in use" in pilot.text()
-        await press(pilot, "U", "down", "down")
+        await press(pilot, "f3", "down", "down")
         assert "merged from demonstrations 1 and 2" in pilot.text()
 
 
@@ -216,7 +216,7 @@ async def test_a_screen_that_is_left_takes_its_messages_along(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
-        await press(pilot, "i", "x", "y")
+        await press(pilot, "i", "enter", "x", "y")
         assert told(pilot)
         pilot.type("escape", "escape")  # the second comes when the screen has gone already
         await pilot.pause()
@@ -229,14 +229,14 @@ async def test_the_way_out_and_the_help_are_always_in_the_key_line(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
-        await press(pilot, "i")
+        await press(pilot, "i", "enter")
         assert pilot.lines()[-1].endswith("esc back  ? help")
         assert "x delete  a again" in pilot.lines()[-1]
 
 
 async def test_notes_end_inside_of_the_list(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), size=LARGE) as pilot:
-        await press(pilot, "i")
+        await press(pilot, "i", "enter")
         for width in range(85, 161, 5):
             rows = list_rows(workspace.activity, library_of(workspace))
             lines = demonstration_lines(rows, (), width)
@@ -245,7 +245,7 @@ async def test_notes_end_inside_of_the_list(run: Run, workspace: Workspace) -> N
 
 async def test_a_demonstration_opens_at_the_chosen_step(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "i", "tab", "home", "down", "down", "enter")
+        await press(pilot, "i", "enter", "tab", "home", "down", "down", "enter")
         screen = pilot.app.screen
         assert isinstance(screen, DemonstrationScreen)
         assert screen.query_one(Transcript).chosen == 3
@@ -265,11 +265,11 @@ async def test_one_is_shown_again_from_a_step_in_its_own_game(run: Run, tmp_path
         teaching.begin()
         list(ScriptedTeacher(teaching).demonstrate())
         async with run(app=program(workspace)) as pilot:
-            await press(pilot, "i", "tab", "home", "down", "down", "down", "a")
+            await press(pilot, "i", "enter", "tab", "home", "down", "down", "down", "ctrl+r")
             assert "Show demonstration 1 again from step 4?" in pilot.text()
             await press(pilot, "n")
             assert len(library_of(workspace).entries) == 1
-            await press(pilot, "a", "y")
+            await press(pilot, "ctrl+r", "y")
             await wait_for(pilot, TeachScreen)
             assert pilot.app.screen.query_one(Transcript).count == 3
             assert "Show it again from step 4" in pilot.text()
@@ -287,11 +287,13 @@ async def test_a_step_that_is_opened_while_teaching_goes_back_in_that_session(
     workspace = Workspace(tmp_path / "own")
     try:
         async with run(app=program(workspace)) as pilot:
-            await press(pilot, "t", *"greet everyone", "enter", "y", *"call number", "enter", "y")
+            await press(
+                pilot, "t", "enter", *"greet everyone", "enter", "y", *"call number", "enter", "y"
+            )
             teach = pilot.app.screen
             id = library_of(workspace).find("1").demonstration.id
             await pilot.app.push_screen(DemonstrationScreen(workspace, id, 2))
-            await press(pilot, "a", "y")
+            await press(pilot, "ctrl+r", "y")
             await wait_for(pilot, ConfirmDialog)
             await press(pilot, "y")
             assert pilot.app.screen is teach
@@ -308,7 +310,7 @@ async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_say
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "l")
+        await press(pilot, "l", "enter")
         assert isinstance(pilot.app.screen, ConflictsScreen)
         assert last_policy(workspace.store, "bingo") is None
         shown = pilot.text()
@@ -328,7 +330,7 @@ async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_say
 
 async def test_what_is_left_open_is_asked_about_in_games(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "l", "escape")
+        await press(pilot, "l", "enter", "escape")
         assert "Left open: 1; Tangy will ask" in pilot.text()
         await press(pilot, "enter")
         await wait_for(pilot, PolicyScreen)
@@ -341,12 +343,12 @@ async def test_answers_are_taken_back_and_learning_can_be_left(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "l", "1")
+        await press(pilot, "l", "enter", "1")
         assert len(library_of(workspace).resolutions) == 1
-        await press(pilot, "u")
+        await press(pilot, "f2")
         assert library_of(workspace).resolutions == ()
         assert "Which is right?" in pilot.text()
-        await press(pilot, "b")
+        await press(pilot, "0")
         assert len(library_of(workspace).resolutions[0].right) == 2
         await press(pilot, "escape")
         assert isinstance(pilot.app.screen, HomeScreen)
@@ -355,7 +357,7 @@ async def test_answers_are_taken_back_and_learning_can_be_left(
 
 async def test_something_else_can_be_right(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "l", "o")
+        await press(pilot, "l", "enter", "O")
         assert isinstance(pilot.app.screen, WordsDialog)
         await press(pilot, "j", "enter")  # joke
         assert library_of(workspace).resolutions[0].right == ("joke",)
@@ -365,7 +367,7 @@ async def test_a_step_of_an_answer_opens_in_its_demonstration(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "i", "c", "tab", "enter")
+        await press(pilot, "i", "enter", "D", "tab", "enter")
         screen = pilot.app.screen
         assert isinstance(screen, DemonstrationScreen)
         step = screen._shown.steps[(screen.query_one(Transcript).chosen or 0) - 1]
@@ -379,7 +381,7 @@ async def test_a_key_typed_before_the_conflict_was_seen_settles_nothing(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "l")
+        await press(pilot, "l", "enter")
         pilot.type("1", at=0.1)
         await pilot.pause()
         assert library_of(workspace).resolutions == ()
@@ -394,7 +396,7 @@ async def test_how_the_list_looks(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
-        await press(pilot, "i", "space", "down", "space")
+        await press(pilot, "i", "enter", "asterisk", "down", "asterisk")
         looks(pilot.app)
 
 
@@ -403,7 +405,7 @@ async def test_how_a_demonstration_looks(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
-        await press(pilot, "i", "tab", "home", "down", "enter")
+        await press(pilot, "i", "enter", "tab", "home", "down", "enter")
         looks(pilot.app)
 
 
@@ -412,7 +414,7 @@ async def test_how_a_conflict_looks(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
-        await press(pilot, "i", "c")
+        await press(pilot, "i", "enter", "D")
         looks(pilot.app)
 
 
@@ -420,7 +422,7 @@ async def test_how_settled_conflicts_look(
     run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await press(pilot, "i", "c", "1")
+        await press(pilot, "i", "enter", "D", "1")
         looks(pilot.app)
 
 
@@ -430,8 +432,8 @@ async def test_it_can_be_read_in_ascii_and_in_little_room(
 ) -> None:
     app = Program(workspace, clock=StillClock(), kind=TerminalKind(ascii=True, ansi=True))
     async with run(app=app, size=size) as pilot:
-        await press(pilot, "i")
+        await press(pilot, "i", "enter")
         assert "Ada" in pilot.text()
-        await press(pilot, "c")
+        await press(pilot, "D")
         assert "Which is right?" in pilot.text()
         assert "step " in pilot.text()

@@ -119,7 +119,7 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
             assert "OVER" not in pilot.lines()[0] and "i autonomy" in pilot.lines()[-1]
             await pilot.press("escape")
             await until_shown(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))
-            await pilot.press("n")
+            await pilot.press("full_stop")
         finally:
             link.state = replace(link.state, health=well)
             link.free = True
@@ -246,7 +246,7 @@ async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Pro
         await pilot.press("y")
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps == steps + 1)
         await asked_about_the_next(pilot)
-        await pilot.press("n")
+        await pilot.press("full_stop")
         await until_shown(pilot, lambda: bool(live(pilot).query(AskingPanel)))
 
 
@@ -379,11 +379,11 @@ async def test_a_call_is_said_again_and_taken_back(
         await pilot.press("c")
         await until_shown(pilot, lambda: link.said[-1] == label)
         await until_shown(pilot, lambda: not live(pilot).working)
-        await pilot.press("x")
+        await pilot.press("f2")
         await until_shown(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
-        await pilot.press("n")
+        await pilot.press("full_stop")
         assert len(world.called) == count
-        await pilot.press("x")
+        await pilot.press("f2")
         await until_shown(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
         await pilot.press("y")
         await until_shown(pilot, lambda: len(world.called) == count - 1)

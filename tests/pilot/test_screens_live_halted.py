@@ -82,7 +82,7 @@ async def test_the_screen_lives_while_the_robot_process_is_started_again(
             await pilot.press("e")
             assert f"! {halts.RESTARTING}" in seen(pilot)
             await lives(pilot, link)
-            await pilot.press("c")
+            await pilot.press("r")
             assert f"! {halts.wait_words(halts.RESTARTING)}" in seen(pilot)
             assert "^x STOP" in pilot.text() and "c clear" not in pilot.text()
             await pilot.press("ctrl+x")
@@ -103,10 +103,10 @@ async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
         link.ail("stop_button")
         link.free = False
         try:
-            await pilot.press("a", "c")
+            await pilot.press("a", "r")
             assert f"! {halts.LOOKING}" in seen(pilot)
             await lives(pilot, link)
-            await pilot.press("g")
+            await pilot.press("escape")
             assert f"! {halts.wait_words(halts.LOOKING)}" in seen(pilot)
             await pilot.press("ctrl+x")
             assert "stop: staff stopped it" in link.told
@@ -124,7 +124,7 @@ async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
         await pilot.press("ctrl+x")
         released = len(link.released)
         link.ail("stop_button")
-        await pilot.press("a", "c")
+        await pilot.press("a", "r")
         await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
         assert live(pilot).control.supervision.halted is None
         done = len(link.done)
@@ -143,7 +143,7 @@ async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
         link.ail("stop_button")
         link.free = False
         try:
-            await pilot.press("a", "c", "question_mark")
+            await pilot.press("a", "r", "question_mark")
             await until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
         finally:
             link.free = True

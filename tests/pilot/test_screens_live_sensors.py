@@ -141,7 +141,7 @@ async def test_v_shows_what_its_camera_sees(
 ) -> None:
     async with run(make()) as pilot:
         assert link.asked_for == []
-        pilot.type("v")
+        pilot.type("V")
         await shown(pilot, BLOCK)
         await until_shown(pilot, lambda: len(link.asked_for) > 2)
         first, second = link.asked_for[:2]
@@ -176,7 +176,7 @@ async def test_a_robot_process_that_is_silent_is_not_asked_and_that_is_said(
         link.state = replace(
             link.state, health=tuple(r._replace(state=STALE) for r in link.state.health)
         )
-        pilot.type("v")
+        pilot.type("V")
         await shown(pilot, "No picture comes")
         assert "!! head camera" in pilot.text() and "disconnected" in row(pilot, "head camera")
         assert "no data" in row(pilot, "wheels")
@@ -204,7 +204,7 @@ async def test_how_it_looks(
     link.sight = replace(WELL, state="COVERED", why=why, seconds=785.0, age=185.0)
     link.looked = link.read = {**READ, "age": -9.0}
     async with run(make(), size) as pilot:
-        pilot.type("v")
+        pilot.type("V")
         await shown(pilot, "Card 17")
         await shown(pilot, BLOCK)
         await shown(pilot, "covered for 13 min")

@@ -126,16 +126,16 @@ async def test_another_person_is_chosen_with_the_arrows(run: Run, workspace: Wor
 
 async def test_a_response_is_voided_and_taken_back(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
-        await pilot.press("v")
+        await pilot.press("x")
         await pilot.pause()
         assert isinstance(pilot.app.screen, ConfirmDialog)
         await pilot.press("n")
         assert complied(workspace, "user1", "suggestion") == (0, 2)
-        await pilot.press("v", "y")
+        await pilot.press("x", "y")
         await pilot.pause()
         assert complied(workspace, "user1", "suggestion") == (0, 1)
         assert "void: that was not a refusal" in pilot.text()
-        await pilot.press("u")
+        await pilot.press("f2")
         await pilot.pause()
         assert "that a response to suggestion is void" in pilot.text()
         await pilot.press("y")
@@ -148,12 +148,12 @@ async def test_what_is_void_does_not_void_again_and_can_be_answered(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(PeopleScreen(workspace), notifications=True) as pilot:
-        await pilot.press("v", "y")
+        await pilot.press("x", "y")
         await pilot.pause()
-        await pilot.press("v")
+        await pilot.press("x")
         await pilot.pause()
         assert "Choose a response that counts" in pilot.text()
-        await pilot.press("f")
+        await pilot.press("F")
         await pilot.pause()
         assert isinstance(pilot.app.screen, AnswerDialog)
         await pilot.press("y")
@@ -166,13 +166,13 @@ async def test_a_request_without_a_response_is_answered_late(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
-        await pilot.press("down", "f")
+        await pilot.press("down", "F")
         await pilot.pause()
         assert "Did User 2 comply?" in pilot.text()
         await pilot.press("escape")
         await pilot.pause()
         assert complied(workspace, "user2", "suggestion") == (1, 0)
-        await pilot.press("f", "n")
+        await pilot.press("F", "n")
         await pilot.pause()
         assert complied(workspace, "user2", "suggestion") == (1, 1)
         assert "answered later" in pilot.text()
@@ -205,7 +205,7 @@ async def test_another_method_is_chosen_and_the_activitys_again(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
-        await pilot.press("m")
+        await pilot.press("P")
         await pilot.pause()
         assert isinstance(pilot.app.screen, MethodDialog)
         await pilot.press("1", "2", "3", "3")
@@ -215,7 +215,7 @@ async def test_another_method_is_chosen_and_the_activitys_again(
         await pilot.press("n")
         await pilot.pause()
         assert workspace.memory().feedback.method("user1") is None
-        await pilot.press("m", "1", "2", "y")
+        await pilot.press("P", "1", "2", "y")
         await pilot.pause()
         assert workspace.memory().feedback.method("user1") == PersuasionConfig(
             "bayes-ucb", "people"
@@ -223,7 +223,7 @@ async def test_another_method_is_chosen_and_the_activitys_again(
         assert "Bayes-UCB from earlier people" in pilot.text()
         assert "(for this person)" in pilot.text()
         assert "begins with what earlier people lend" in pilot.text()
-        await pilot.press("m", "d", "y")
+        await pilot.press("P", "0", "y")
         await pilot.pause()
         assert workspace.memory().feedback.method("user1") is None
 
@@ -232,7 +232,7 @@ async def test_with_nothing_said_there_is_nothing_to_take_back(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(PeopleScreen(workspace), notifications=True) as pilot:
-        await pilot.press("u")
+        await pilot.press("f2")
         await pilot.pause()
         assert "nothing to take back" in " ".join(pilot.text().split())
 
@@ -243,7 +243,7 @@ async def test_the_cursor_stays_where_it_was_after_a_change(run: Run, workspace:
         await pilot.pause()
         history = pilot.app.screen.query_one("#history", ChoiceList)
         before = history.chosen
-        await pilot.press("v", "y")
+        await pilot.press("x", "y")
         await pilot.pause()
         assert history.chosen == before
         assert pilot.app.screen.focused is history
@@ -264,7 +264,7 @@ async def test_names_that_look_like_markup_are_only_names(run: Run, workspace: W
 async def test_every_key_is_told_at_80_columns(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace), size=SMALL) as pilot:
         keys = pilot.lines()[-1]
-        for key in ("tab", "v", "f", "x", "m", "u", "n", "esc", "?"):
+        for key in ("tab", "v", "f", "x", "P", "u", "n", "esc", "?"):
             assert f" {key} " in keys
 
 
@@ -297,7 +297,7 @@ async def test_how_the_choice_of_a_method_looks(
     run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
-        await pilot.press("m", "1")
+        await pilot.press("P", "1")
         await pilot.pause()
         looks(pilot.app)
 
@@ -308,7 +308,7 @@ async def test_in_ascii_every_line_is_ascii(run: Run, workspace: Workspace) -> N
         assert "settled" in pilot.text()
 
 
-@pytest.mark.parametrize("keys", [("v",), ("down", "f"), ("x",)], ids=["void", "answer", "switch"])
+@pytest.mark.parametrize("keys", [("v",), ("down", "F"), ("x",)], ids=["void", "answer", "switch"])
 async def test_how_the_questions_look(
     run: Run, workspace: Workspace, keys: tuple[str, ...], looks: Callable[[App[None]], None]
 ) -> None:
@@ -353,14 +353,14 @@ async def test_a_name_is_heard_and_its_pronunciation_noted(
 
     monkeypatch.setattr("tangy_tui.ui.screens.people.hear", say)
     async with run(PeopleScreen(workspace)) as pilot:
-        pilot.type("n")
+        pilot.type("N")
         await pilot.pause()
         dialog = pilot.app.screen
         assert isinstance(dialog, PronunciationDialog)
         assert "Rosa is said R OW Z AH, as in the dictionary." in pilot.text()
         dialog.query_one(PhonesInput).value = "r ow s ah"
         await pilot.pause()
-        pilot.type("ctrl+l", "enter", at=1e9)
+        pilot.type("ctrl+g", "enter", at=1e9)
         await pilot.pause()
         assert spoken == ["R OW S AH"]
         assert workspace.find_person("user1").pronunciation == "R OW S AH"
@@ -373,7 +373,7 @@ async def test_a_pronunciation_that_is_anothers_is_told_and_the_line_stays(
 ) -> None:
     workspace.rename(workspace.find_person("user2"), "Ann")
     async with run(PeopleScreen(workspace)) as pilot:
-        pilot.type("n")
+        pilot.type("N")
         await pilot.pause()
         dialog = pilot.app.screen
         assert isinstance(dialog, PronunciationDialog)

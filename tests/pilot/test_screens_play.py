@@ -74,7 +74,7 @@ async def test_one_step_is_one_step(run: Run, workspace: Workspace, policy: Poli
         screen = await pause_at_once(pilot)
         before = screen.query_one(Transcript).count
         for more in (1, 2, 3):
-            await pilot.press("n")
+            await pilot.press("full_stop")
             await pilot.pause()
             assert screen.query_one(Transcript).count == before + more
         assert screen.query_one(StatusLine).status.note == "paused"
@@ -86,7 +86,7 @@ async def test_the_policy_row_in_use_is_marked(
     async with run(app=playing(workspace, policy), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
         for _ in range(3):
-            await pilot.press("n")
+            await pilot.press("full_stop")
             await pilot.pause()
         table = screen.query_one(PolicyTable)
         assert table._now is not None
@@ -98,14 +98,14 @@ async def test_skipping_plays_the_game_to_its_end(
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
         screen = await pause_at_once(pilot)
-        await pilot.press("e")
+        await pilot.press("E", "y")
         while not screen.control.supervision.over:
             await pilot.pause(0.02)
         await pilot.pause()
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
         assert screen.query_one(StatusLine).status.stage == "over"
         assert workspace.store.last("game ended") is not None
-        await pilot.press("g")
+        await pilot.press("g", "y")
         await pilot.pause()
         assert screen.query_one(StatusLine).status.game == 2
 
@@ -142,7 +142,7 @@ async def test_stop_stops_and_only_a_person_lets_it_go_on(
         await pilot.pause()
         assert screen.query_one(Transcript).count == count
         assert "STOPPED" in screen_text(pilot.app)
-        await pilot.press("n")
+        await pilot.press("full_stop")
         await pilot.pause()
         assert screen.query_one(Transcript).count == count
         await pilot.press("p")
@@ -198,7 +198,7 @@ async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
     )
     async with run(app=playing(untaught, poor), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
-        await pilot.press("e")
+        await pilot.press("E", "y")
         while not isinstance(pilot.app.screen, MessageDialog):
             await pilot.pause(0.02)
         assert "Nobody has shown Tangy" in screen_text(pilot.app)
@@ -217,7 +217,7 @@ async def test_how_playing_looks(
     async with run(app=playing(workspace, policy), size=size) as pilot:
         await pause_at_once(pilot)
         for _ in range(12):
-            await pilot.press("n")
+            await pilot.press("full_stop")
             await pilot.pause()
         picture(pilot.app)
 
@@ -283,7 +283,7 @@ async def test_learning_from_home_shows_the_policy(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await pilot.press("l")
+        await pilot.press("l", "enter")
         while not isinstance(pilot.app.screen, PolicyScreen):
             await pilot.pause(0.02)
         assert "Learnt from 3 demonstrations" in screen_text(pilot.app)
@@ -293,7 +293,7 @@ async def test_two_letters_at_home_are_one_choice(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await pilot.press("o", "p", "l")
+        await pilot.press("o", "enter", "p", "enter", "l")
         while not isinstance(pilot.app.screen, PolicyScreen):
             await pilot.pause(0.02)
         await pilot.press("escape")
@@ -307,7 +307,7 @@ async def test_why_is_told_of_the_last_step_and_of_the_chosen_one(
     async with run(app=playing(workspace, policy)) as pilot:
         screen = await pause_at_once(pilot)
         while not any(ground.acted.choice for ground in screen._picture.grounds):
-            await pilot.press("n")
+            await pilot.press("full_stop")
             await pilot.pause()
         ground = screen._picture.grounds[-1]
         assert ground.acted.choice is not None
@@ -341,7 +341,7 @@ async def test_leaving_in_mid_game_is_asked_and_logged(
         await pilot.press("escape")
         await pilot.pause()
         assert "Leave in the middle of the game?" in screen_text(pilot.app)
-        await pilot.press("n")
+        await pilot.press("full_stop")
         await pilot.pause()
         assert isinstance(pilot.app.screen, PlayScreen)
         assert pilot.app.screen.query_one(StatusLine).status.note == "x1"

@@ -70,7 +70,7 @@ async def over(pilot: TangyPilot) -> PlayScreen:
     """Skip to the end of the game."""
     screen = pilot.app.screen
     assert isinstance(screen, PlayScreen)
-    await pilot.press("e")
+    await pilot.press("E", "y")
     while not screen.control.supervision.over:
         await pilot.pause(0.02)
     await pilot.pause()
@@ -132,11 +132,11 @@ async def test_another_game_in_mid_game_is_announced(
 ) -> None:
     async with run(app=playing(workspace, policy), notifications=True) as pilot:
         screen = pilot.app.screen
-        await pilot.press("p", "g")
+        await pilot.press("p", "g", "y")
         await pilot.pause()
         assert screen.query_one(LogView).sentences[-1] == "Another game will follow."
         assert "Another game will follow." in told(pilot)
-        await pilot.press("g")
+        await pilot.press("g", "y")
         assert screen.query_one(LogView).sentences[-1] == "2 more games will follow."
 
 
@@ -145,7 +145,7 @@ async def test_another_game_goes_on_though_the_last_one_was_paused(
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
         screen = await over(pilot)
-        await pilot.press("p", "g")
+        await pilot.press("p", "g", "y")
         await pilot.pause(0.1)
         status = screen.query_one(StatusLine).status
         assert (status.game, status.note) == (2, "x1000")
@@ -180,7 +180,7 @@ async def test_after_a_stop_the_keys_say_what_goes_on_and_what_does_not(
         await pilot.press("ctrl+x")
         await pilot.pause()
         assert "p go on" in line.placeholder
-        await pilot.press("e")
+        await pilot.press("E", "y")
         await pilot.pause()
         assert "Not now: Tangy was stopped. Press p to go on first." in pilot.text()
         await pilot.press("p", "escape")
@@ -215,7 +215,7 @@ async def test_nothing_lies_over_a_question(
         await answer(pilot)
         while screen.query(AskingPanel):
             await pilot.pause(0.02)
-        await pilot.press("e")
+        await pilot.press("E", "y")
         await asked(pilot)
         await pilot.pause()
         assert not told(pilot)

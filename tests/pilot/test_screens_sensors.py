@@ -201,7 +201,7 @@ async def test_a_picture_comes_on_request_and_costs_nothing_while_it_is_hidden(
     async with run(make()) as pilot:
         await pilot.pause(2 * LOOK)
         assert sensors.asked == [] and BLOCK not in pilot.text()
-        pilot.type("v")
+        pilot.type("V")
         await until_shown(pilot, lambda: BLOCK in pilot.text())
         shown = pilot.app.screen.query_one(BlockPicture)
         width, height = shown.content_size
@@ -227,7 +227,7 @@ async def test_an_enlarged_picture_is_made_for_the_room_there_is(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
 ) -> None:
     async with run(make()) as pilot:
-        pilot.type("v", "tab", "tab")
+        pilot.type("V", "tab", "tab")
         await pilot.pause()
         pilot.type("plus")
         await until_shown(pilot, lambda: BLOCK * 70 in pilot.text())
@@ -242,7 +242,7 @@ async def test_without_colours_a_picture_is_drawn_in_shades(
     run: Run, make: Callable[..., SensorsScreen], kind: TerminalKind
 ) -> None:
     async with run(make(), kind=kind) as pilot:
-        pilot.type("v")
+        pilot.type("V")
         await until_shown(pilot, lambda: "@@@" in pilot.text())
         width, height = pilot.app.screen.query_one(BlockPicture).content_size
         assert pilot.text().count("." * width) >= height // 2 - 1
@@ -296,14 +296,14 @@ async def test_the_cameras_are_open_as_long_as_the_screen_is_there(
     given: Any = sensors
     async with run(app=Program(workspace, sensors=given)) as pilot:
         assert sensors.open == 0
-        pilot.type("c")
+        pilot.type("c", "enter")
         await pilot.pause()
         assert isinstance(pilot.app.screen, SensorsScreen)
         assert (sensors.open, sensors.readers) == (1, 1)
         pilot.type("escape")
         await until_shown(pilot, lambda: (sensors.open, sensors.readers) == (0, 0))
         assert not isinstance(pilot.app.screen, SensorsScreen)
-        pilot.type("c")
+        pilot.type("c", "enter")
         await pilot.pause()
         assert sensors.open == 1
     assert sensors.open == 0
@@ -312,7 +312,7 @@ async def test_the_cameras_are_open_as_long_as_the_screen_is_there(
 async def test_without_a_camera_it_says_how_to_name_one(run: Run, workspace: Workspace) -> None:
     async with run(SensorsScreen(workspace)) as pilot:
         assert "camera=0" in pilot.text()
-        pilot.type("v", "enter")
+        pilot.type("V", "enter")
         await pilot.pause()
         assert "camera=0" in pilot.text() and "No camera looks at cards." in pilot.text()
 
@@ -366,7 +366,7 @@ async def test_how_it_looks(
     sensors.cards = CardSight(card(workspace, stamp=monotonic() + 9), "", monotonic())
     health = (Reading("laser", 0.05, OK), Reading("link", 3.0))
     async with run(make(health=lambda: health), size) as pilot:
-        pilot.type("v")
+        pilot.type("V")
         await until_shown(pilot, lambda: BLOCK in pilot.text())
         await later(pilot)
         picture(pilot.app)
@@ -378,10 +378,10 @@ async def test_in_a_narrow_window_v_leads_to_picture_and_card_and_back(
     sensors.cards = CardSight(card(workspace), "", monotonic())
     async with run(make(), (60, 18)) as pilot:
         assert "head camera" in pilot.text() and "Last card" not in pilot.text()
-        pilot.type("v")
+        pilot.type("V")
         await until_shown(pilot, lambda: BLOCK in pilot.text())
         assert "Card 17" in pilot.text() and "Devices" not in pilot.text()
-        pilot.type("v")
+        pilot.type("V")
         await pilot.pause()
         assert "Last card" not in pilot.text()
         assert pilot.app.focused is pilot.app.screen.query_one("#devices")

@@ -159,7 +159,7 @@ async def test_the_game_is_shown_again_from_a_step(
         if typed:
             await pilot.press(*"again 13", "enter")
         else:
-            await pilot.press("escape", "up", "up", "f9")
+            await pilot.press("escape", "up", "up", "ctrl+r")
         await pilot.pause()
         assert isinstance(pilot.app.screen, ConfirmDialog)
         assert "before step 13" in screen_text(pilot.app)
@@ -177,7 +177,7 @@ async def test_the_game_is_shown_again_from_a_step(
 async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 4)
-        await pilot.press("escape", "up", "f9")
+        await pilot.press("escape", "up", "ctrl+r")
         await pilot.pause()
         assert "Step 4 is taken back; F3 brings it back until" in screen_text(pilot.app)
         await pilot.press("n")
@@ -188,7 +188,7 @@ async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> 
 async def test_it_says_what_nobody_has_shown_yet(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         assert "nobody has had a wrong mark yet" not in screen_text(pilot.app)
-        await pilot.press("f8")
+        await pilot.press("ctrl+o")
         await pilot.pause()
         seen = pilot.app.screen.query_one(CoverageList)
         assert "nobody has had a wrong mark yet" in seen.missing
@@ -212,12 +212,12 @@ async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
     try:
         async with run(app=program(workspace, seed=9)) as pilot:
             assert "seen 11/11" in screen_text(pilot.app)
-            await pilot.press("f8")
+            await pilot.press("ctrl+o")
             await pilot.pause()
             assert "11 of 11 situations shown, 0 in this game" in screen_text(pilot.app)
             await pilot.press("escape")
             await mid_game(pilot, 3)
-            await pilot.press("f8")
+            await pilot.press("ctrl+o")
             await pilot.pause()
             assert "11 of 11 situations shown, 2 in this game" in screen_text(pilot.app)
             assert not pilot.app.screen.query_one(CoverageList).missing
@@ -418,7 +418,7 @@ async def test_how_it_looks_to_see_what_is_missing(
 ) -> None:
     async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 14)
-        await pilot.press("f8")
+        await pilot.press("ctrl+o")
         await pilot.pause()
         looks(pilot.app)
 

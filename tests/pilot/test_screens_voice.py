@@ -236,9 +236,9 @@ async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
         assert isinstance(screen, PlayScreen)
         steps = screen.query_one(Transcript)
         await until_shown(pilot, lambda: steps.count == 1)
-        await pilot.press("p", "n")
+        await pilot.press("p", "full_stop")
         await until_shown(pilot, lambda: steps.count == 2)
-        await pilot.press("n")
+        await pilot.press("full_stop")
         await until_shown(pilot, lambda: steps.count == 3)
         said = [s for s in screen.query_one(LogView).sentences if "complied" not in s]
         await until_shown(pilot, lambda: voices[0].lines[-1] in said[-1])
@@ -252,7 +252,7 @@ async def test_a_game_that_is_skipped_to_its_end_is_silent(
         screen = pilot.app.screen
         assert isinstance(screen, PlayScreen)
         await until_shown(pilot, lambda: bool(voices[0].lines))
-        await pilot.press("e")
+        await pilot.press("E", "y")
         await until_shown(pilot, lambda: screen.control.supervision.over)
         assert len(voices[0].lines) <= 2
         assert not voices[0].speaking

@@ -6,7 +6,7 @@ from typing import ClassVar, Protocol
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Static
@@ -27,18 +27,20 @@ from tangy_tui.text.faults import (
     mark_of,
     still_there_words,
 )
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.times import clock
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.fault import advice_lines, evidence_lines, moves_so_far
+from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
-KEYS = ("a", "e", "r", "c", "g", "escape")
+ACTIONS = ("acknowledge", "expert", "reached", "accept", "back")
 
 
 class Desk(Protocol):
@@ -89,17 +91,17 @@ class CriticalDialog(Dialog[None]):
     CriticalDialog KeyLine { padding: 0; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("a", "nothing", "I have seen it"),
-        Binding("e", "nothing", "Call the expert, or show whom to call"),
-        Binding("r", "nothing", "I have reached the expert"),
-        Binding("c", "nothing", "Clear it: all is well, Tangy goes on"),
-        Binding("g,escape", "nothing", "Give the game up", key_display="g esc"),
+        *bind("acknowledge", "nothing"),
+        *bind("expert", "nothing"),
+        *bind("reached", "nothing"),
+        *bind("accept", "nothing"),
+        *bind("back", "nothing", name=halts.GIVE_UP),
     ]
     HELP = (
-        "Tangy has stopped and stands still. a says that you have seen it. e calls the expert, if "
-        "the robot's file says how, and shows whom to call; r says that you have reached them. c "
-        "lets Tangy go on, if the fault is gone; otherwise nothing moves. g or esc gives the game "
-        "up, after asking. Up and down scroll."
+        "Tangy has stopped and stands still. {acknowledge} says that you have seen it. {expert} "
+        "calls the expert, if the robot's file says how, and shows whom to call; {reached} says "
+        "that you have reached them. {accept} lets Tangy go on, if the fault is gone; otherwise "
+        "nothing moves. Esc gives the game up, after asking. Up and down scroll."
     )
 
     def __init__(
@@ -131,7 +133,7 @@ class CriticalDialog(Dialog[None]):
         box = Vertical(
             Page(self._write),
             Static(self._is_there(), classes="now", markup=False),
-            Static(f"! {said}", classes="said", markup=False),
+            Static(f"! {with_keys(said, keymap_of(self.app))}", classes="said", markup=False),
             KeyLine(*self._key_words()),
             id="critical",
             classes="box",
@@ -183,7 +185,7 @@ class CriticalDialog(Dialog[None]):
     def say(self, sentence: str) -> None:
         """Say what a key did, or what has to be done first."""
         for said in self.query(".said").results(Static):
-            said.update(f"! {clean(sentence)}")
+            said.update(f"! {clean(with_keys(sentence, keymap_of(self.app)))}")
 
     def take_sentence(self, sentence: str) -> bool:
         """Say a sentence of the program's here: nothing is to lie over the fault."""
@@ -202,25 +204,26 @@ class CriticalDialog(Dialog[None]):
 
     async def on_key(self, event: events.Key) -> None:
         """Do what a key says, if the fault was on the screen by then."""
-        if event.key not in KEYS or not self._keys.take(event):
+        key = keymap_of(self.app).action(event.key)
+        if key not in ACTIONS or not self._keys.take(event):
             return
         if self._doing:
             self.say(halts.wait_words(self._doing))
-        elif self._desk.takes_time and (doing := self._takes(event.key)):
+        elif self._desk.takes_time and (doing := self._takes(key)):
             self._doing = doing
             self.say(doing)
             self._show_keys()
-            self.run_worker(self._tried(event.key), group="doing")
+            self.run_worker(self._tried(key), group="doing")
         else:
-            await self._tried(event.key)
+            await self._tried(key)
 
     def _takes(self, key: str) -> str:
         """Say what a key has done that takes its time, "" if it has nothing done."""
-        if key == "e" and not self._called:
+        if key == "expert" and not self._called:
             if self._desk.restarts:
                 return halts.RESTARTING
             return halts.CALLING if self._desk.simulated else ""
-        return halts.LOOKING if key == "c" and self._fault.acknowledged else ""
+        return halts.LOOKING if key == "accept" and self._fault.acknowledged else ""
 
     async def _tried(self, key: str) -> None:
         try:
@@ -234,20 +237,20 @@ class CriticalDialog(Dialog[None]):
     async def _do(self, key: str) -> None:
         fault, desk = self._fault, self._desk
         match key:
-            case "a":
+            case "acknowledge":
                 desk.acknowledge()
                 self.say(halts.SEEN)
-            case "e":
+            case "expert":
                 restarts = desk.restarts
                 if not self._called:
                     await desk.call_expert()
                 self.say(self._whom_to_call(restarts and not desk.restarts))
-            case "r":
+            case "reached":
                 desk.reached()
                 self.say(self._whom_to_call(False))
-            case "c" if not fault.acknowledged:
+            case "accept" if not fault.acknowledged:
                 self.say(halts.SEEN_FIRST)
-            case "c":
+            case "accept":
                 await desk.clear()
                 if desk.supervision.halted is fault:
                     self.say(halts.STILL_THERE)
@@ -294,14 +297,14 @@ class CriticalDialog(Dialog[None]):
     def action_nothing(self) -> None:
         """Do nothing: `on_key` has the keys, so that each can be looked at."""
 
-    def _key_words(self) -> tuple[tuple[str, str], ...]:
+    def _key_words(self) -> tuple[str, ...]:
         if self._doing:
-            return (("^x", "STOP"), ("?", "help"))
-        seen = () if self._fault.acknowledged else (("a", "seen"),)
+            return ("stop", "help")
+        seen = () if self._fault.acknowledged else ("acknowledge",)
         state = self._call_state()
         waits = state is not None and state.stage != "answered"
-        reached = (("r", "reached"),) if waits else ()
-        return (*seen, ("e", "expert"), *reached, ("c", "clear"), ("g", "give up"), ("?", "help"))
+        reached = ("reached",) if waits else ()
+        return (*seen, "expert", *reached, "accept", "back:give up", "help")
 
     def _write(self, width: int) -> list[PageLine]:
         supervision = self._desk.supervision

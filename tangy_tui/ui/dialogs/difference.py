@@ -22,7 +22,7 @@ from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 Use = Literal["use", "keep", "back"]
 """What is done with it: used this time, kept as it is now and used, or not used."""
 
-ANSWERS: dict[str, Use] = {"y": "use", "k": "keep", "n": "back", "escape": "back"}
+ANSWERS: dict[str, Use] = {"y": "use", "1": "keep", "n": "back", "escape": "back"}
 
 
 class DifferenceDialog(Dialog[Use]):
@@ -34,12 +34,12 @@ class DifferenceDialog(Dialog[Use]):
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y", "nothing", "Use it this time"),
-        Binding("k", "nothing", "Keep it as it is now, and use it"),
+        Binding("1", "nothing", "Keep it as it is now, and use it"),
         Binding("n", "nothing", "Go back, and do not use it"),
     ]
     HELP = (
         "The policy was learnt again from its demonstrations, and did not come out as it was "
-        "kept. Look at the rows that differ: y uses it this time, k keeps it as it is now, so "
+        "kept. Look at the rows that differ: y uses it this time, 1 keeps it as it is now, so "
         "that it is not asked about again, and n or esc goes back."
     )
 
@@ -62,7 +62,7 @@ class DifferenceDialog(Dialog[Use]):
         """Lay out the notice, the rows, and the keys."""
         box = Vertical(Page(self._write), id="difference", classes="box")
         box.border_title = Content(NOT_AS_KEPT)
-        box.border_subtitle = "y use it   k keep it so   n go back"
+        box.border_subtitle = "y use it   1 keep it so   n go back"
         yield box
 
     def on_mount(self) -> None:
@@ -71,7 +71,7 @@ class DifferenceDialog(Dialog[Use]):
         self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Answer by y, k, n or esc; the arrows scroll."""
+        """Answer by y, 1, n or esc; the arrows scroll."""
         answer = ANSWERS.get(event.key.lower())
         if answer is not None and self._keys.take(event):
             self.answer(answer)

@@ -41,11 +41,11 @@ class MethodChoice:
 
 
 class MethodDialog(Dialog[MethodChoice | None]):
-    """Shows the method for a person: 1, 2, 3 change a setting, d is the activity's own, y takes."""
+    """Shows the method for a person: 1, 2, 3 change a setting, 0 is the activity's own, y takes."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("1", "nothing", "Change a setting", key_display="1-3"),
-        Binding("d", "nothing", "As the activity has it"),
+        Binding("1", "nothing", "Change a setting", key_display="1-3", id="number"),
+        Binding("0", "nothing", "As the activity has it", id="number"),
         Binding("y", "nothing", "Use it"),
         Binding("n", "nothing", "Leave it as it was"),
     ]
@@ -99,7 +99,7 @@ class MethodDialog(Dialog[MethodChoice | None]):
                 self.answer(MethodChoice(self._chosen if self._own else None))
             case "n" | "escape":
                 self.answer(None)
-            case "d":
+            case "0":
                 self._set(self._default, own=False)
             case "1":
                 self._set(
@@ -136,7 +136,7 @@ class MethodDialog(Dialog[MethodChoice | None]):
         for key, what, words in settings:
             parts += [(key, "$primary bold"), (f"  {what}  ", "$ink-dim"), f"{words}\n"]
         parts += [("\nIt is ", "$ink-dim"), whose, ".\n\n"]
-        for key, words in (("Y", "use it"), ("D", "as the activity has it"), ("N", "leave it")):
+        for key, words in (("Y", "use it"), ("0", "as the activity has it"), ("N", "leave it")):
             parts += [(key, "$primary bold"), f"  {words}", "" if key == "N" else "\n"]
         return Content.assemble(*parts)
 

@@ -15,11 +15,13 @@ from textual.widgets import Input, Static
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
+from tangy_tui.app.keymap import is_letter
 from tangy_tui.language.pronunciation import check_name
 from tangy_tui.speech.name_pronunciation import how_said
 from tangy_tui.text.voice import SOUNDS_HELP, said_title
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 LONGEST = 200
@@ -32,11 +34,14 @@ class NewPronunciation:
     phones: str | None
 
 
+ACTIONS = {"enter": "submit", "escape": "screen.leave"}
+
+
 class PhonesInput(Input):
     """The line with the phones; Enter counts once the dialog has been seen."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+l", "screen.hear", "Hear it"),
+        *bind("hear", "screen.hear"),
         Binding("enter", "submit", "Note it"),
         Binding("escape", "screen.leave", "Leave it as it is"),
     ]
@@ -47,10 +52,12 @@ class PhonesInput(Input):
         self.keys = FreshKeys()
 
     async def _on_key(self, event: events.Key) -> None:
-        if event.key in ("enter", "escape", "ctrl+l"):
+        hears = keymap_of(self.app).action(event.key) == "hear" and not is_letter(event.key)
+        if hears or event.key in ("enter", "escape"):
             event.prevent_default()
             if self.keys.take(event):
-                await self.run_action(self._bindings.key_to_bindings[event.key][0].action)
+                action = "screen.hear" if hears else ACTIONS[event.key]
+                await self.run_action(action)
         else:
             await super()._on_key(event)
 
@@ -59,7 +66,7 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
     """Shows how a name is said now or may be said; Enter notes what stands in the line."""
 
     HELP = (
-        "Ctrl+L says what stands in the line. Enter notes it for this person, and what you say "
+        "{hear} says what stands in the line. Enter notes it for this person, and what you say "
         "to Tangy with this name is heard from then on. " + SOUNDS_HELP
     )
 

@@ -13,6 +13,7 @@ from textual.widgets import Static
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.comparison import SituationComparison, compare
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.text.comparison import WHY_A, WHY_B
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.policies import (
     ALL_THE_SAME,
@@ -26,6 +27,7 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.policy_options import DIGEST_SHOWN, comparison_options, policy_options
 from tangy_tui.ui.reasons import why_row
@@ -83,15 +85,16 @@ class CompareScreen(TangyScreen[None]):
     """
     HELP = (
         "Two policies side by side: in each situation what both do, and which share of the trees "
-        "voted for it. Rows that differ come first and have a mark; d shows only these. a and b "
-        "tell why the one and the other does so; Enter is a."
+        "voted for it. Rows that differ come first and have a mark; {differences} shows only "
+        "these. 1 tells why A does so, and 2 why B does; Enter is 1."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("d", "differences", "Only the differences, or all"),
-        Binding("a", "why(0)", "Why does A do so"),
-        Binding("b", "why(1)", "Why does B do so"),
-        Binding("c", "choose", "Compare others"),
-        Binding("escape", "leave", "Back"),
+        *bind("differences"),
+        *bind("why", "why(0)"),
+        Binding("1", "why(0)", WHY_A, id="number"),
+        Binding("2", "why(1)", WHY_B, id="number"),
+        *bind("another", "choose"),
+        *bind("back", "leave"),
     ]
 
     def __init__(
@@ -117,7 +120,7 @@ class CompareScreen(TangyScreen[None]):
         yield Static(self._summary(), id="summary", markup=False)
         yield panel(Page(self._write, id="comparison"), "Comparison")
         yield key_line(
-            ("a b", "why"), ("d", "differences"), ("c", "others"), ("esc", "back"), ("?", "help")
+            ("1 2", "why"), "differences:differences", "filter", "another", "back", "help"
         )
 
     def on_mount(self) -> None:

@@ -18,10 +18,12 @@ from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
 from tangy_tui.text import conflicts as text
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.situations import edit_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.words import WordsDialog
+from tangy_tui.ui.keys import Key, bind, keymap_of
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel
 from tangy_tui.ui.type_ahead_guard import FreshKeys
 from tangy_tui.ui.widgets.answer_steps import AnswerSteps
@@ -39,16 +41,16 @@ class ConflictsScreen(TangyScreen[bool]):
     HELP = (
         "Demonstrations gave different answers to the same situation. Nothing is outvoted behind "
         "your back: say which answer is right, and the other steps are not learnt from. Enter "
-        "opens the step under the cursor, tab goes to the other answer, u takes your last answer "
-        "back. What you leave open Tangy asks about when it comes up in a game."
+        "opens the step under the cursor, tab goes to the other answer, {undo} takes your last "
+        "answer back. What you leave open Tangy asks about when it comes up in a game."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("1", "nothing", "This answer is right", key_display="1-9"),
-        Binding("b", "nothing", "All of them are right"),
-        Binding("o", "nothing", "Something else is right"),
-        Binding("u", "nothing", "Take the last answer back"),
-        Binding("enter", "nothing", "Open the step, or go on at the end"),
-        Binding("escape", "nothing", "Leave it open"),
+        Binding("1", "nothing", text.THIS_IS_RIGHT, key_display="1-9", id="number"),
+        Binding("0", "nothing", text.ALL_ARE_RIGHT, id="number"),
+        *bind("another", "other", name=text.ANOTHER_IS_RIGHT),
+        *bind("undo"),
+        Binding("enter", "nothing", text.OPEN_OR_GO_ON, id="open"),
+        Binding("escape", "nothing", text.LEAVE_OPEN, id="back"),
     ]
 
     def __init__(self, workspace: Workspace, *, then: str = "go on") -> None:
@@ -84,7 +86,7 @@ class ConflictsScreen(TangyScreen[bool]):
     async def on_key(self, event: events.Key) -> None:
         """Take an answer, if the conflict was on the screen by then."""
         key = event.character or event.key
-        if key not in ("u", "b", "o") and event.key not in ("escape", "enter"):
+        if event.key not in ("escape", "enter"):
             if not key.isdecimal():
                 return
         elif event.key == "enter" and self._present is not None:
@@ -94,17 +96,13 @@ class ConflictsScreen(TangyScreen[bool]):
 
     async def _take(self, key: str) -> None:
         present = self._present
-        if key == "u":
-            await self._undo()
-        elif present is None:
+        if present is None:
             if key in ("enter", "escape"):
                 self.dismiss(key == "enter")
         elif key == "escape":
             await self._leave_open(present)
-        elif key == "b":
+        elif key == "0":
             await self._resolve(present, *present.answers)
-        elif key == "o":
-            self.run_worker(self._other(present), name="other")
         elif key.isdecimal() and 1 <= int(key) <= len(present.answers):
             await self._resolve(present, list(present.answers)[int(key) - 1])
 
@@ -117,6 +115,11 @@ class ConflictsScreen(TangyScreen[bool]):
         self.app.push_screen(
             DemonstrationScreen(self._workspace, shown.demonstration, shown.number)
         )
+
+    def action_other(self) -> None:
+        """Choose an answer that nobody gave."""
+        if (present := self._present) is not None:
+            self.run_worker(self._other(present), name="other")
 
     def action_nothing(self) -> None:
         """Do nothing: `on_key` has the keys, so that each can be looked at."""
@@ -149,7 +152,7 @@ class ConflictsScreen(TangyScreen[bool]):
         self._log.write(text.left_open_words(words), "warn")
         await self._show()
 
-    async def _undo(self) -> None:
+    async def action_undo(self) -> None:
         """Take back the last answer, and ask again."""
         if not self._answered:
             self._log.write(text.NOTHING_TAKEN_BACK, "warn")
@@ -177,9 +180,8 @@ class ConflictsScreen(TangyScreen[bool]):
             self._summary() if present is None else self._situation(present)
         )
         self.query_one(KeyLine).show(*self._key_words())
-        self.query_one("#asked", Static).update(
-            text.keys_words(self._then) if present is None else text.ASKED
-        )
+        asked = text.keys_words(self._then) if present is None else text.ASKED
+        self.query_one("#asked", Static).update(with_keys(asked, keymap_of(self.app)))
         self._keys.watch(self)
 
     async def _show_answers(self, present: Conflict | None) -> None:
@@ -196,13 +198,13 @@ class ConflictsScreen(TangyScreen[bool]):
         await grid.mount(*columns)
         columns[0].focus()
 
-    def _key_words(self) -> Sequence[tuple[str, str]]:
+    def _key_words(self) -> Sequence[str | Key]:
         """Say which keys do something now."""
-        undo = [("u", "undo")] if self._answered else []
+        undo: list[str | Key] = ["undo"] if self._answered else []
         if self._present is None:
-            return [("enter", self._then), *undo, ("esc", "back"), ("?", "help")]
-        answers = [("1-9", "right"), ("b", "all"), ("o", "other"), ("enter", "open")]
-        return [*answers, *undo, ("esc", "leave open"), ("?", "help")]
+            return [f"open:{self._then}", *undo, "back", "help"]
+        answers: list[str | Key] = [("1-9", "right"), ("0", "all"), "another", "open", "filter"]
+        return [*answers, *undo, "back:leave open", "help"]
 
     def _situation(self, conflict: Conflict) -> str:
         words = self._workspace.activity.in_words(conflict.situation)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from textual.app import App, ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
@@ -24,6 +24,7 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
@@ -52,12 +53,12 @@ class DemonstrationScreen(TangyScreen[None]):
     TITLE = "Demonstration"
     HELP = (
         "One demonstration from its first step to its last. Up and down choose a step; below it "
-        "stands what was said, what was done and what followed. a shows it again from the step "
-        "that is chosen: everything before it stays as it is."
+        "stands what was said, what was done and what followed. {again} shows it again from the "
+        "step that is chosen: everything before it stays as it is."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("a", "again", "Show again from this step"),
-        Binding("escape", "leave", "Back"),
+        *bind("again"),
+        *bind("back", "leave"),
     ]
 
     def __init__(self, workspace: Workspace, id: str, number: int = 1) -> None:
@@ -88,9 +89,8 @@ class DemonstrationScreen(TangyScreen[None]):
         with panel(VerticalScroll(id="step"), "This step"):
             yield Static(id="told", markup=False)
         yield key_line(
-            ("up down", "choose a step"), ("a", "show again from here"), ("esc", "back"),
-            ("?", "help"),
-        )  # fmt: skip
+            ("up down", "choose a step"), "again:show again from here", "filter", "back", "help"
+        )
 
     def on_mount(self) -> None:
         """Show the steps and point at the one that is wanted."""

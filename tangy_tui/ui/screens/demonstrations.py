@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
@@ -23,6 +23,7 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.demonstration_list import DemonstrationList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
@@ -43,23 +44,21 @@ class DemonstrationsScreen(TangyScreen[None]):
     HELP = (
         "What was shown to Tangy, by whom, and how much of the activity it shows. Below stand the "
         "steps of the demonstration under the cursor: tab goes there and up and down choose one. "
-        "x puts a demonstration away or takes it back into use, a shows it again from the chosen "
-        "step, space marks several and g makes one of them, / makes two after the chosen step. "
-        "Every change is one step that u takes back, however long ago it was."
+        "{put_away} puts a demonstration away or takes it back into use, {again} shows it again "
+        "from the chosen step, {mark} marks several and {merge} makes one of them, {split} makes "
+        "two after the chosen step. {undo} takes changes back, one by one, however old they are."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("x", "delete", "Delete, or restore"),
-        Binding("a", "again", "Show again from the chosen step"),
-        Binding("space", "mark", "Mark, to merge"),
-        Binding("g", "merge", "Merge those that are marked"),
-        Binding("slash", "split", "Split after the chosen step", key_display="/"),
-        Binding("c", "conflicts", "What they disagree about"),
-        Binding("u", "undo", "Undo the last change"),
-        Binding("ctrl+z", "undo", "Undo the last change", show=False, priority=True),
-        Binding("U", "redo", "Do it again", key_display="U"),
-        Binding("ctrl+y", "redo", "Do it again", show=False, priority=True),
-        Binding("l", "learn", "Learn from those in use"),
-        Binding("escape", "leave", "Back"),
+        *bind("put_away", "delete"),
+        *bind("again"),
+        *bind("mark"),
+        *bind("merge"),
+        *bind("split"),
+        *bind("differences", "conflicts"),
+        *bind("undo"),
+        *bind("redo"),
+        *bind("learn"),
+        *bind("back", "leave"),
     ]
 
     def __init__(self, workspace: Workspace) -> None:
@@ -80,8 +79,8 @@ class DemonstrationsScreen(TangyScreen[None]):
         yield Static(id="notes", markup=False)
         yield panel(Transcript(empty=text.NO_STEPS, id="transcript"))
         yield key_line(
-            ("x", "delete"), ("a", "again"), ("space", "mark"), ("g", "merge"),
-            ("/", "split"), ("u U", "undo"), ("c", "conflicts"), ("esc", "back"), ("?", "help"),
+            "put_away", "filter", "undo", "again", "mark", "merge", "split", "differences",
+            "learn", "back", "help",
         )  # fmt: skip
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
@@ -257,7 +256,8 @@ class DemonstrationsScreen(TangyScreen[None]):
         rows = [row for row in every if row.state != TAKEN_BACK]
         self._rows = {row.id: row for row in rows}
         conflicts = len(self._library.conflicts)
-        disagree = f", {counted(conflicts, 'conflict')}: press c" if conflicts else ""
+        key = keymap_of(self.app).shown("differences")
+        disagree = f", {counted(conflicts, 'conflict')}: press {key}" if conflicts else ""
         note = f"{sum(row.in_use for row in rows)} of {len(rows)} in use{disagree}"
         self.query_one(StatusLine).show(Status(mode="demonstrations", note=note))
         shown, step = self._shown, self._step

@@ -42,7 +42,7 @@ from tangy_tui.ui.widgets.wrapping import wrap
 LABEL = 11
 """Columns of the labels beside what is seen."""
 
-ON = ("enter", "space")
+ON = ("enter",)
 """The keys that go on."""
 
 
@@ -64,7 +64,7 @@ class DrillScreen(TangyScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("1,2,3,4,0", "nothing", "Answer", key_display="0 to 4"),
         Binding("y,n", "nothing", "Yes or no", key_display="y n"),
-        Binding("enter,space", "nothing", "Go on", key_display="enter"),
+        Binding("enter", "nothing", "Go on", key_display="enter"),
         Binding("escape", "leave", "Leave the drill"),
     ]
 

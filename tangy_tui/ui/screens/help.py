@@ -14,8 +14,10 @@ from textual.content import Content
 from textual.screen import Screen
 from textual.widgets import Static
 
-from tangy_tui.text.program import ALL_PHRASES
+from tangy_tui.text.keys import with_keys
 from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.keys import bind, keymap_of
+from tangy_tui.ui.listing import listed
 
 KEY = "$accent bold"
 
@@ -37,33 +39,21 @@ def help_for(screen: Screen[Any]) -> Help:
     """Collect the help of a screen, of the widget that has the keys, and of the keys."""
     focused = screen.focused
     nodes: Iterable[Any] = (screen,) if focused is None else (screen, focused)
-    paragraphs = [text for node in nodes if (text := getattr(node, "HELP", ""))]
+    keymap, typing = keymap_of(screen.app), bool(screen.query("#command-input"))
+    paragraphs = [
+        with_keys(text, keymap, typing=typing)
+        for node in nodes
+        if (text := getattr(node, "HELP", ""))
+    ]
     here: dict[str, str] = {}
     everywhere: dict[str, str] = {}
-    for active in screen.active_bindings.values():
-        binding = active.binding
-        if binding.description and binding.show and _works(screen, binding.action):
-            keys = everywhere if active.node is screen.app else here
-            keys.setdefault(binding.description, screen.app.get_key_display(binding))
-    if _has_phrases(screen):
-        here.setdefault(ALL_PHRASES, "p")
+    for one in listed(screen):
+        word = f"  ({one.word})" if typing and one.word and one.word != one.name.lower() else ""
+        (everywhere if one.everywhere else here).setdefault(f"{one.name}{word}", one.key)
     title = str(screen.TITLE or "Tangy")
     if focused is not None and isinstance(focused.border_title, str) and focused.border_title:
         title = f"{title} · {focused.border_title}"
     return Help(title, tuple(paragraphs), _pairs(here), _pairs(everywhere))
-
-
-def _works(screen: Screen[Any], action: str) -> bool:
-    """Say whether a key that is the program's own does anything on a screen."""
-    match action:
-        case "command":
-            return bool(screen.query("#command-input"))
-        case "zoom":
-            panel = screen.focused
-            return screen.maximized is not None or (panel is not None and panel.allow_maximize)
-        case "back":
-            return len(screen.app.screen_stack) > 1
-    return True
 
 
 def _has_phrases(screen: Screen[Any]) -> bool:
@@ -84,7 +74,7 @@ class HelpScreen(Dialog[None]):
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,q,enter,question_mark,f1", "close", "Close", show=False),
-        Binding("p", "phrases", "All that can be said", show=False),
+        *bind("phrases", show=False),
     ]
 
     def __init__(self, help: Help) -> None:

@@ -16,6 +16,7 @@ from textual.widget import Widget
 from tangy_tui.text.program import TAGLINE
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import key_line
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, draw, fit, shorten
@@ -68,7 +69,7 @@ class Menu(Widget, can_focus=True):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up,k", "move(-1)", "Up", show=False),
         Binding("down,j", "move(1)", "Down", show=False),
-        Binding("enter,space,right", "choose", "Choose", key_display="enter"),
+        Binding("enter", "choose", "Choose", id="open"),
     ]
 
     class Chosen(Message):
@@ -110,12 +111,11 @@ class Menu(Widget, can_focus=True):
         self.post_message(self.Chosen(self.chosen.id))
 
     def on_key(self, event: events.Key) -> None:
-        """Choose by letter."""
+        """Go to a choice by its letter; Enter takes it, so that text that is pasted does not."""
         for choice in self._choices:
             if event.key == choice.key:
                 event.stop()
                 self.point(choice.id)
-                self.action_choose()
 
     def on_click(self, event: events.Click) -> None:
         """Choose with the mouse."""
@@ -176,9 +176,14 @@ class HomeScreen(TangyScreen[None]):
     TITLE = "Home"
     HELP = (
         "Begin with Teach: show Tangy a game by typing or saying what it should do. Then Learn, "
-        "and then Play. Choose by letter, or with the arrows and Enter."
+        "and then Play. Go to a line with its letter or the arrows, and choose it with Enter."
     )
     AUTO_FOCUS = "#home"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *bind("guided", "app.guided"),
+        *bind("library", "app.library"),
+        *bind("learn", "app.learn"),
+    ]
 
     class Chosen(Message):
         """A choice was made; `id` is teach, library, learn, play, rehearse, and so on."""
@@ -201,8 +206,8 @@ class HomeScreen(TangyScreen[None]):
         yield StatusLine(Status(mode="home", note=self._note))
         yield self._menu
         yield key_line(
-            ("enter", "or the letter: choose"), ("up down", "move"), ("^p", "all commands"),
-            ("q", "quit"), ("?", "help"),
+            "open:choose", ("letter", "go to"), ("up down", "move"), "guided", "library", "learn",
+            "palette", "quit", "help",
         )  # fmt: skip
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:

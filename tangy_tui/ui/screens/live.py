@@ -40,6 +40,7 @@ from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.control import (
     BUSY,
+    MOVE_AGAIN,
     NOT_WHILE_WORKING,
     VOID_DETAIL,
     WAITS_SHORT,
@@ -164,6 +165,12 @@ class LiveScreen(PlayScreen):
 
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""
+        if self.control.stopped:
+            self._sure(*MOVE_AGAIN, self._let_move)
+        else:
+            self._let_move()
+
+    def _let_move(self) -> None:
         if self._at_rest and self.control.robot.frozen:  # in a game that is a fault
             self._do(GoOn())
             self._tell_now(MAY_MOVE, "dim")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import ClassVar
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Container
 
 from tangy_profiles.errors import TangyError
@@ -23,6 +23,7 @@ from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodChoice, MethodDialog
 from tangy_tui.ui.dialogs.pronunciation import NewPronunciation, PronunciationDialog
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.person_lines import (
     history_lines,
@@ -46,20 +47,20 @@ class PeopleScreen(TangyScreen[None]):
     HELP = (
         "Above, everybody with what works in a sentence. Below, of the person that is chosen, "
         "each way of asking and the history game by game. tab goes from one panel to the next. "
-        "Every change is asked about first, and u takes the last one back. "
-        "n is for how the name is said, so that it is heard when somebody speaks it. Names are "
-        "given on the command line: tangy people rename. What is known is kept apart for "
-        "simulated games, games on the bench, and live ones: w shows the next of them."
+        "{put_away} switches the chosen way of asking off or on; in the history it leaves the "
+        "chosen response out. Every change is asked about first, and {undo} takes the last one "
+        "back. {pronounce} is for how a name is said, so that Tangy hears it. To rename a person, "
+        "use the command line: tangy people rename. What is known is kept apart for simulated "
+        "games, games on the bench, and live ones: {world} shows the next of them."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("v", "void", "The chosen response does not count"),
-        Binding("f", "feedback", "Say what the person did about the chosen request"),
-        Binding("x", "switch", "Switch the chosen strategy off or on"),
-        Binding("m", "method", "Choose how Tangy persuades this person"),
-        Binding("n", "pronounce", "Say how this person's name is said"),
-        Binding("u", "undo", "Take the last change back"),
-        Binding("w", "world", "Show simulated, bench or live games"),
-        Binding("escape", "leave", "Back"),
+        *bind("put_away", name=text.PUT_AWAY),
+        *bind("feedback"),
+        *bind("method"),
+        *bind("pronounce"),
+        *bind("undo"),
+        *bind("world"),
+        *bind("back", "leave"),
     ]
 
     def __init__(self, workspace: Workspace, leave_after: float | None = None) -> None:
@@ -70,6 +71,7 @@ class PeopleScreen(TangyScreen[None]):
         self._feedback = workspace.memory().feedback
         self._world = workspace.memory().world
         self._records: dict[str, Record] = {}
+        self._told = ""
 
     def compose(self) -> ComposeResult:
         """Lay out the three panels."""
@@ -80,17 +82,9 @@ class PeopleScreen(TangyScreen[None]):
                 yield panel(ChoiceList("What works", text.STRATEGIES_HELP, id="strategies"))
             yield panel(ChoiceList("History", text.HISTORY_HELP, id="history"))
         yield key_line(
-            ("tab", "panel"),
-            ("v", "void"),
-            ("f", "answer"),
-            ("x", "off"),
-            ("m", "method"),
-            ("u", "undo"),
-            ("n", "name"),
-            ("w", "games"),
-            ("esc", "back"),
-            ("?", "help"),
-        )
+            "panel", "put_away:off", "filter", "feedback", "method", "undo", "pronounce",
+            "world", "back", "help",
+        )  # fmt: skip
 
     @property
     def _status(self) -> Status:
@@ -118,7 +112,14 @@ class PeopleScreen(TangyScreen[None]):
         elif event.choices.id == "strategies":
             self._show_hint()
 
-    def action_void(self) -> None:
+    def action_put_away(self) -> None:
+        """Leave the chosen response out, or switch the chosen strategy off or on."""
+        if self._list("history").has_focus:
+            self._void()
+        else:
+            self._switch()
+
+    def _void(self) -> None:
         """Ask whether the chosen response is not to count."""
         entry = self._entry()
         if entry is None or not entry.counts:
@@ -148,7 +149,7 @@ class PeopleScreen(TangyScreen[None]):
 
         self.app.push_screen(AnswerDialog(*text.comply_words(entry, person.name)), answered)
 
-    def action_switch(self) -> None:
+    def _switch(self) -> None:
         """Ask whether the chosen strategy is to be used with this person."""
         strategy, record = str(self._list("strategies").chosen), self._record
         on = strategy in record.known.off
@@ -212,7 +213,9 @@ class PeopleScreen(TangyScreen[None]):
     @property
     def _record(self) -> Record:
         """What is told of the chosen person."""
-        return self._records[str(self._list("people").chosen)]
+        chosen = str(self._list("people").chosen)
+        self._told = chosen if chosen in self._records else self._told
+        return self._records.get(self._told, next(iter(self._records.values())))
 
     def _list(self, id: str) -> ChoiceList:
         return self.query_one(f"#{id}", ChoiceList)

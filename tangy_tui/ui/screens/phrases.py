@@ -22,6 +22,7 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.pronunciation import NewPronunciation, PronunciationDialog
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import fit
@@ -65,15 +66,15 @@ class PhrasesScreen(TangyScreen[None]):
     HELP = (
         "All that can be said or typed, from the file of the activity: for each behaviour its "
         "phrases and keywords, then the people and their seats, what cannot be heard, and how "
-        "every word is said. / searches: type any words, Enter goes to what was found, esc shows "
-        "everything again. h says the chosen entry aloud. e changes how a person's name is said; "
-        "words of the activity stand in its file, under [pronunciations]."
+        "every word is said. {filter} filters: type any words, Enter goes to what was found, esc "
+        "shows everything again. {hear} says the chosen entry aloud. {pronounce} changes how a "
+        "person's name is said; words of the activity stand in its file, under [pronunciations]."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("slash", "search", "Search", key_display="/"),
-        Binding("h", "hear", "Hear the chosen entry"),
-        Binding("e", "edit", "Change how a person's name is said"),
-        Binding("escape", "leave", "Back"),
+        *bind("filter", "search"),
+        *bind("hear"),
+        *bind("pronounce", "edit"),
+        *bind("back", "leave"),
     ]
 
     def __init__(self, workspace: Workspace, say: Hear = hear) -> None:
@@ -97,12 +98,7 @@ class PhrasesScreen(TangyScreen[None]):
         search.cursor_blink = False
         yield search
         yield key_line(
-            ("up down", "choose"),
-            ("/", "search"),
-            ("h", "hear"),
-            ("e", "edit a name"),
-            ("esc", "back"),
-            ("?", "help"),
+            ("up down", "choose"), "filter", "hear", "pronounce:edit a name", "back", "help"
         )
 
     def on_mount(self) -> None:

@@ -36,7 +36,6 @@ from tangy_tui.ui.screens.play_keys import (
     keys,
 )
 from tangy_tui.ui.screens.play_staff import PlayStaff
-from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
 
@@ -135,7 +134,11 @@ class PlayScreen(PlayStaff):
         self._show_status()
 
     def action_skip(self) -> None:
-        """Play the rest of the game at once."""
+        """Play the rest of the game at once, if that is meant."""
+        if not (self._refused() or self._supervision.over):
+            self._sure(text.SKIP, text.SKIP_DETAIL, self._skip)
+
+    def _skip(self) -> None:
         if self._refused() or self._supervision.over:
             return
         self._skipping = True
@@ -143,7 +146,11 @@ class PlayScreen(PlayStaff):
         self._do(GoOn())
 
     def action_again(self) -> None:
-        """Play one more game, now or after this one."""
+        """Play one more game, now or after this one, if that is meant."""
+        if not self._refused():
+            self._sure(text.ANOTHER, "", self._another)
+
+    def _another(self) -> None:
         if self._refused():
             return
         self._games += 1
@@ -158,10 +165,8 @@ class PlayScreen(PlayStaff):
 
     def action_leave(self) -> None:
         """Let go of a chosen step, give up what is asked, or go back; in mid-game it asks."""
-        steps, faults = self.query_one(Transcript), self.query_one(FaultList)
-        if faults.has_focus and faults.filtered:
-            faults.unfilter()
-        elif steps.has_focus and steps.chosen is not None:
+        steps = self.query_one(Transcript)
+        if steps.has_focus and steps.chosen is not None:
             steps.release()
         elif (asking := self._asking) is not None:
             asking.ask_to_give_up()
@@ -354,7 +359,7 @@ class PlayScreen(PlayStaff):
     async def _say_why(self, reason: str, then: str) -> None:
         """Tell why a game could not go on, at every size of the window."""
         if self._leave_after is None:
-            dialog = MessageDialog(text.stopped_words(reason, then), title=text.STOPPED)
+            dialog = MessageDialog(text.stopped_words(reason, self._told(then)), title=text.STOPPED)
             await self.app.push_screen_wait(dialog)
 
     # -------------------------------------------------------------------------------- status
@@ -387,9 +392,9 @@ class PlayScreen(PlayStaff):
     def _note(self) -> str:
         """Say what the keys would do next, or how fast it goes."""
         if self.control.stopped:
-            return "p goes on"
+            return self._told(text.GOES_ON)
         if self._learning:
             return "learning"
         if self._at_rest:
-            return "g plays again" if self._supervision.games else ""
+            return self._told(text.PLAYS_AGAIN) if self._supervision.games else ""
         return f"x{self._speed:g}" if self.control.going else "paused"

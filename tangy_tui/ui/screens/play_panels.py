@@ -14,12 +14,15 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.text.games import NO_UNSEEN_FAULT, NOTHING_DECIDED
+from tangy_tui.text.games import NO_UNSEEN_FAULT, NOTHING_DECIDED, SEEN
+from tangy_tui.text.keys import with_keys
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.camera_session import CameraSession
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.hearing import HearingLine, hearing_of
+from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens.play_keys import keys
 from tangy_tui.ui.screens.question_panel import AskingPanel
@@ -144,7 +147,26 @@ class PlayPanels(TangyScreen[Tally]):
         self.action_why()
 
     def action_acknowledge(self) -> None:
-        """Say that the fault in the banner was seen."""
+        """Say that the fault in the banner was seen, if that is meant."""
+        if told := self._faults.told:
+            self._sure(SEEN, told[0].name, self._acknowledge)
+        else:
+            self._tell_now(NO_UNSEEN_FAULT, "dim")
+
+    def _told(self, text: str) -> str:
+        """Write the keys into a text that names actions."""
+        return with_keys(text, keymap_of(self.app))
+
+    def _sure(self, question: str, detail: str, then: Callable[[], None]) -> None:
+        """Do what cannot be undone once it is confirmed."""
+
+        def answered(sure: bool | None) -> None:
+            if sure:
+                then()
+
+        self.app.push_screen(ConfirmDialog(question, detail), answered)
+
+    def _acknowledge(self) -> None:
         try:
             if not self._faults.see():
                 self._tell_now(NO_UNSEEN_FAULT, "dim")

@@ -20,7 +20,7 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.verification import Verified
-from tangy_tui.text.control import NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
+from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.screens.play_panels import PlayPanels
@@ -128,6 +128,13 @@ class PlayStaff(PlayPanels):
             self._learning = False
 
     def action_accept(self) -> None:
-        """Say that what Tangy asks about is all right."""
-        if (asking := self._asking) is None or not asking.accept():
+        """Say that what Tangy asks about is all right, if that is meant."""
+        asking = self._asking
+        if asking is None or not asking.acceptable:
+            self._tell_now(NOT_ACCEPTABLE, "dim")
+        else:
+            self._sure(ACCEPT, "", lambda: self._accept(asking))
+
+    def _accept(self, asking: AskingPanel) -> None:
+        if self._asking is not asking or not asking.accept():
             self._tell_now(NOT_ACCEPTABLE, "dim")

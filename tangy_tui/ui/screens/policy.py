@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.widgets import Static
 
 from tangy_profiles.activity import Activity
@@ -15,6 +15,7 @@ from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.closing import close, close_after
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.policy_options import DIGEST_SHOWN
 from tangy_tui.ui.reasons import why_row
@@ -49,15 +50,15 @@ class PolicyScreen(TangyScreen[None]):
     HELP = (
         "One row for each situation that can come about: what Tangy does, which share of the "
         "trees voted for it, and how often it was demonstrated. Below: what was seen to follow "
-        "each behaviour. Choose a row and press Enter or w to see why; c compares with another "
-        "policy or a teacher, o shows another policy. Where nothing was shown, or demonstrations "
-        "disagree, Tangy asks in the game."
+        "each behaviour. Choose a row and press Enter or {why} to see why; {compare} compares with "
+        "another policy or a teacher, {another} shows another policy. Where nothing was shown, or "
+        "demonstrations disagree, Tangy asks in the game."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("w", "why", "Why this"),
-        Binding("c", "compare", "Compare with another"),
-        Binding("o", "app.other_policy", "Another policy"),
-        Binding("escape", "leave", "Back"),
+        *bind("why"),
+        *bind("compare"),
+        *bind("another", "app.other_policy"),
+        *bind("back", "leave"),
     ]
 
     def __init__(
@@ -82,8 +83,8 @@ class PolicyScreen(TangyScreen[None]):
         yield panel(PolicyTable())
         yield panel(LogView(id="effects", follow=False), "What follows")
         yield key_line(
-            ("w", "why"), ("c", "compare"), ("o", "others"), ("tab", "next panel"),
-            ("up down", "choose"), ("esc", "back"), ("?", "help"),
+            "why", "filter", "compare", "another", "panel:next panel", ("up down", "choose"),
+            "back", "help",
         )  # fmt: skip
 
     def on_mount(self) -> None:

@@ -16,7 +16,7 @@ from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.answers import Spoken
-from tangy_tui.app.command_grammar import read_command
+from tangy_tui.app.command_grammar import Perform, read_command, read_program
 from tangy_tui.app.game_commands import (
     TAKEN_OVER,
     Accept,
@@ -47,7 +47,9 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.hearing import hearing_of
+from tangy_tui.ui.keys import foot
 from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.performing import perform
 from tangy_tui.ui.screens.question_text import question_words, seen_words
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
 from tangy_tui.ui.widgets.answer_bar import AnswerBar
@@ -56,12 +58,10 @@ from tangy_tui.ui.widgets.log_view import Kind, LogView
 
 ResultT = TypeVar("ResultT")
 
-KEYS = "w why   : answer   p {}   esc give the game up"
-ACCEPTING_KEYS = "w why   r all right   : answer   p {}   esc give the game up"
-OWN_KEYS = "w why   : answer   p {}   esc let Tangy go on by itself"
+KEYS = ("why", "command:answer", "pause", "back:give the game up")
+ACCEPTING_KEYS = ("why", "accept:all right", "command:answer", "pause", "back:give the game up")
+OWN_KEYS = ("why", "command:answer", "pause", "back:let Tangy go on by itself")
 """The keys that count while the line does not have them."""
-TALK = "t talk   "
-"""What stands before them where a key is pushed to talk."""
 
 
 class Instead(Enum):
@@ -150,7 +150,7 @@ class AskingPanel(Vertical):
             lambda typed: self._phrasebook.complete(typed),
             sayable=lambda: self._answers.sayable,
             placeholder=f"what should Tangy do? (or: {other}why, help, quit)",
-            resting=self._keys.format("pause"),
+            resting=self._keys(going=True),
             closed=True,
             id="command",
         )
@@ -174,10 +174,12 @@ class AskingPanel(Vertical):
     def _by_key(self) -> bool:
         return self._hearing is not None and self._hearing.by_key
 
-    @property
-    def _keys(self) -> str:
+    def _keys(self, *, going: bool) -> str:
         own = OWN_KEYS if self._wanted else KEYS
-        return (TALK if self._by_key else "") + (ACCEPTING_KEYS if self._acceptable else own)
+        ids = (*(("talk",) if self._by_key else ()), *(ACCEPTING_KEYS if self._acceptable else own))
+        if not going:
+            ids = tuple("pause:go on" if id == "pause" else id for id in ids)
+        return "   ".join(" ".join(key) for key in foot(self.app, *ids))
 
     def _take_keys(self) -> None:
         if self._by_key:
@@ -204,6 +206,11 @@ class AskingPanel(Vertical):
         while dialog.is_attached:
             self._close(dialog)
             await asyncio.sleep(0.05)
+
+    @property
+    def acceptable(self) -> bool:
+        """Whether it can be said that what happened is all right."""
+        return self._acceptable
 
     def accept(self) -> bool:
         """Say that what happened is all right; False: that cannot be said of this question."""
@@ -259,7 +266,8 @@ class AskingPanel(Vertical):
         """Put a typed answer to Tangy, or carry out a command."""
         event.stop()
         self._by_voice = False
-        if (word := event.text.lower()) in ("why", "help", "phrases", "voice"):
+        word = read_program(event.text)
+        if isinstance(word, Perform) or word in ("why", "help", "phrases"):
             self.query_one(CommandBar).ready()
             self._show(word)
             return
@@ -277,12 +285,13 @@ class AskingPanel(Vertical):
             self.query_one(CommandBar).ready()
             self._carry_out(command)
 
-    def _show(self, word: str) -> None:
-        """Show what was asked for."""
+    def _show(self, word: Perform | str) -> None:
+        """Show what was asked for, or do what a key does."""
         if word == "why":
             self.post_message(self.WhyWanted())
         else:
-            self.app.run_worker(self.run_action(f"app.{word}"))
+            done = word if isinstance(word, Perform) else Perform(word)
+            self.app.run_worker(perform(self.screen, done.action, done.on))
 
     def _carry_out(self, command: GameCommand) -> None:
         match command:
@@ -334,8 +343,10 @@ class AskingPanel(Vertical):
         self.say(sentence)
         self.screen.query_one(LogView).write(sentence, "warn")
         bar = self.query_one(CommandBar)
-        if not (self._by_voice and bar.typing):
-            bar.restore(heard, focus=not self._by_voice)
+        if self._by_voice:
+            bar.ready()
+        else:
+            bar.restore(heard)
         if self._held:
             self.screen.set_focus(None)
 
@@ -380,7 +391,7 @@ class AskingPanel(Vertical):
     def show_keys(self, *, going: bool) -> None:
         """Say which keys count while the line does not have them."""
         for bar in self.query(AnswerBar):
-            bar.rest(self._keys.format("pause" if going else "go on"))
+            bar.rest(self._keys(going=going))
 
     def _ready(self) -> None:
         self.query_one(CommandBar).ready()

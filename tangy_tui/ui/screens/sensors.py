@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
@@ -19,6 +19,7 @@ from tangy_tui.text.sensors import Sensing, Teller, Told, age_words, card_words,
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
+from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.block_picture import BlockPicture
 from tangy_tui.ui.widgets.card_lines import SEEN_LEGEND, seen_card_lines
@@ -62,15 +63,15 @@ class SensorsScreen(TangyScreen[None]):
     HELP = (
         "Every device of the robot, how it is in a word, and how old its newest data is. A ~ "
         "stands before one that is simulated: what it says comes from the game, and from no "
-        "sensor. v, or Enter on a camera, "
+        "sensor. {camera}, or Enter on a camera, "
         "shows what it sees, and hides it again; nothing of it is kept. Below that is the last "
         "card as it was read: what could not be seen of it is hatched, and never guessed. tab "
-        "goes to the picture, and + enlarges it. A camera that was unplugged is opened again by "
-        "itself."
+        "goes to the picture, and {zoom} enlarges it. A camera that was unplugged is opened again "
+        "by itself."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("v", "picture", "Show what the camera sees, or hide it"),
-        Binding("escape", "leave", "Back"),
+        *bind("camera", "picture"),
+        *bind("back", "leave"),
     ]
 
     def __init__(
@@ -115,10 +116,7 @@ class SensorsScreen(TangyScreen[None]):
             with Container(id="right"):
                 yield panel(BlockPicture("Picture", text.PICTURE_HELP, id="picture"))
                 yield panel(Page(id="card"), "Last card")
-        yield key_line(
-            ("up down", "choose"), ("v", "picture"), ("tab", "panel"), ("+", "enlarge"),
-            ("esc", "back"), ("?", "help"),
-        )  # fmt: skip
+        yield key_line(("up down", "choose"), "camera", "panel", "zoom", "back", "help")
 
     def on_mount(self) -> None:
         """Open the cameras, and tell of all devices from now on."""

@@ -14,11 +14,12 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.command_grammar import AgainFrom, Leave, read_settling, read_teaching
+from tangy_tui.app.command_grammar import Perform, read_settling, read_teaching
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
+    Discard,
     Executed,
     Next,
     Redo,
@@ -36,8 +37,6 @@ from tangy_tui.learning.verification import (
     Offered,
     Refused,
     Rejected,
-    Say,
-    StopCommand,
 )
 from tangy_tui.text import teaching as text
 from tangy_tui.text.questions import REJECTED, not_understood_words
@@ -47,12 +46,13 @@ from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.dialogs.remark import remark_dialog
 from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
+from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel, room_panel
 from tangy_tui.ui.screens import teach_keys
 from tangy_tui.ui.screens.teach_hearing import TeachHearing
-from tangy_tui.ui.screens.teach_keys import WATCHING
+from tangy_tui.ui.screens.teach_keys import NOT_WATCHING, WATCHING
 from tangy_tui.ui.screens.teach_scripted import follow_script
 from tangy_tui.ui.screens.teach_why import TeachWhy
+from tangy_tui.ui.screens.teach_words import follow_word
 from tangy_tui.ui.speaking import preference_of, speaker_of
 from tangy_tui.ui.teaching_picture import TeachingPicture
 from tangy_tui.ui.widgets.command_bar import CommandBar
@@ -130,10 +130,11 @@ class TeachScreen(TangyScreen[bool]):
         yield CommandBar(
             lambda typed: self._teaching.phrasebook.complete(typed),
             sayable=lambda: self._teaching.sayable,
-            resting=self._listener.keys if self._scripted is None else WATCHING,
             letters=False,
             id="command",
         )
+        keys = self._listener.keys if self._scripted is None else WATCHING
+        yield KeyLine(*keys, typing=self._scripted is None)
 
     def on_mount(self) -> None:
         """Begin the session."""
@@ -166,32 +167,19 @@ class TeachScreen(TangyScreen[bool]):
         if remark is not None and (settle := read_settling(event.text, remark)) is not None:
             self._apply(settle)
             return
-        word = read_teaching(event.text, self._teaching.phrasebook.game)
-        match word:
-            case None | "where" | "what to do" | "faults":
-                self._apply(Say(event.text))
-            case StopCommand():
-                self.app.run_worker(self.run_action("app.stop"))
-            case Undo() | Redo():
-                self._apply(word)
-            case Next():
-                self.action_next()
-            case Leave():
-                self.close(False)
-            case AgainFrom(step):
-                self.query_one(CommandBar).ready()
-                if step is None:
-                    self._log.write(text.WHICH_STEP, "warn")
-                else:
-                    self.again(self._teaching.demonstration.id, step - 1)
-            case "why":
-                self.action_why()
-            case "shown":
-                self.query_one(CommandBar).ready()
-                self.action_coverage()
-            case "help" | "phrases" | "voice":
-                self.query_one(CommandBar).ready()
-                self.app.run_worker(self.run_action(f"app.{word}"))
+        follow_word(self, read_teaching(event.text, self._teaching.phrasebook.game), event.text)
+
+    def follow(self, command: TeacherCommand) -> None:
+        """Put a command to the session, and tell what came of it."""
+        self._apply(command)
+
+    def again_from(self, step: int | None) -> None:
+        """Show the present game again from a step on, counted from 1; None: it was not said."""
+        self.query_one(CommandBar).ready()
+        if step is None:
+            self._log.write(text.WHICH_STEP, "warn")
+        else:
+            self.again(self._teaching.demonstration.id, step - 1)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave a scripted teacher alone: who watches can only look, leave or stop."""
@@ -199,14 +187,14 @@ class TeachScreen(TangyScreen[bool]):
             return self._why.thinks
         if action == "talk":
             return self._listener.by_key
-        alone = ("undo", "redo", "again", "next", "learn")
-        return self._scripted is None or action not in alone
+        return self._scripted is None or action not in NOT_WATCHING
 
     def take_letter(self, event: events.Key) -> bool:
         """Type letters into the line, wherever the keys are: no letter does anything here."""
         bar = next(iter(self.query(CommandBar)), None)
         known = event.character if event.is_printable else None
-        if bar is None or known is None or bar.has_keys or self._scripted is not None:
+        filtering = getattr(self.focused, "filtering", False)
+        if bar is None or known is None or filtering or bar.has_keys or self._scripted is not None:
             return False
         if (
             known == ":"  # to type
@@ -231,11 +219,7 @@ class TeachScreen(TangyScreen[bool]):
 
     def action_again(self) -> None:
         """Show the present game again from the step that is chosen."""
-        number = self.query_one(Transcript).chosen
-        if number is None:
-            self._log.write(text.WHICH_STEP, "warn")
-        else:
-            self.again(self._teaching.demonstration.id, number - 1)
+        self.again_from(self.query_one(Transcript).chosen)
 
     def again(self, id: str, kept: int) -> None:
         """Show a demonstration again from the step after `kept`, if the teacher means it."""
@@ -304,14 +288,24 @@ class TeachScreen(TangyScreen[bool]):
             steps.focus()
         elif steps.chosen is not None:
             steps.release()
-        elif (bar := self.query_one(CommandBar)).text and self._listener.by_key:
-            bar.drop()  # words that were heard, and left there
         else:
             self.close(False)
 
-    async def action_learn(self) -> None:
-        """Learn from all finished demonstrations, and show the policy."""
-        await self.run_action("app.learn")
+    def action_discard(self) -> None:
+        """Put the present game away, if that is meant, and begin another."""
+        self.query_one(CommandBar).ready()
+        self.run_worker(self._discard(), name="discard")
+
+    async def _discard(self) -> None:
+        steps = len(self._teaching.demonstration.steps)
+        dialog = ConfirmDialog(*text.discard_words(steps), yes=text.DISCARD, no=text.KEEP)
+        if not steps or await self._alone(dialog):
+            self._apply(Discard())
+        self._listener.open(True)
+
+    def action_perform(self, action: str) -> None:
+        """Do what a key of the program does."""
+        follow_word(self, Perform(action), "")
 
     def on_stop(self, message: Stop) -> None:
         """Let the robot stand where it is seen until the next command is carried out."""

@@ -48,9 +48,9 @@ class TeachHearing:
         return self.hearing is not None and self.hearing.by_key
 
     @property
-    def keys(self) -> str:
+    def keys(self) -> tuple[str, ...]:
         """The keys of the screen."""
-        return HEARING_KEYS if self.by_key else KEYS
+        return HEARING_KEYS if self.hearing is not None else KEYS
 
     @property
     def help(self) -> str:
@@ -121,8 +121,10 @@ class TeachHearing:
     def give_back(self, heard: str) -> None:
         """Put a command into the bar to be changed.
 
-        A spoken one leaves the keys where they are, and overwrites nothing that is being typed.
+        One that was spoken does not go there: what was overheard would stay in the line.
         """
         bar = self._screen.query_one(CommandBar)
-        if not (self.by_voice and bar.typing):
-            bar.restore(heard, focus=not self.by_voice)
+        if self.by_voice:
+            bar.ready()
+        else:
+            bar.restore(heard)

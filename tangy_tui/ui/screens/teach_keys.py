@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from textual.binding import Binding, BindingType
 
-KEYS = "f2 undo  f3 redo  f4 why  f5 learn  f7 next  f8 seen  f9 again  esc home"
-HEARING_KEYS = "t talk  f2 undo  f3 redo  f4 why  f5 learn  f7 next  f8 seen  esc home"
-"""The same where there is a key to push to talk."""
+from tangy_tui.text.teaching import CANCEL, CHOOSE_STEP, LEAVE
+from tangy_tui.ui.keys import bind
 
-WATCHING = "up down a step  f4 why  f8 seen  ? help  esc leave"
+KEYS = ("undo", "redo", "why", "learn", "next", "shown", "again", "library", "back:home", "help")
+HEARING_KEYS = ("talk", "undo", "redo", "why", "learn", "next", "listen", "back:home", "help")
+"""The same where there is a microphone."""
+
+NOT_WATCHING = ("undo", "redo", "again", "next", "discard", "perform")
+"""What only the teacher does."""
+
+WATCHING = (("up down", "a step"), "why", "shown", "back:leave", "help")
 """The keys that a scripted teacher leaves to who watches."""
 
 HELP = (
@@ -16,23 +22,24 @@ HELP = (
     "asks whether it understood; press y and it is done. People press a button when they "
     "want help (?1, ?2, ... is whose turn it is): go to them, and the line Now says what "
     "Tangy sees there. Letters always go to the command line. Leave whenever you like: what you "
-    "confirmed is kept. Typed, undo, redo, again 7, why, seen, next and voice do what their keys "
-    "do, and phrases shows all that can be said."
+    "confirmed is kept. What keys do can be typed, too, in the words beside them; and: "
+    "discard the game, start over, finish the demonstration, again 7."
 )
 
 BINDINGS: list[BindingType] = [
-    Binding("t", "talk", "Talk to Tangy, or end what you say"),
-    Binding("f2", "undo", "Undo the last step"),
-    Binding("ctrl+z", "undo", "Undo the last step", show=False, priority=True),
-    Binding("f3", "redo", "Do the step again that was undone"),
-    Binding("ctrl+y", "redo", "Do it again", show=False, priority=True),
-    Binding("f4", "why", "Why: what Tangy would do here by now"),
-    Binding("f5", "learn", "Learn from the demonstrations"),
-    Binding("f7", "next", "Another demonstration"),
-    Binding("f8", "coverage", "What was shown and what not"),
-    Binding("f9", "again", "Show again from the chosen step"),
-    Binding("up", "choose(-1)", "Choose a step", show=False),
-    Binding("down", "choose(1)", "Choose a step", show=False),
-    Binding("escape", "leave", "Leave; your steps are kept"),
-    Binding("escape", "think_no_more", "Cancel", show=False, priority=True),
+    *bind("talk"),
+    *bind("undo"),
+    *bind("redo"),
+    *bind("why"),
+    *bind("learn", "perform('learn')"),
+    *bind("library", "perform('library')"),
+    *bind("next"),
+    *bind("guided", "perform('guided')"),
+    *bind("again"),
+    *bind("shown", "coverage"),
+    *bind("listen", "app.listen"),
+    Binding("up", "choose(-1)", CHOOSE_STEP, show=False, id="up"),
+    Binding("down", "choose(1)", CHOOSE_STEP, show=False, id="down"),
+    *bind("back", "leave", name=LEAVE),
+    Binding("escape", "think_no_more", CANCEL, show=False, priority=True, id="back"),
 ]

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from textual.message import Message
 
+from tangy_tui.text.phrases import NONE_FOUND
 from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row
 
@@ -69,7 +70,7 @@ class ChoiceList(Choosable):
             self.post_message(self.Moved(self))
 
     def _lay_out(self, key: Hashable | None) -> None:
-        lines = self._write(max(1, self._rows.width), self._rows.height)
+        lines = self._kept(self._write(max(1, self._rows.width), self._rows.height))
         self._at = {}
         for y, line in enumerate(lines):
             if line.key is not None:
@@ -83,6 +84,33 @@ class ChoiceList(Choosable):
         if self.is_attached and self._rows.width > 0:
             self._rows.put([line.row for line in lines])
             self._mark()
+
+    def _kept(self, lines: Sequence[ChoiceLine]) -> Sequence[ChoiceLine]:
+        """Return the lines that are left by the filter, with those that stand above them."""
+        if not self.filter:
+            return lines
+        texts: dict[Hashable, str] = {}
+        for line in lines:
+            if line.key is not None:
+                text = "".join(piece for piece, _ in line.row)
+                texts[line.key] = f"{texts.get(line.key, '')} {text}"
+        kept, above, headed = list[ChoiceLine](), list[ChoiceLine](), False
+        for line in lines:
+            if line.key is None:
+                above = [line] if headed else [*above, line]
+                headed = False
+            else:
+                headed = True
+                if self._has(texts[line.key]):
+                    kept += [*above, line]
+                    above = []
+        return kept or [ChoiceLine(((NONE_FOUND, "dim"),))]
+
+    def _filter_changed(self) -> None:
+        before = self.chosen
+        self._show()
+        if self.chosen != before:
+            self.post_message(self.Moved(self))
 
     def _show(self) -> None:
         self._lay_out(self.chosen)

@@ -6,14 +6,14 @@ from typing import ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.filtering import Filtered
 from tangy_tui.ui.widgets.rows import Rows
 
 
-class Choosable(ScrollView, can_focus=True):
+class Choosable(Filtered, can_focus=True):
     """A scrolled list with a cursor: up and down move it, Enter tells of what it is on.
 
     A list says how many choices it has (`_length`), which lines each stands on (`_places`), how
@@ -25,8 +25,8 @@ class Choosable(ScrollView, can_focus=True):
     Choosable { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up,k", "choose(-1)", "One up", show=False),
-        Binding("down,j", "choose(1)", "One down", show=False),
+        Binding("up,k", "choose(-1)", "One up", show=False, id="up"),
+        Binding("down,j", "choose(1)", "One down", show=False, id="down"),
         Binding("pageup", "choose(-10)", "Ten up", show=False),
         Binding("pagedown", "choose(10)", "Ten down", show=False),
         Binding("home", "choose(-1000000)", "The first", show=False),
@@ -71,6 +71,9 @@ class Choosable(ScrollView, can_focus=True):
     def render_line(self, y: int) -> Strip:
         """Draw one line."""
         return self._rows.strip(y)
+
+    def _filter_changed(self) -> None:
+        self._show()
 
     def _length(self) -> int:
         """Return how many choices there are."""

@@ -328,10 +328,8 @@ class CommandBar(Vertical):
         typed = self._input.value
         if self._input.listed:
             self._matches.show(typed, self._input.listed)
-        elif typed and not self._input.has_focus:
+        elif typed and self._letters and not self._input.has_focus:
             self._matches.show(typed, (), self._texts[1])
-        elif not typed and not self._letters:
-            self._matches.show("", (), self._texts[1] if self._input.has_focus else "")
         else:
             self._matches.show(typed, self._complete(typed) if typed.strip() else ())
 

@@ -18,7 +18,7 @@ from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import draw, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
-SEEN, ESC_SEEN = "  [a] seen", "  [esc a] seen"
+SEEN, ESC_SEEN = "  [{acknowledge}] seen", "  [esc {acknowledge}] seen"
 """The key that says that a fault was seen; and while keys are letters of a line."""
 
 MOST_LINES = 4

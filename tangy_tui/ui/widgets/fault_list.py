@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 from rich.cells import cell_len
-from textual import events
-from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tangy_tui.monitoring.fault import OPEN, Fault
@@ -25,9 +23,6 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import Row, fit, shorten
 
-LONGEST = 40
-"""Characters of a filter."""
-
 WIDEST_NAME = 32
 TIME, STEP, STATE, SHORT_STATE = 7, 5, 16, 7
 SHORTEST_NAME = 10
@@ -39,10 +34,6 @@ HINT = "enter tells   / finds"
 
 class FaultList(ChoiceList):
     """One line for each fault; `/` keeps those in which all the words occur, esc all of them."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("slash", "filter", "Keep those with these words", key_display="/"),
-    ]
 
     class Chosen(Message):
         """A fault was chosen with Enter."""
@@ -65,65 +56,31 @@ class FaultList(ChoiceList):
         )
         self._person_name = name
         self._faults: tuple[Fault, ...] = ()
-        self._typing = False
-        self.filter = ""
-        """The words by which it is filtered at present."""
-
-    @property
-    def filtered(self) -> bool:
-        """Whether esc has something to take back."""
-        return self._typing or bool(self.filter)
 
     def fill(self, faults: Sequence[Fault]) -> None:
         """Show these faults."""
         self._faults = tuple(faults)
         self._write_all()
 
-    def action_filter(self) -> None:
-        """Begin to type words."""
-        self._typing = True
+    def _filter_changed(self) -> None:
         self._write_all()
 
-    def unfilter(self) -> None:
-        """Show all faults again."""
-        self._typing, self.filter = False, ""
-        self._write_all()
+    def _kept(self, lines: Sequence[ChoiceLine]) -> Sequence[ChoiceLine]:
+        return lines  # they are filtered by more than is seen of them
 
-    def on_key(self, event: events.Key) -> None:
-        """While words are typed, letters are letters and no keys."""
-        if not self._typing:
-            return
-        if event.key == "enter":
-            self._typing = False
-        elif event.key == "escape":
-            self._typing, self.filter = False, ""
-        elif event.key == "backspace":
-            self.filter = self.filter[:-1]
-        elif event.is_printable and event.character and len(self.filter) < LONGEST:
-            self.filter += event.character
-        else:
-            return
-        event.stop()
-        event.prevent_default()
-        self._write_all()
-
-    def on_blur(self) -> None:
-        """Type no further when the keys go elsewhere."""
-        if self._typing:
-            self._typing = False
-            self._write_all()
+    def _hint(self) -> str:
+        return HINT if self._faults else ""
 
     def _write_all(self) -> None:
-        words = self.filter.lower().split()
-        kept = tuple(
-            f for f in self._faults if all(w in searched(f, self._person_name) for w in words)
-        )
-        of = f"{len(kept)} of {len(self._faults)}" if words else ""
-        typed = f"/{clean(self.filter)}{'_' if self._typing else ''}" if self.filtered else ""
-        hint = HINT if self._faults else ""
-        self.border_subtitle = (f"{typed}  {of}".strip() or hint).replace("[", "\\[")
+        kept = tuple(f for f in self._faults if self._has(searched(f, self._person_name)))
         none = NONE_FOUND if self._faults else NO_FAULTS
         self.show(lambda width, height: fault_list_lines(kept, width, none))
+        self._say_filter()
+
+    def _say_filter(self, count: str = "") -> None:
+        words = self.filter.split()
+        left = sum(self._has(searched(f, self._person_name)) for f in self._faults)
+        super()._say_filter(f"{left} of {len(self._faults)}" if words else "")
 
     def _tell(self, index: int) -> None:
         self.post_message(self.Chosen(self, str(self._keys[index])))

@@ -8,11 +8,12 @@ from typing import ClassVar, Literal
 
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
+from tangy_tui.text.phrases import NONE_FOUND
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.filtering import Filtered
 from tangy_tui.ui.widgets.rows import Row, Rows
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -22,7 +23,7 @@ MARKS: dict[str, str] = {"text": "  ", "dim": "  ", "good": "✓ ", "warn": "! "
 """What stands before a sentence, so that no kind is told by colour alone."""
 
 
-class LogView(ScrollView, can_focus=True):
+class LogView(Filtered, can_focus=True):
     """Sentences with a mark before them, wrapped to the width.
 
     It follows the newest, unless it is a list to be read from its beginning (`follow=False`).
@@ -87,12 +88,16 @@ class LogView(ScrollView, can_focus=True):
         """Draw one line."""
         return self._rows.strip(y)
 
+    def _filter_changed(self) -> None:
+        self._show(True)
+
     def _show(self, follow: bool) -> None:
         width = self._rows.width
         if not self.is_attached or width <= 4:
             return
         rows: list[Row] = []
-        for text, kind in self._lines:
+        kept = [line for line in self._lines if self._has(line[0])]
+        for text, kind in kept or ([(NONE_FOUND, "dim")] if self.filter else []):
             rows += _rows(text, kind, width)
         self._rows.put(rows)
         if follow and self._follow:

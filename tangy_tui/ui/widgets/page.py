@@ -8,6 +8,7 @@ from typing import NamedTuple
 from textual.geometry import Size
 from textual.message import Message
 
+from tangy_tui.text.phrases import NONE_FOUND
 from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row
 from tangy_tui.ui.widgets.wrapping import wrap
@@ -37,6 +38,10 @@ def heading(text: str) -> list[PageLine]:
     return [PageLine(), PageLine(((text, "robot"),))]
 
 
+def _text(line: PageLine) -> str:
+    return "".join(text for text, _ in line.row)
+
+
 class Page(Choosable):
     """Up and down go to the next choice, and scroll where it is out of sight; Enter tells of it."""
 
@@ -58,12 +63,15 @@ class Page(Choosable):
     ) -> None:
         super().__init__(id=id, classes=classes)
         self._write = write
-        self._lines: dict[int, range] = {}
+        self._lines: dict[int, range] = {}  # of each choice that is shown, by its place
+        self._choices: list[int] = []  # which they are
 
     @property
     def chosen(self) -> int | None:
         """The choice that the cursor is on."""
-        return self._cursor
+        if self._cursor is None or self._cursor >= len(self._choices):
+            return None
+        return self._choices[self._cursor]
 
     def show(self, write: Write, cursor: int | None = 0) -> None:
         """Show another page, the cursor on one of its choices."""
@@ -110,20 +118,37 @@ class Page(Choosable):
 
     def _tell(self, index: int) -> None:
         if index in self._lines:
-            self.post_message(self.Chosen(self, index))
+            self.post_message(self.Chosen(self, self._choices[index]))
+
+    def _kept(self, lines: Sequence[PageLine]) -> Sequence[PageLine]:
+        """Return the lines that are left by the filter; those of one choice stay together."""
+        if not self.filter:
+            return lines
+        texts: dict[int, str] = {}
+        for line in lines:
+            if line.choice is not None:
+                texts[line.choice] = f"{texts.get(line.choice, '')} {_text(line)}"
+        kept = [
+            line
+            for line in lines
+            if self._has(_text(line) if line.choice is None else texts[line.choice])
+        ]
+        return kept or [PageLine(((NONE_FOUND, "dim"),))]
 
     def _show(self) -> None:
         width = self._rows.width
         if not self.is_attached or width <= 0 or self._write is None:
             return
-        lines = self._write(width)
-        self._lines = {}
+        lines = self._kept(self._write(width))
+        places: dict[int, range] = {}
         for y, line in enumerate(lines):
             if line.choice is not None:
-                first = self._lines.get(line.choice, range(y, y))
-                self._lines[line.choice] = range(first.start, y + 1)
+                first = places.get(line.choice, range(y, y))
+                places[line.choice] = range(first.start, y + 1)
+        self._choices = list(places)
+        self._lines = dict(enumerate(places.values()))
         if self._cursor is None or self._cursor >= len(self._lines):
             self._cursor = 0 if self._lines else None
         self._rows.put([line.row for line in lines])
-        places = range(0) if self._cursor is None else self._places(self._cursor)
-        self._rows.mark(dict.fromkeys(places, "cursor"))
+        under = range(0) if self._cursor is None else self._places(self._cursor)
+        self._rows.mark(dict.fromkeys(under, "cursor"))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from rich.cells import cell_len
 from textual.message import Message
 
+from tangy_tui.text.phrases import NONE_FOUND
 from tangy_tui.text.policies import NOTHING_LEARNT
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choosable import Choosable
@@ -82,6 +83,7 @@ class PolicyTable(Choosable):
         self._empty = clean(empty)
         self._now: int | None = None
         self._stacked = False
+        self._seen: list[int] = []  # the rows that are shown, by their places
 
     @property
     def rows(self) -> tuple[PolicyRow, ...]:
@@ -91,7 +93,9 @@ class PolicyTable(Choosable):
     @property
     def chosen(self) -> int | None:
         """The row that the cursor is on."""
-        return self._cursor
+        if self._cursor is None or self._cursor >= len(self._seen):
+            return None
+        return self._seen[self._cursor]
 
     def show(self, rows: Sequence[PolicyRow], highlight: str | None = None) -> None:
         """Show these rows; `highlight` names the situation that is in use."""
@@ -106,18 +110,30 @@ class PolicyTable(Choosable):
         self._mark()
 
     def _length(self) -> int:
-        return len(self._table)
+        return len(self._seen)
 
     def _tell(self, index: int) -> None:
-        self.post_message(self.Chosen(self, index, self._table[index]))
+        row = self._seen[index]
+        self.post_message(self.Chosen(self, row, self._table[row]))
+
+    def _filter_changed(self) -> None:
+        self._cursor = None
+        self._show()
 
     def _index(self, situation: str | None) -> int | None:
         return next((n for n, r in enumerate(self._table) if r.situation == situation), None)
 
     def _show(self) -> None:
+        self._seen = [
+            n
+            for n, r in enumerate(self._table)
+            if self._has(f"{r.situation} {r.behaviour} {r.note}")
+        ]
         if not self.is_attached or self._rows.width <= 0:
             return
-        if self._table:
+        if self._table and not self._seen:
+            self._rows.put([((NONE_FOUND, "dim"),)])
+        elif self._table:
             self._rows.put(self._lines(self._rows.width))
         else:
             self._rows.put([((self._empty, "dim"),)])
@@ -126,7 +142,7 @@ class PolicyTable(Choosable):
     def _lines(self, width: int) -> list[Row]:
         table = [
             PolicyRow(clean(r.situation), clean(r.behaviour), r.share, r.seen, clean(r.note))
-            for r in self._table
+            for r in (self._table[n] for n in self._seen)
         ]
         situation = max(cell_len(r.situation) for r in table)
         behaviour = max(cell_len(r.behaviour) for r in table)
@@ -165,11 +181,12 @@ class PolicyTable(Choosable):
 
     def _mark(self) -> None:
         marks: dict[int, str] = {}
-        for index, ink in ((self._cursor, "cursor"), (self._now, "now")):
+        now = self._seen.index(self._now) if self._now in self._seen else None
+        for index, ink in ((self._cursor, "cursor"), (now, "now")):
             if index is not None:
                 marks.update(dict.fromkeys(self._places(index), ink))
         self._rows.mark(marks)
-        seen = self._cursor if self._cursor is not None else self._now
+        seen = self._cursor if self._cursor is not None else now
         if seen is not None:
             self._reveal(seen)
 

@@ -8,6 +8,7 @@ from functools import lru_cache
 from rich.cells import cell_len
 from textual.message import Message
 
+from tangy_tui.text.phrases import NONE_FOUND
 from tangy_tui.text.teaching import NO_STEPS
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choosable import Choosable
@@ -69,6 +70,7 @@ class Transcript(Choosable):
         self._steps: deque[str] = deque(maxlen=most)
         self._empty = clean(empty)
         self._count = 0
+        self._seen: list[int] = []  # the steps that are shown, by their places
 
     @property
     def count(self) -> int:
@@ -78,7 +80,9 @@ class Transcript(Choosable):
     @property
     def chosen(self) -> int | None:
         """The number of the step that the cursor is on, or None while it follows the end."""
-        return None if self._cursor is None else self._count - len(self._steps) + self._cursor + 1
+        if self._cursor is None or self._cursor >= len(self._seen):
+            return None
+        return self._number(self._cursor)
 
     def append(self, step: str) -> None:
         """Add a step at the end."""
@@ -107,6 +111,8 @@ class Transcript(Choosable):
     def point(self, number: int) -> None:
         """Put the cursor on a step, or on the nearest one that is kept."""
         if self._steps:
+            if self.filter:
+                self.unfilter()
             first = self._count - len(self._steps) + 1
             self._cursor = min(len(self._steps) - 1, max(0, number - first))
             self._mark()
@@ -130,27 +136,35 @@ class Transcript(Choosable):
             self.post_message(self.Moved(self, self.chosen))
 
     def _length(self) -> int:
-        return len(self._steps)
+        return len(self._seen)
+
+    def _number(self, index: int) -> int:
+        return self._count - len(self._steps) + self._seen[index] + 1
 
     def _tell(self, index: int) -> None:
-        number = self._count - len(self._steps) + index + 1
-        self.post_message(self.Chosen(self, number, self._steps[index]))
+        self.post_message(self.Chosen(self, self._number(index), self._steps[self._seen[index]]))
+
+    def _filter_changed(self) -> None:
+        self._cursor = None
+        self._show()
+        self.post_message(self.Moved(self, None))
 
     def _show(self) -> None:
+        self._seen = [n for n, step in enumerate(self._steps) if self._has(step)]
         if not self.is_attached or self._rows.width <= 0:
             return
         first = self._count - len(self._steps) + 1
         digits = max(2, len(str(self._count)))
         width = self._rows.width
-        rows = [_row(first + n, step, digits, width) for n, step in enumerate(self._steps)]
-        self._rows.put(rows or [((self._empty, "dim"),)])
+        rows = [_row(first + n, self._steps[n], digits, width) for n in self._seen]
+        self._rows.put(rows or [((NONE_FOUND if self._steps else self._empty, "dim"),)])
         self._mark()
 
     def _mark(self) -> None:
-        if not self._steps:
+        if not self._seen:
             return
         self._rows.mark({} if self._cursor is None else {self._cursor: "cursor"})
-        self._rows.show(len(self._steps) - 1 if self._cursor is None else self._cursor)
+        self._rows.show(len(self._seen) - 1 if self._cursor is None else self._cursor)
 
 
 @lru_cache(4_096)

@@ -1,0 +1,89 @@
+"""What can be done on a screen now: the actions of the keymap that help and palette list."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from textual.dom import DOMNode
+from textual.screen import Screen
+
+from tangy_tui.app.keymap import BY_ID
+from tangy_tui.ui.keys import keymap_of
+
+SILENT = frozenset({"number"})
+"""Actions whose word is the key itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """An action: its name here, its key, the word to type for it, and where it is done."""
+
+    name: str
+    key: str
+    word: str
+    action: str
+    node: DOMNode
+    everywhere: bool
+
+
+def listed(screen: Screen[Any]) -> list[Listed]:
+    """List what can be done on a screen and in the widget that has the keys, each thing once.
+
+    Keys that are letters are listed too while a line takes letters: the palette does them.
+    """
+    found: dict[tuple[str, str], Listed] = {}
+    keymap, app = keymap_of(screen.app), screen.app
+    typing = bool(screen.query("#command-input"))
+    for node in _nodes(screen):
+        for key, bindings in node._bindings.key_to_bindings.items():
+            for binding in bindings:
+                id = binding.id or ""
+                if not (binding.show and binding.description) or (id, binding.description) in found:
+                    continue
+                state = app._check_action_state(binding.action, node)
+                if state is False or not works(screen, binding.action):
+                    continue
+                given = binding.key_display or (
+                    keymap.shown(id, typing=typing)
+                    if id in BY_ID and id not in SILENT
+                    else app.get_key_display(binding)
+                )
+                word = "" if id in SILENT or id not in BY_ID else BY_ID[id].word
+                found[id or key, binding.description] = Listed(
+                    binding.description, given, word, binding.action, node, node is app
+                )
+    return list(found.values())
+
+
+def _nodes(screen: Screen[Any]) -> Iterator[DOMNode]:
+    """Give the widget that has the keys, what it stands in, the screen, and the program."""
+    focused = screen.focused
+    if focused is not None:
+        yield from (node for node in focused.ancestors_with_self if node is not screen.app)
+    else:
+        yield screen
+    if not screen.is_modal:
+        yield screen.app
+
+
+def works(screen: Screen[Any], action: str) -> bool:
+    """Say whether a key that is the program's own does anything on a screen."""
+    match action:
+        case "command":
+            return bool(screen.query("#command-input"))
+        case "zoom":
+            panel = screen.focused
+            return screen.maximized is not None or (panel is not None and panel.allow_maximize)
+        case "back":
+            return len(screen.app.screen_stack) > 1
+        case "phrases":
+            return hasattr(screen.app, "action_phrases")
+        case "filter":
+            return hasattr(screen.focused, "begin_filter")
+        case "listen" | "app.listen":
+            return getattr(screen.app, "hearing", None) is not None
+        case "talk":
+            return bool(getattr(getattr(screen.app, "hearing", None), "by_key", False))
+    return True

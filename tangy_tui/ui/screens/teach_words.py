@@ -1,0 +1,45 @@
+"""What is typed while teaching and is no behaviour: the words of keys, and what is asked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_tui.app.command_grammar import AgainFrom, Leave, Perform, TeachingWord
+from tangy_tui.learning.teaching_events import Discard, Finish, Next, Redo, Undo
+from tangy_tui.learning.verification import Say, StopCommand
+from tangy_tui.ui.performing import perform
+from tangy_tui.ui.widgets.command_bar import CommandBar
+
+if TYPE_CHECKING:
+    from tangy_tui.ui.screens.teach import TeachScreen
+
+
+def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> None:
+    """Do what words mean that were typed; those of a behaviour are put to Tangy."""
+    match word:
+        case None | "where" | "what to do" | "faults":
+            screen.follow(Say(typed))
+        case StopCommand():
+            screen.app.run_worker(screen.run_action("app.stop"))
+        case Undo() | Redo() | Finish() | Next():
+            screen.follow(word)
+        case Discard():
+            screen.action_discard()
+        case Leave():
+            screen.close(False)
+        case AgainFrom(step):
+            screen.again_from(step)
+        case "why":
+            screen.action_why()
+        case "shown":
+            screen.query_one(CommandBar).ready()
+            screen.action_coverage()
+        case "help" | "phrases":
+            _perform(screen, Perform(word))
+        case Perform():
+            _perform(screen, word)
+
+
+def _perform(screen: TeachScreen, word: Perform) -> None:
+    screen.query_one(CommandBar).ready()
+    screen.app.run_worker(perform(screen, word.action, word.on))

@@ -1,0 +1,76 @@
+"""The keymap: one meaning for a key, a word for each action, and keys that a user has set."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.errors import ProfileError
+from tangy_tui.app.keymap import ACTIONS, BY_ID, Keymap, is_letter
+from tangy_tui.app.user_settings import read_settings
+from tangy_tui.text.keys import NAMES, with_keys
+
+
+def keys_of(tmp_path: Path, written: str) -> Keymap:
+    (tmp_path / "settings.toml").write_text(f"[keys]\n{written}\n")
+    return read_settings(tmp_path).keymap
+
+
+def test_no_key_has_two_meanings() -> None:
+    keys = Counter(key for action in ACTIONS for key in action.keys)
+    assert [key for key, count in keys.items() if count > 1] == []
+
+
+def test_every_action_has_a_name_and_every_changeable_one_a_word_of_its_own() -> None:
+    assert set(NAMES) == set(BY_ID)
+    words = Counter(action.word for action in ACTIONS if action.word)
+    assert [word for word, count in words.items() if count > 1] == []
+    assert [action.id for action in ACTIONS if not action.fixed and not action.word] == []
+
+
+def test_what_works_while_one_types_has_a_key_that_no_line_takes() -> None:
+    typing = [action for action in ACTIONS if action.with_line]
+    assert [a.id for a in typing if all(is_letter(key) for key in a.keys)] == []
+
+
+@pytest.mark.parametrize(
+    ("written", "id", "keys"),
+    [
+        ('undo = "f12"', "undo", ("f12",)),
+        ('undo = ["F12", "ctrl+n"]', "undo", ("f12", "ctrl+n")),
+        ('pause = ";"', "pause", ("semicolon",)),
+        ('drive = "p"\npause = "d"', "drive", ("p",)),
+        ('stop = "f12"', "stop", ("ctrl+x", "f12")),
+    ],
+)
+def test_a_user_changes_keys(tmp_path: Path, written: str, id: str, keys: tuple[str, ...]) -> None:
+    keymap = keys_of(tmp_path, written)
+    assert keymap.keys(id) == keys
+    assert all(keymap.action(key) == id for key in keys)
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [
+        ('undoo = "f12"', r"keys\.undoo.*undo"),
+        ('undo = "f13"', r"keys\.undo.* names no key.*f1"),
+        ('undo = "u"', r"keys\.undo.* works while you type"),
+        ('undo = "f5"', r"keys\.undo.* is the key of learn"),
+        ('undo = "ctrl+w"', r"keys\.undo.* edits"),
+        ('yes = "n"', r"keys\.yes.* is no action"),
+        ("undo = 2", r"keys\.undo"),
+        ('pause = "d"', r"keys\.pause.* is the key of drive"),
+    ],
+)
+def test_a_mistake_is_one_sentence_with_its_place(tmp_path: Path, written: str, told: str) -> None:
+    with pytest.raises(ProfileError, match=told):
+        keys_of(tmp_path, written)
+
+
+def test_texts_name_the_keys_that_were_set(tmp_path: Path) -> None:
+    keymap = keys_of(tmp_path, 'undo = "f12"')
+    assert with_keys("{undo} takes it back, {redo} not; {other}", keymap) == (
+        "f12 takes it back, f3 not; {other}"
+    )
