@@ -213,7 +213,7 @@ def read_keys(table: Table) -> Keymap:
         changed[id] = keys
     keymap = Keymap(changed)
     for id, keys in changed.items():
-        for key, other in _clashes(keymap, id, keys):
+        for other in _clashes(keymap, id, keys):
             raise table.wrong(id, f"is the key of {other} already.")
     return keymap
 
@@ -232,7 +232,8 @@ def _read(table: Table, id: str) -> Iterator[str]:
         yield key
 
 
-def _clashes(keymap: Keymap, id: str, keys: Iterable[str]) -> Iterator[tuple[str, str]]:
+def _clashes(keymap: Keymap, id: str, keys: Iterable[str]) -> Iterator[str]:
+    """Give the other actions that have one of some keys."""
     for action in ACTIONS:
-        if action.id != id:
-            yield from ((key, action.id) for key in keys if key in keymap.keys(action.id))
+        if action.id != id and not set(keys).isdisjoint(keymap.keys(action.id)):
+            yield action.id
