@@ -41,14 +41,13 @@ from textual.binding import BindingType
 from textual.css.query import NoMatches
 from textual.notifications import SeverityLevel
 from textual.screen import Screen
-from textual.widgets import Input
 
 from tangy_tui.app.keymap import Keymap
 from tangy_tui.app.terminal_session import QuestionKey, terminal_session
-from tangy_tui.language.stop_sentence import prepare, stops
+from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.text import program as text
-from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import CleanOutput, clean
+from tangy_tui.ui.key_reading import KeyReader
 from tangy_tui.ui.keys import DEFAULT, bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
@@ -56,7 +55,6 @@ from tangy_tui.ui.screen_diff import ScreenDiff, Written
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
 from tangy_tui.ui.type_ahead_guard import Clock
-from tangy_tui.ui.typed_stop import Taken, TypedStop
 
 if TYPE_CHECKING:
     from textual.command import Provider
@@ -126,7 +124,7 @@ class TangyApp(App[None]):
         self._first = first
         self._pictures = pictures
         self._leaving = False
-        self._typed_stop = TypedStop()
+        self._reader = KeyReader(self)
         self._shown = ScreenDiff()
         self._question = question
         self.keymap = keymap
@@ -140,29 +138,8 @@ class TangyApp(App[None]):
             self._shown.forget()
             if self.round_trip is not None:
                 self.round_trip.resized(event.size)
-        pressed = isinstance(event, events.Key | events.Paste)
-        if pressed and not isinstance(self.focused, Input) and self._says_stop(event):
-            return
-        if not (isinstance(event, events.Key) and self._types(event)):
+        if not self._reader.takes(event):
             await super().on_event(event)
-
-    def _types(self, event: events.Key) -> bool:
-        """Let the screen take a letter that it wants wherever the keys are."""
-        top = self.screen_stack[-1] if self.screen_stack else None
-        return isinstance(top, TangyScreen) and top.take_letter(event)
-
-    def _says_stop(self, event: events.Event) -> bool:
-        """Stop if the word is there now; say whether the event is no key, but belongs to it."""
-        if isinstance(event, events.Paste):
-            taken: Taken = "stop" if stops(event.text) else "key"
-        elif isinstance(event, events.Key):
-            known = event.character if event.is_printable else None
-            taken = self._typed_stop.take("\n" if event.key == "enter" else known, self.clock())
-        else:
-            taken = "key"
-        if taken == "stop":
-            self.action_stop()
-        return taken != "key"
 
     def get_default_screen(self) -> Screen[Any]:
         """Begin with the screen that was asked for."""

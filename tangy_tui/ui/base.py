@@ -103,10 +103,11 @@ class TangyScreen(Screen[ResultT]):
         if self.is_active:
             self.dismiss(result)
 
-    def take_letter(self, event: events.Key) -> bool:
+    def take_letter(self, event: events.Key | events.Paste) -> bool:
         """Take a key before it is looked at as one; False: it is a key like any other.
 
-        A screen on which people type commands takes letters here, wherever the keys are.
+        A screen on which people type commands takes letters here, wherever the keys are, and
+        text that is pasted.
         """
         return False
 

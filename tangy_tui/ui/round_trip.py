@@ -24,6 +24,7 @@ from tangy_tui.app.terminal_session import (
     TerminalSession,
     answers_for_another,
 )
+from tangy_tui.ui.pasted_text import marked, pasted_in
 
 MOST_WAITING = 4
 
@@ -173,7 +174,7 @@ class ReplyParser(XTermParser):
             data = data[: begun.start()] if begun else data
             if not data:
                 return ()
-        return super().feed(data)
+        return marked(super().feed(data), pasted_in(data))
 
     def _take(self, found: re.Match[str]) -> str:
         if (heard := type(self).heard) is not None:

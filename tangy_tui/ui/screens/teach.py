@@ -41,6 +41,7 @@ from tangy_tui.learning.verification import (
 from tangy_tui.text import teaching as text
 from tangy_tui.text.questions import REJECTED, not_understood_words
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.dialogs.remark import remark_dialog
@@ -189,10 +190,14 @@ class TeachScreen(TangyScreen[bool]):
             return self._listener.by_key
         return self._scripted is None or action not in NOT_WATCHING
 
-    def take_letter(self, event: events.Key) -> bool:
+    def take_letter(self, event: events.Key | events.Paste) -> bool:
         """Type letters into the line, wherever the keys are: no letter does anything here."""
         bar = next(iter(self.query(CommandBar)), None)
-        known = event.character if event.is_printable else None
+        if isinstance(event, events.Paste):
+            lines = event.text.strip().splitlines()
+            known = clean(lines[0]) if lines else None
+        else:
+            known = event.character if event.is_printable else None
         filtering = getattr(self.focused, "filtering", False)
         if bar is None or known is None or filtering or bar.has_keys or self._scripted is not None:
             return False

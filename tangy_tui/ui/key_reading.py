@@ -1,0 +1,59 @@
+"""What becomes of keys before they are keys: a stop, letters for a line, text that was pasted."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from textual import events
+from textual.app import App
+from textual.widgets import Input
+
+from tangy_tui.language.stop_sentence import stops
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.pasted_text import pasted_text
+from tangy_tui.ui.type_ahead_guard import clock_of
+from tangy_tui.ui.typed_stop import Taken, TypedStop
+
+
+class KeyReader:
+    """Takes what is no key: a typed or pasted stop, letters for a line, and pasted text."""
+
+    def __init__(self, app: App[None]) -> None:
+        self._app = app
+        self._typed_stop = TypedStop()
+
+    def takes(self, event: events.Event) -> bool:
+        """Take an event, unless it is for the widgets."""
+        if not isinstance(event, events.Key | events.Paste):
+            return False
+        focused = self._app.focused
+        writes = isinstance(focused, Input) or getattr(focused, "filtering", False)
+        if (not writes or isinstance(event, events.Paste)) and self._says_stop(event):
+            return True
+        if not writes and self._is_typed(event):
+            return True
+        return not writes and bool(pasted_text(event)) and _is_text(event)
+
+    def _is_typed(self, event: events.Key | events.Paste) -> bool:
+        """Let the screen take what it wants to be typed, wherever the keys are."""
+        top = self._app.screen_stack[-1] if self._app.screen_stack else None
+        return isinstance(top, TangyScreen) and top.take_letter(event)
+
+    def _says_stop(self, event: events.Key | events.Paste) -> bool:
+        """Stop if the word is there now; say whether the event is no key, but belongs to it."""
+        if text := event.text if isinstance(event, events.Paste) else pasted_text(event).strip():
+            taken: Taken = "stop" if stops(text) else "key"
+        elif isinstance(event, events.Key):
+            known = event.character if event.is_printable else None
+            now = clock_of(self._app)()
+            taken = self._typed_stop.take("\n" if event.key == "enter" else known, now)
+        else:
+            taken = "key"
+        if taken == "stop":
+            app: Any = self._app
+            app.action_stop()  # at once
+        return taken != "key"
+
+
+def _is_text(event: events.Key | events.Paste) -> bool:
+    return isinstance(event, events.Key) and (event.is_printable or event.key == "enter")

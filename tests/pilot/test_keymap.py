@@ -1,0 +1,205 @@
+"""The keymap on the screens: no letter changes what is kept, and every key that was set works."""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+import pytest
+from textual.binding import Binding
+from textual.widgets import Input
+
+from tangy_tui.app.keymap import ACTIONS, BY_ID, Keymap, is_letter
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.demo import learn
+from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
+from tangy_tui.ui.listing import listed
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.round_trip import ReplyParser
+from tangy_tui.ui.screens.demonstrations import DemonstrationsScreen
+from tangy_tui.ui.screens.help import help_for
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.people import PeopleScreen
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.teach import TeachScreen
+from tests.pilot.conftest import Run, StillClock, TangyPilot
+
+LETTERS = (*string.ascii_letters, "slash", "asterisk", "full_stop", "less_than_sign")
+
+ROOM = (160, 45)  # every panel of a screen can be seen, and so can have the keys
+
+Opens = Callable[[Program], Coroutine[Any, Any, None]]
+
+
+@pytest.fixture
+def taught(workspace: Workspace) -> Workspace:
+    """A workspace with a demonstration of somebody, and what was learnt from it."""
+    teaching = workspace.teaching(SCRIPTED, 1)
+    teacher = ScriptedTeacher(teaching)
+    teaching.begin()
+    for _ in teacher.demonstrate():
+        pass
+    learn(workspace)
+    return workspace
+
+
+async def teach(program: Program) -> None:
+    await program.push_screen(TeachScreen(program.workspace, program.workspace.teaching("ann", 3)))
+
+
+async def library(program: Program) -> None:
+    await program.push_screen(DemonstrationsScreen(program.workspace))
+
+
+async def people(program: Program) -> None:
+    await program.push_screen(PeopleScreen(program.workspace))
+
+
+async def policy(program: Program) -> None:
+    program.run_worker(program.open_policy(learn(program.workspace)))
+
+
+async def play(program: Program) -> None:
+    workspace = program.workspace
+    supervision = workspace.supervision(learn(workspace), 5)
+    screen = PlayScreen(workspace, supervision, games=1, speed=1)
+    await program.push_screen(screen)
+    screen.action_pause()
+
+
+async def home(program: Program) -> None:
+    """Stay there."""
+
+
+def kept(workspace: Workspace) -> list[int]:
+    """Return what is in the log, by its numbers."""
+    return [event.seq for event in workspace.store.events()]
+
+
+async def back(pilot: TangyPilot, screen: object) -> None:
+    """Answer nothing, and close whatever a letter has opened."""
+    for _ in range(4):
+        if pilot.app.screen is screen:
+            return
+        await pilot.press("escape")
+        await pilot.pause()
+
+
+@pytest.mark.parametrize("opens", [home, teach, library, people, policy, play])
+async def test_no_letter_changes_what_is_kept_whatever_has_the_keys(
+    run: Run, taught: Workspace, opens: Opens
+) -> None:
+    async with run(app=Program(taught, opens, clock=StillClock()), size=ROOM) as pilot:
+        await pilot.pause()
+        screen = pilot.app.screen
+        before = kept(taught)
+        panels = [widget for widget in screen.query("*") if widget.focusable]
+        for panel in (None, *panels):
+            for letter in LETTERS:
+                if opens is play and letter in ("p", "full_stop"):
+                    continue  # the simulated game itself goes on by these
+                screen.set_focus(panel)
+                pilot.type(letter)
+                await pilot.pause()
+                assert kept(taught) == before, f"{letter} on {panel}"
+                await back(pilot, screen)
+                for line in screen.query(Input):
+                    line.clear()
+        assert panels or opens is home
+
+
+@pytest.mark.parametrize("opens", [home, library, people, play])
+async def test_pasted_text_runs_nothing_but_a_stop(
+    run: Run, taught: Workspace, opens: Opens, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with run(app=Program(taught, opens, clock=StillClock())) as pilot:
+        await pilot.pause()
+        app, stops = pilot.app, list[bool]()
+        monkeypatch.setattr(app, "action_stop", lambda: stops.append(True))
+        screen, before = app.screen, kept(taught)
+
+        async def paste(text: str) -> None:
+            for message in ReplyParser().feed(text):
+                app.post_message(message)
+            await pilot.pause()
+
+        for text in ("greet everyone\r", "xyEyMy\r", "\x1b[200~greet everyone\r\x1b[201~"):
+            await paste(text)
+            assert app.screen is screen
+            assert kept(taught) == before
+            assert stops == []
+        for text in ("stop the robot\r", "\x1b[200~please stop the robot\x1b[201~"):
+            await paste(text)
+            assert stops.pop()
+            assert app.screen is screen
+
+
+async def test_a_few_keys_that_come_together_are_keys(run: Run, workspace: Workspace) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        await pilot.pause()
+        for message in ReplyParser().feed("e\r"):
+            pilot.app.post_message(message)
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, PeopleScreen)
+
+
+@pytest.mark.parametrize("opens", [home, teach, library, people, policy, play])
+async def test_help_and_palette_list_every_action_of_a_screen(
+    run: Run, taught: Workspace, opens: Opens
+) -> None:
+    async with run(app=Program(taught, opens, clock=StillClock()), size=ROOM) as pilot:
+        await pilot.pause()
+        screen = pilot.app.screen
+        classes = (*type(screen).__mro__, *type(pilot.app).__mro__)
+        made = [binding for cls in classes for binding in vars(cls).get("BINDINGS", ())]
+        bound = {
+            one.id
+            for one in made
+            if isinstance(one, Binding) and one.id in BY_ID and not BY_ID[one.id].fixed
+        }
+        here = {one.word for one in listed(screen)}
+        elsewhere = {"talk", "listen", "command", "zoom", "filter"}  # where there is a use for it
+        assert {BY_ID[str(id)].word for id in bound - elsewhere} <= here
+        help = help_for(screen)
+        assert len(help.here) + len(help.everywhere) >= len(here)
+
+
+CHANGED = {"undo": ("f12",), "learn": ("ctrl+n",), "pause": ("semicolon",), "put_away": ("z",)}
+
+
+async def test_keys_that_were_set_work_and_are_told(run: Run, taught: Workspace) -> None:
+    program = Program(taught, library, clock=StillClock(), keymap=Keymap(CHANGED))
+    async with run(app=program) as pilot:
+        await pilot.pause()
+        assert "z put away" in pilot.lines()[-1]
+        before = kept(taught)
+        pilot.type("x")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, DemonstrationsScreen)
+        pilot.type("z")
+        await pilot.pause()
+        pilot.type("y")
+        await pilot.pause()
+        deleted = kept(taught)
+        assert len(deleted) == len(before) + 1
+        await pilot.press("f2")
+        assert kept(taught) == deleted
+        await pilot.press("f12")
+        assert len(kept(taught)) == len(deleted) + 1
+
+
+async def test_at_home_a_letter_goes_to_a_line_and_enter_takes_it(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        await pilot.press("t")
+        assert isinstance(pilot.app.screen, HomeScreen)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+
+
+def test_a_line_takes_no_key_of_what_works_beside_it() -> None:
+    typing = [action for action in ACTIONS if action.with_line]
+    assert all(not is_letter(Keymap().keys(a.id)[0]) for a in typing)
