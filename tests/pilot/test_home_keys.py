@@ -29,7 +29,7 @@ async def test_a_key_that_comes_twice_opens_one_screen(
     keys: str, run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        pilot.type(*keys)
+        pilot.type(*(key for letter in keys for key in (letter, "enter")))
         for _ in range(4):
             await pilot.pause(0.05)
         assert isinstance(pilot.app.screen_stack[0], HomeScreen)

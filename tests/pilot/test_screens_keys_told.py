@@ -41,7 +41,7 @@ async def test_home_has_a_line_of_keys_and_shows_every_choice(
 ) -> None:
     async with run(HomeScreen(), size) as pilot:
         keys = pilot.lines()[-1]
-        assert "enter or the letter: choose" in keys
+        assert "enter choose  letter go to" in keys
         assert "? help" in keys
         assert "leave Tangy" in pilot.text()
 
