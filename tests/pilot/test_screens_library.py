@@ -114,7 +114,7 @@ async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
         assert isinstance(pilot.app.screen, DemonstrationsScreen)
         shown = pilot.text()
         assert "2 of 3 in use" in shown
-        assert "1 conflict: press c" in shown
+        assert "1 conflict: press D" in shown
         assert "Ada" in shown and "2026-03-02 09:0" in shown
         assert "unfinished" in shown
         assert "disagrees with demonstration 2 in 1 situation" in shown
@@ -231,7 +231,7 @@ async def test_the_way_out_and_the_help_are_always_in_the_key_line(
     async with run(app=program(workspace), size=size) as pilot:
         await press(pilot, "i", "enter")
         assert pilot.lines()[-1].endswith("esc back  ? help")
-        assert "x delete  a again" in pilot.lines()[-1]
+        assert "x put away  / filter" in pilot.lines()[-1]
 
 
 async def test_notes_end_inside_of_the_list(run: Run, workspace: Workspace) -> None:
