@@ -9,7 +9,7 @@ def card_title(name: str) -> str:
 
 
 WHOSE = "Whose card is it?"
-KEY_HINT = "Press b to say whose it is."
+KEY_HINT = "Press {whose_card} to say whose it is."
 LEARNT_NEXT = "Tangy takes the next card it sees there"
 
 

@@ -11,7 +11,7 @@ LIST_HELP = (
     "One line for each demonstration: its number, who showed it and when, how many steps "
     "it has, how many of the situations it shows, and whether Tangy learns from it."
 )
-NONE_TO_LIST = "No demonstrations yet: press t at home to show Tangy a game."
+NONE_TO_LIST = "No demonstrations yet: choose Teach at home to show Tangy a game."
 
 NO_STEPS = "It has no steps."
 NOTHING_LOST = "Nothing is lost: u takes it back."

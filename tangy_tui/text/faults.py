@@ -266,7 +266,8 @@ def still_there_words(fault: Fault, supervision: Supervision) -> str:
     rules = (*known_better, rule)
     conditions = next(filter(None, (one.matched(evidence) for one in rules)), None)
     if conditions is None:
-        keys = "press c to clear." if fault.acknowledged else "press a, and c to clear."
+        clear = "press {accept} to clear."
+        keys = clear if fault.acknowledged else "press {acknowledge}, and {accept} to clear."
         return f"It is gone now: {keys}"
     now = {condition.key: evidence[condition.key] for condition in conditions}
     there = replace(fault, evidence=now, mismatches=())

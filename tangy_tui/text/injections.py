@@ -6,7 +6,7 @@ WHICH = "What should go wrong?"
 NONE_FOUND = "Nothing matches these letters."
 
 NOT_SIMULATED = "You can bring about faults in the simulated room only."
-NO_GAME = "No game is going on: press g to play one first."
+NO_GAME = "No game is going on: press {next} to play one first."
 
 
 def comes_later_words(kind: str) -> str:

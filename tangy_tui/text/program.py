@@ -8,8 +8,8 @@ TAGLINE = "Teach a robot a group activity, and let it run that activity."
 ALL_PHRASES = "All that can be said or typed"
 
 NOTHING_MOVES = "Nothing is moving."
-MOUSE_ON = "Mouse on. Press m to turn it off and select text."
-MOUSE_OFF = "Mouse off: you can select text. Press m to turn it on again."
+MOUSE_ON = "Mouse on. Press {mouse} to turn it off and select text."
+MOUSE_OFF = "Mouse off: you can select text. Press {mouse} to turn it on again."
 COLOURS = {
     "Dark colours": "High contrast on black",
     "Light colours": "Dark on paper",

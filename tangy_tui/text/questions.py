@@ -14,7 +14,7 @@ DID_YOU_SAY = "Did you say: "
 DID_YOU_MEAN = "Did you mean"
 OR_DID_YOU_MEAN = "Or did you mean"
 
-STOPPED_FIRST = "Tangy was stopped: press p to go on first, then answer."
+STOPPED_FIRST = "Tangy was stopped: press {pause} to go on first, then answer."
 GIVE_UP = "Give this game up?"
 GIVE_UP_DETAIL = "The game ends here without an answer. Tangy will ask again next time."
 REJECTED = "Not done. Give a new command."

@@ -210,7 +210,8 @@ class TangyApp(App[None]):
 
     def action_stop(self) -> None:
         """Stop the robot; where nothing could move, say so."""
-        from tangy_tui.ui.base import Dialog
+        from tangy_tui.text.keys import with_keys
+from tangy_tui.ui.base import Dialog
 
         moving = [s for s in self.screen_stack if hasattr(s, "on_stop")]
         if all(isinstance(screen, Dialog) for screen in moving):
@@ -315,6 +316,7 @@ class TangyApp(App[None]):
 
     def say(self, sentence: str, *, bad: bool = False, seconds: float | None = None) -> None:
         """Show a sentence for a few (or so many) s, unless the screen has a better place for it."""
+        sentence = with_keys(sentence, self.keymap)
         take = getattr(self.screen, "take_sentence", None)
         if take is not None and take(sentence):
             return

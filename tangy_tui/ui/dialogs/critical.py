@@ -179,7 +179,8 @@ class CriticalDialog(Dialog[None]):
                 now.update(words)
 
     def _is_there(self) -> str:
-        self._now = clean(still_there_words(self._fault, self._desk.supervision))
+        told = still_there_words(self._fault, self._desk.supervision)
+        self._now = clean(with_keys(told, keymap_of(self.app)))
         return self._now
 
     def say(self, sentence: str) -> None:

@@ -223,6 +223,7 @@ class PlayPanels(TangyScreen[Tally]):
 
     def _tell_now(self, sentence: str, kind: Kind) -> None:
         """Say what a key did, or why it does nothing, where it is seen at every size."""
+        sentence = self._told(sentence)
         if not self.take_sentence(sentence, kind):
             self._write(sentence, kind)
             if not self.query_one(LogView).display:
@@ -234,4 +235,4 @@ class PlayPanels(TangyScreen[Tally]):
                 )
 
     def _write(self, sentence: str, kind: Kind) -> None:
-        self.query_one(LogView).write(sentence, kind)
+        self.query_one(LogView).write(self._told(sentence), kind)

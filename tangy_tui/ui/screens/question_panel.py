@@ -41,13 +41,14 @@ from tangy_tui.learning.verification import (
     Verified,
 )
 from tangy_tui.text import questions as text
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.situations import ALL_RIGHT
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.hearing import hearing_of
-from tangy_tui.ui.keys import foot
+from tangy_tui.ui.keys import foot, keymap_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.performing import perform
 from tangy_tui.ui.screens.question_text import question_words, seen_words
@@ -386,7 +387,7 @@ class AskingPanel(Vertical):
         """Say a sentence under the question, in the place of the last one."""
         self.set_class(bool(sentence), "-says", "-refuses")
         for said in self.query(".said").results(Static):
-            said.update(clean(sentence))
+            said.update(clean(with_keys(sentence, keymap_of(self.app))))
 
     def show_keys(self, *, going: bool) -> None:
         """Say which keys count while the line does not have them."""
