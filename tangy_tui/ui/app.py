@@ -46,6 +46,7 @@ from tangy_tui.app.keymap import Keymap
 from tangy_tui.app.terminal_session import QuestionKey, terminal_session
 from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.text import program as text
+from tangy_tui.text.keys import with_keys
 from tangy_tui.ui.clean_output import CleanOutput, clean
 from tangy_tui.ui.key_reading import KeyReader
 from tangy_tui.ui.keys import DEFAULT, bind
@@ -210,8 +211,7 @@ class TangyApp(App[None]):
 
     def action_stop(self) -> None:
         """Stop the robot; where nothing could move, say so."""
-        from tangy_tui.text.keys import with_keys
-from tangy_tui.ui.base import Dialog
+        from tangy_tui.ui.base import Dialog
 
         moving = [s for s in self.screen_stack if hasattr(s, "on_stop")]
         if all(isinstance(screen, Dialog) for screen in moving):
