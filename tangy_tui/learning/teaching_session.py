@@ -246,10 +246,9 @@ class TeachingSession:
         """Take the present demonstration as complete."""
         if self.demonstration.finished or not (self._logged and self.demonstration.steps):
             raise NotPossible("There is no unfinished game with steps that could be finished.")
-        shown = replace(self.demonstration, finished=True)
-        self._store.append(DemonstrationFinished(demonstration=shown.id))
-        self.demonstration = shown
-        return [Finished(shown)]
+        self._store.append(DemonstrationFinished(demonstration=self.demonstration.id))
+        self.demonstration = replace(self.demonstration, finished=True)
+        return [Finished(self.demonstration)]
 
     def _go_back(self, kept: int) -> list[TeachingEvent]:
         """Undo the last steps of the present demonstration, all of them or none."""

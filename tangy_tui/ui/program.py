@@ -20,6 +20,7 @@ from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.messages import OpenStep
+from tangy_tui.ui.policy_comparison import compare_policies
 from tangy_tui.ui.progress_summary import how_far
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.sounding import SoundingApp
@@ -302,20 +303,7 @@ class Program(SoundingApp):
 
     async def compare(self, first: str | None = None) -> None:
         """Open the comparison of two policies that are chosen; `first` is one of them already."""
-        from tangy_tui.learning.comparison import find_policy
-        from tangy_tui.ui.screens.compare import CompareScreen, choose_two
-
-        workspace = self.workspace
-        wanted = await choose_two(self, workspace, first)
-        if len(wanted) < 2:
-            return
-        found = await self.in_thread(
-            text.RECALLING_BOTH,
-            lambda: [find_policy(workspace.store, workspace.activity, one) for one in wanted],
-        )
-        if found is not None:
-            (a, of_a), (b, of_b) = found
-            await self.push_screen(CompareScreen(workspace, a, b, [*of_a, *of_b]))
+        await compare_policies(self, first)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """List what the command palette offers beside the keys."""
