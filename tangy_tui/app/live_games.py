@@ -18,6 +18,7 @@ from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.fault import fault_documents
+from tangy_tui.monitoring.scoring import GameScore, score_game, scores_document
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ class LiveGames:
         self.faults: list[dict[str, Any]] = []
         self.card_doubts: list[dict[str, Any]] = []
         """Why cards were not judged, as JSON has it."""
+        self.scores: list[GameScore] = []
+        """What was brought about on a bench, and what became of it, game by game."""
         self.seconds = 0.0
         """How long the games took in the robot's time."""
         self.took = 0.0
@@ -85,6 +88,8 @@ class LiveGames:
         self.faults += fault_documents(game.faults, stopped)
         if isinstance(world, BenchedWorld):
             self.tally.add_injections(world.came, world.still_to_come)
+            came = world.injection_log.all
+            self.scores.append(score_game(self.tally.games, came, game.faults, game.book))
 
     def take(self, events: Sequence[Event]) -> list[News]:
         """Count events, log what is new of cards, and return it with who sits where."""
@@ -114,4 +119,5 @@ class LiveGames:
             if world.injections:
                 found["injected"] = self.tally.injected
                 found["did_not_come_about"] = self.tally.absent
+                found |= scores_document(self.scores)
         return found

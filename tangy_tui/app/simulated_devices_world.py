@@ -26,6 +26,7 @@ from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.device_simulator.tablet import Tablet
 from tangy_sim.worlds import injection
 from tangy_sim.worlds.injection import KINDS, Injection, Kind
+from tangy_sim.worlds.injection_log import InjectionLog
 from tangy_sim.worlds.pending_injections import ToCome
 from tangy_tui.app.device_simulator import BenchError, DeviceSimulator
 
@@ -71,6 +72,7 @@ class BenchedWorld(LiveWorld):
         self.injections = tuple(injections)
         self.score = PerceptionScore()
         self.came: list[tuple[int, str]] = []
+        self.injection_log = InjectionLog()
         self._chance = Random(f"{seed}/faults").random
         self._to_come = ToCome((), self._chance)
         self.cards.looked = self._check
@@ -106,6 +108,7 @@ class BenchedWorld(LiveWorld):
         if any(r.device == "voice" and r.state != OK for r in self.health()):
             self.link.do("restart", device="voice")  # it is thought dead until it has spoken
         self.came = []
+        self.injection_log = InjectionLog()
         self._heard, self._listens = 0, False
         self._to_come = ToCome(self.injections, self._chance)
         self._pass_until(lambda: not self.commands.diagnosed(self.health()))
@@ -146,6 +149,7 @@ class BenchedWorld(LiveWorld):
         chosen = KINDS[kind]
         self.bench.do("inject", kind=kind)
         self.came.append((self.tracker.step + 1, kind))
+        self.injection_log.came(chosen, self.tracker.step + 1, self.seconds)
         if kind == "navigation-failed":  # there is no such program on the bench
             self.link.do("fail", device="navigator", state="ERROR")
         self._switch_tablet()
@@ -203,6 +207,8 @@ class BenchedWorld(LiveWorld):
         """Let faults come that are due, and carry out the action."""
         if not self.over:
             self._let_faults_come(action)
+            step = self.tracker.step + 1
+            self.injection_log.look(step, lambda kind: self.can_show(kind, action))
         outcome = super().execute(action)
         if action.behaviour.effect in DRIVES:
             self._note_place()

@@ -7,6 +7,8 @@ from math import ceil, sqrt
 from statistics import fmean, median, stdev
 from typing import Any
 
+from tangy_tui.monitoring.scoring import share_interval as share_interval
+
 
 def summary(values: Sequence[float]) -> dict[str, Any]:
     """Return n, mean, standard deviation (of the sample) and standard error of the mean."""
@@ -18,14 +20,6 @@ def summary(values: Sequence[float]) -> dict[str, Any]:
 def share_of(flags: Sequence[bool]) -> float | None:
     """Return the share of what is true, or None of nothing."""
     return sum(flags) / len(flags) if flags else None
-
-
-def share_interval(share: float, n: int) -> tuple[float, float]:
-    """Return the 95% interval of a share seen in n tries (Wilson), which never leaves [0, 1]."""
-    z = 1.96
-    middle = (share + z * z / (2 * n)) / (1 + z * z / n)
-    half = z * sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half))
 
 
 def spread(values: Sequence[float]) -> dict[str, Any]:

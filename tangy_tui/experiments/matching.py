@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from tangy_tui.experiments.induced import Induced
-from tangy_tui.monitoring.fault import ENDINGS, Fault
+from tangy_tui.monitoring.fault import Fault
+from tangy_tui.monitoring.scoring import seconds_to_recover as seconds_to_recover
 
 RIGHT, AGAIN, WRONG, NOTHING = "right", "again", "wrong cause", "no cause"
 """What a diagnosis can be: of what was induced; of the same once more; of another; of nothing."""
@@ -71,11 +72,3 @@ def match_faults(induced: Sequence[Induced], faults: Sequence[Fault]) -> MatchCo
             found.matches.append(CommandMatch(fault, NOTHING, None))
     found.missed = [one for one in induced if one not in known and one.could_show]
     return found
-
-
-def seconds_to_recover(fault: Fault) -> float | None:
-    """Return the s from the diagnosis until a fault was over or Tangy went on with it, or None."""
-    for move in fault.moves:
-        if move.kind in ENDINGS or move.kind == "went on":
-            return move.seconds - fault.seconds
-    return None

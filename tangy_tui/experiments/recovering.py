@@ -39,6 +39,7 @@ from tangy_tui.experiments.supervised import people_of, supervised
 from tangy_tui.experiments.sweep import Case, Piece, Settings, Sweep, Where
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.monitoring.scoring import share_document
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text import comparison
 
@@ -197,6 +198,8 @@ def _document(pieces: Sequence[Mapping[str, Any]], users: int) -> dict[str, Any]
         "interactions_per_user_game": sum(p["interactions"] for p in pieces) / len(games) / users,
         "faults": [_class_row(row, induced, faults) for row in published.SCENARIO_THREE["faults"]],
         "induced": sum(one["could_show"] for one in induced),
+        "recall": share_document([one["right_cause"] for one in induced if one["could_show"]]),
+        "precision": share_document([fault["verdict"] in (RIGHT, AGAIN) for fault in faults]),
         "did_not_come_about": [
             *chain.from_iterable(piece["not_come"] for piece in pieces),
             *(one["kind"] for one in induced if not one["could_show"]),

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from tangy_tui.text.numbers import counted
 
 
@@ -31,3 +34,25 @@ def injecting_words(example: str) -> str:
 def did_not_come(injected: object, times: int, games: int) -> str:
     """Say of an injected fault in how many games it did not come about."""
     return f"{injected} did not come about in {times} of {counted(games, 'game')}."
+
+
+def score_lines(score: Mapping[str, Any]) -> list[str]:
+    """Say how well what was brought about was recognised: in all, and where it was not."""
+    lines = [
+        f"Recognised: {_share_words(score['recall'])} of what could be noticed.",
+        f"Right: {_share_words(score['precision'])} of what was said.",
+    ]
+    for kind, one in score["kinds"].items():
+        if one["recall"]["n"] and one["recall"]["share"] < 1:
+            lines.append(f"  {kind}: {_share_words(one['recall'])}")
+    if score["false_alarms"]:
+        told = ", ".join(f"{code} ({times})" for code, times in score["false_alarms"].items())
+        lines.append(f"Without a cause: {told}.")
+    return lines
+
+
+def _share_words(share: Mapping[str, Any]) -> str:
+    if not share["n"]:
+        return "none"
+    low, high = share["interval"]
+    return f"{share['share']:.0%} ({low:.0%} to {high:.0%}, n {share['n']})"

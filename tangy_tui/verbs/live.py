@@ -15,7 +15,7 @@ from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import SWITCHING_ON
-from tangy_tui.text.outcomes import faults_logged
+from tangy_tui.text.outcomes import faults_logged, score_lines
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import HandsFree, Listening, Mic, Mode, SpokenAnswers
 from tangy_tui.verbs.opening import full_screen, open_workspace
@@ -257,6 +257,9 @@ def _play(
         off = document["pose_error_m"]
         print(f"pose error: median {off['median']} m, p95 {off['p95']} m")
         print(f"real-time factor: {document['real_time_factor']}")
+    if "score" in document:
+        for line in score_lines(document["score"]):
+            print(line)
     if document["faults"]:
         print(faults_logged(len(document["faults"])), file=sys.stderr)
     return to_their_end

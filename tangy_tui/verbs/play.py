@@ -11,7 +11,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.text.command_line import TEACH_YOURSELF
-from tangy_tui.text.outcomes import did_not_come, faults_played
+from tangy_tui.text.outcomes import did_not_come, faults_played, score_lines
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import (
     HandsFree,
@@ -210,6 +210,7 @@ def _play_headless(
     from tangy_tui.interaction.game_events import GameEnded, Taught
     from tangy_tui.interaction.tally import Tally
     from tangy_tui.monitoring.fault import fault_documents
+    from tangy_tui.monitoring.scoring import GameScore, score_game, scores_document, summary
     from tangy_tui.text.documents import lesson_document
     from tangy_tui.text.situations import lesson_words
     from tangy_tui.ui import reports
@@ -217,6 +218,7 @@ def _play_headless(
     tally = Tally()
     lessons: list[Lesson] = []
     faults: list[dict[str, Any]] = []
+    scores: list[GameScore] = []
     control = scripted_controller(supervision, past)
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with workspace.store.transaction():  # one commit a game: .1 ms a step instead of 4
@@ -230,6 +232,8 @@ def _play_headless(
         world = supervision.world
         if isinstance(world, FaultyWorld):
             tally.add_injections(world.came, world.still_to_come)
+            came = world.injection_log.all
+            scores.append(score_game(tally.games, came, supervision.faults, supervision.book))
         faults += fault_documents(supervision.faults, stopped)
     beliefs = supervision.persuasion.beliefs
     if as_json:
@@ -239,11 +243,15 @@ def _play_headless(
         if injected:
             told["injected"] = tally.injected
             told["did_not_come_about"] = tally.absent
+            told |= scores_document(scores)
         common.print_json({**tally.to_json(workspace.activity.situations, beliefs, faults), **told})
     else:
         for lesson in lessons:
             print(lesson_words(workspace.activity, lesson))
         reports.print_tally(workspace, tally, beliefs)
+        if injected:
+            for line in score_lines(summary(scores)):
+                print(line)
         for one, times in tally.absent.items():
             print(did_not_come(one, times, games))
         if faults:

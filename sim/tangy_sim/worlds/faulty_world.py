@@ -20,6 +20,7 @@ from tangy_sim.worlds import injection
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.devices import readings
 from tangy_sim.worlds.injection import KINDS, Injection, Kind
+from tangy_sim.worlds.injection_log import InjectionLog
 from tangy_sim.worlds.pending_injections import ToCome
 from tangy_sim.worlds.users import SimulatedUser, UserModel
 from tangy_sim.worlds.world import SimulatedWorld
@@ -72,6 +73,7 @@ class FaultyWorld(SimulatedWorld):
         self.present: dict[str, Present] = {}
         self.came: list[tuple[int, str]] = []
         """The faults that set in, and at which step."""
+        self.injection_log = InjectionLog()
         self._to_come = ToCome(self.injections, self._chance)
         self._unheard: list[SimulatedUser] = []
         self._by_word = False  # whether requests are taken by voice and key
@@ -167,6 +169,7 @@ class FaultyWorld(SimulatedWorld):
     def _set_in(self, kind: Kind, since: float) -> None:
         self.present[kind.name] = Present(kind, since, self._whom(kind))
         self.came.append((self.tracker.step + 1, kind.name))
+        self.injection_log.came(kind, self.tracker.step + 1, self.seconds)
 
     def _whom(self, kind: Kind) -> str | None:
         if kind.shows in (injection.LOOKING, injection.ASKING, injection.CLOSING):
@@ -188,6 +191,7 @@ class FaultyWorld(SimulatedWorld):
             return super().execute(action)
         known = set(self.present)
         self._let_faults_come(action)
+        self.injection_log.look(self.tracker.step + 1, lambda kind: self.can_show(kind, action))
         present = self.present
         before, waited = self.tracker.state(), tuple(self.tracker.queue)
         self._refused = False

@@ -1,0 +1,173 @@
+"""What was brought about in games, held against what was noticed: recall and precision by kind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+from tangy_profiles.faults import FaultBook
+from tangy_sim.worlds.injection_log import Injected
+from tangy_tui.monitoring.drill_rounds import round_kinds
+from tangy_tui.monitoring.fault import ENDINGS, Fault
+
+Z = 1.96  # of a 95% interval
+
+
+def share_interval(share: float, n: int) -> tuple[float, float]:
+    """Return the 95% interval of a share seen in n tries (Wilson), which never leaves [0, 1]."""
+    middle = (share + Z * Z / (2 * n)) / (1 + Z * Z / n)
+    half = Z * sqrt(share * (1 - share) / n + Z * Z / (4 * n * n)) / (1 + Z * Z / n)
+    return max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half))
+
+
+@dataclass(frozen=True)
+class ScoredInjection:
+    """One fault that was brought about, and what became of it; steps, and s of the game's time."""
+
+    game: int
+    kind: str
+    step: int
+    could_show: int | None
+    seen: int | None
+    named: int | None
+    called: str
+    """The code of the fault that it was taken for first, "" where it was not seen."""
+    recovered: float | None
+    """The s from its diagnosis until it was over, or Tangy went on with it."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as `--json` lists it; `step` is when it came about."""
+        return {
+            "game": self.game,
+            "fault": self.kind,
+            "step": self.step,
+            "could_show": self.could_show,
+            "seen": self.seen,
+            "named": self.named,
+            "called": self.called,
+            "recovered_after": self.recovered,
+        }
+
+
+@dataclass(frozen=True)
+class GameScore:
+    """The faults of one game that were brought about, and the codes that nothing had caused."""
+
+    injections: tuple[ScoredInjection, ...]
+    false_alarms: tuple[str, ...]
+
+
+def score_game(
+    number: int, injected: Sequence[Injected], faults: Sequence[Fault], book: FaultBook
+) -> GameScore:
+    """Attribute the faults that were diagnosed in a game to those that were brought about.
+
+    A fault is named right by the code of its kind, or by that which it gives together with others
+    that came (no voice and no screen: mute). A diagnosis of another code, while one that could show
+    is not named yet, has seen that one and named it wrong. What is left is a false alarm.
+    """
+    told = [fault for fault in faults if not fault.asks_only]
+    right = {id(one): _codes(one, injected, book) for one in injected}
+    named: dict[int, Fault] = {}
+    mistaken: dict[int, Fault] = {}
+    false: list[str] = []
+    for fault in told:
+        there = [one for one in injected if one.step <= fault.step + 1]
+        new = [one for one in there if id(one) not in named and fault.code in right[id(one)]]
+        if new:
+            together = fault.code != new[0].kind.code
+            named |= dict.fromkeys(map(id, new if together else new[:1]), fault)
+        elif not any(fault.code in right[id(one)] for one in there):
+            open_ = [one for one in there if id(one) not in named and one.could_show is not None]
+            if open_:
+                mistaken.setdefault(id(open_[-1]), fault)
+            else:
+                false.append(fault.code)
+    scored = []
+    for one in injected:
+        found, wrong = named.get(id(one)), mistaken.get(id(one))
+        first = min(filter(None, (found, wrong)), key=lambda f: f.seconds, default=None)
+        seen = None if first is None else first.step
+        scored.append(
+            ScoredInjection(
+                number,
+                one.kind.name,
+                one.step,
+                one.could_show if seen is None else one.could_show or seen,
+                seen,
+                None if found is None else found.step,
+                "" if first is None else first.code,
+                None if found is None else seconds_to_recover(found),
+            )
+        )
+    return GameScore(tuple(scored), tuple(false))
+
+
+def _codes(one: Injected, injected: Sequence[Injected], book: FaultBook) -> frozenset[str]:
+    came = {other.kind.name for other in injected}
+    together = (
+        way.code
+        for way in round_kinds(book)
+        if len(way.injections) > 1 and one.kind.name in way.injections and came >= {*way.injections}
+    )
+    return frozenset((one.kind.code, *together))
+
+
+def seconds_to_recover(fault: Fault) -> float | None:
+    """Return the s from the diagnosis until a fault was over or Tangy went on with it, or None."""
+    for move in fault.moves:
+        if move.kind in ENDINGS or move.kind == "went on":
+            return move.seconds - fault.seconds
+    return None
+
+
+def summary(games: Sequence[GameScore]) -> dict[str, Any]:
+    """Return recall and precision, in all and for each kind, with n and 95% intervals.
+
+    Recall: of those that could show, the share that was named right. Precision of a kind: of those
+    that were seen, the share that was named right at first; in all, false alarms count as well.
+    """
+    every = [one for game in games for one in game.injections]
+    false = [code for game in games for code in game.false_alarms]
+    kinds = dict.fromkeys(one.kind for one in every)
+    return {
+        "kinds": {kind: _of_kind([one for one in every if one.kind == kind]) for kind in kinds},
+        "recall": _recall(every),
+        "precision": share_document([*_right_at_first(every), *(False for _ in false)]),
+        "false_alarms": {code: false.count(code) for code in dict.fromkeys(false)},
+        "games_with_a_false_alarm": sum(bool(game.false_alarms) for game in games),
+    }
+
+
+def scores_document(games: Sequence[GameScore]) -> dict[str, Any]:
+    """Return every injection, and what they add up to, as `--json` prints it."""
+    scored = [one.to_json() for game in games for one in game.injections]
+    return {"scored": scored, "score": summary(games)}
+
+
+def _recall(those: Sequence[ScoredInjection]) -> dict[str, Any]:
+    return share_document([one.named is not None for one in those if one.could_show is not None])
+
+
+def _right_at_first(those: Sequence[ScoredInjection]) -> list[bool]:
+    return [one.named == one.seen for one in those if one.seen is not None]
+
+
+def _of_kind(those: Sequence[ScoredInjection]) -> Mapping[str, Any]:
+    return {
+        "came": len(those),
+        "recall": _recall(those),
+        "precision": share_document(_right_at_first(those)),
+        "recovered": sum(one.recovered is not None for one in those),
+    }
+
+
+def share_document(flags: Sequence[bool]) -> dict[str, Any]:
+    """Return how many there are, which share is true, and its 95% interval."""
+    if not flags:
+        return {"n": 0, "share": None, "interval": None}
+    share = sum(flags) / len(flags)
+    low, high = share_interval(share, len(flags))
+    return {"n": len(flags), "share": round(share, 3), "interval": [round(low, 3), round(high, 3)]}

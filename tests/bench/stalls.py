@@ -1,0 +1,133 @@
+"""What becomes of a robot process that is stopped in a game: dialogs, their causes, and the base.
+
+Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]...`. Games are played on the
+bench in real time, with staff who clear what halts the robot. Its process is stopped for so many s
+at moments that are spread over a game, N times for each length. A dialog is a critical fault.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import threading
+import time
+from collections import Counter
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+
+from tangy_profiles.fault_file import load_faults
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.robot_opening import open_bench
+from tangy_tui.app.scripted_staff import go_on_by_script
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.learning.scripted_teacher import SCRIPTED
+from tangy_tui.monitoring.fault import Diagnosed
+from tests.bench.fault_latency import teach
+
+RESTS = (2.0, 6.0)  # s between two stalls, by chance
+SETTLES = 4.0  # s after a stall in which what comes of it is told
+
+
+@dataclass
+class Stall:
+    """One stall: how long it was, in which stage, the dialogs after it, and when the base stood."""
+
+    seconds: float
+    stage: str
+    dialogs: list[str] = field(default_factory=list)
+    stood: float | None = None
+
+
+def play(
+    control: GameController, over: threading.Event, held: threading.Event, dialogs: list[str]
+) -> None:
+    """Play games until it is over; while the process is `held` staff only look."""
+    while not over.is_set():
+        control.begin()
+        while not control.supervision.over and not over.is_set():
+            waits = held.is_set() and control.supervision.halted is not None
+            events = control.look() if waits else go_on_by_script(control, expert=True)
+            for event in events or ():
+                if isinstance(event, Diagnosed) and event.fault.critical:
+                    dialogs.append(event.fault.code)
+            if waits:
+                time.sleep(0.05)
+
+
+def stall(world: BenchedWorld, seconds: float, held: threading.Event, dialogs: list[str]) -> Stall:
+    """Stop the robot process for so many s, and look what comes of it."""
+    pid = world.link.pid
+    assert pid is not None
+    one = Stall(seconds, world.tracker.state().situation.stage)
+    before = len(dialogs)
+    moving = world.truth()["moving"]
+    held.set()
+    os.kill(pid, signal.SIGSTOP)
+    began = time.monotonic()
+    try:
+        while (now := time.monotonic()) < began + seconds:
+            if moving and one.stood is None and not world.truth()["moving"]:
+                one.stood = now - began
+            time.sleep(0.01)
+    finally:
+        os.kill(pid, signal.SIGCONT)
+    until = time.monotonic() + SETTLES
+    while time.monotonic() < until:
+        if moving and one.stood is None and not world.truth()["moving"]:
+            one.stood = time.monotonic() - began
+        time.sleep(0.02)
+        if time.monotonic() > until - SETTLES / 2:
+            held.clear()
+    one.dialogs = dialogs[before:]
+    return one
+
+
+def main() -> None:
+    """Play, stop, and print what came of it."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--times", type=int, default=10)
+    parser.add_argument("--seconds", type=float, action="append")
+    given = parser.parse_args()
+    lengths = given.seconds or [0.3, 1.0, 4.0, 10.0]
+    chance, dialogs = Random(1), list[str]()
+    over, held = threading.Event(), threading.Event()
+    with TemporaryDirectory() as folder, closing(Workspace(Path(folder))) as workspace:
+        teach(workspace)
+        policy, _ = load_policy(workspace.store, workspace.activity)
+        book = load_faults(workspace.robot)
+        with open_bench(
+            workspace, seed=1, stepped=False, pace=1.0, book=book, kind=BenchedWorld
+        ) as world:
+            supervision = workspace.supervision(policy, 1, asks=True, world=world)
+            control = GameController(supervision, SCRIPTED, robot=world, paced=False)
+            game = threading.Thread(target=play, args=(control, over, held, dialogs))
+            game.start()
+            found: list[Stall] = []
+            for seconds in lengths * given.times:
+                time.sleep(chance.uniform(*RESTS))
+                found.append(stall(world, seconds, held, dialogs))
+                print(found[-1], flush=True)
+            over.set()
+            control.break_off()
+            game.join(60)
+            pauses = world.link.state.pauses
+    for seconds in lengths:
+        those = [one for one in found if one.seconds == seconds]
+        codes = Counter(code for one in those for code in one.dialogs)
+        stood = sorted(one.stood for one in those if one.stood is not None)
+        print(
+            f"{seconds:g} s x {len(those)}: {sum(bool(o.dialogs) for o in those)} with a dialog, "
+            f"{max(len(o.dialogs) for o in those)} at most, {dict(codes)}; base stood after "
+            f"{[round(s, 2) for s in stood]} s; stages {dict(Counter(o.stage for o in those))}"
+        )
+    print("pauses", pauses)
+
+
+if __name__ == "__main__":
+    main()
