@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
@@ -10,7 +10,7 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
-from tangy_profiles.scene import Scene
+from tangy_profiles.scene import Arranged, Scene
 from tangy_profiles.state import ActivityState, Outcome
 
 
@@ -68,4 +68,14 @@ class World(Protocol):
 
     def recover(self, remedy: Remedy) -> float:
         """Do something about a fault; return how long that took, in s."""
+        ...
+
+
+@runtime_checkable
+class Arranging(Protocol):
+    """A world that sees to it that everything comes about, and says what comes next."""
+
+    @property
+    def coming(self) -> Arranged | None:
+        """What is about to come about, None where nothing is."""
         ...

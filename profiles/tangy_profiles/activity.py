@@ -49,6 +49,10 @@ class StageRule:
     at_least: int = 0
     not_yet: Mapping[str, str] = field(default_factory=dict)
     """By request (ANR, AR): how to say that nobody has shown this stage yet."""
+    label: Mapping[str, str] = field(default_factory=dict)
+    """By request: what people call this stage."""
+    now: Mapping[str, str] = field(default_factory=dict)
+    """By request: what a host might do now, in a sentence; {name} is who asks."""
 
 
 @dataclass(frozen=True)
@@ -101,11 +105,15 @@ class Activity:
         """Write a triple in a few words: the stage, and what matters about the attended person.
 
         Within the stage of helping that is how the person is doing, elsewhere whether somebody
-        asks.
+        asks. A stage has the name that the activity gives it for people, if it gives it one.
         """
         stage, request, user_state = situation
+        rules = (rule for rule in self.stage_rules if rule.stage == stage)
+        label = next((words for rule in rules if (words := rule.label.get(request))), "")
         if self.reads(stage) or user_state != self.unread:
-            return f"{stage} · {self.state_label(user_state)}"
+            return f"{label or stage}: {self.state_label(user_state)}"
+        if label:
+            return label
         return f"{stage} · {'nobody' if request == 'ANR' else 'somebody'} asks"
 
     def not_yet(self, situation: Situation) -> str:
@@ -118,6 +126,25 @@ class Activity:
             rules = (rule for rule in self.stage_rules if rule.stage == stage)
             words = next((w for rule in rules if (w := rule.not_yet.get(request))), "")
         return words or f"not shown yet: {self.in_words(situation)}"
+
+    def host_words(self, situation: Situation) -> str:
+        """Say what a host might do in a situation, {name} for the person; "" if nothing is said."""
+        stage, request, user_state = situation
+        if self.reads(stage):
+            return next((s.now for s in self.user_states if s.name == user_state), "")
+        rules = (rule for rule in self.stage_rules if rule.stage == stage)
+        return next((words for rule in rules if (words := rule.now.get(request))), "")
+
+    def behaviour_words(self, name: str) -> str:
+        """Return what people call a behaviour; one that the activity does not know, by its name."""
+        known = self.behaviours.get(name)
+        return name if known is None else known.question
+
+    def behaviour_named(self, words: str) -> str:
+        """Return the name of the behaviour that people call so; other words as they are."""
+        wanted = " ".join(words.casefold().split())
+        named = (b.name for b in self.behaviours.values() if b.question.casefold() == wanted)
+        return words if words in self.behaviours else next(named, words)
 
     @cached_property
     def stages(self) -> tuple[str, ...]:
@@ -320,6 +347,7 @@ def _user_states(top: Table) -> tuple[CardState, ...]:
                 entry.choice("checker", CHECKERS),
                 entry.text("hint", ""),
                 entry.text("not_yet", ""),
+                _sentence(entry, "now", entry.text("now", "")),
             )
         )
         entry.close()
@@ -357,27 +385,38 @@ def _stage_rules(top: Table, behaviours: dict[str, Behaviour]) -> tuple[StageRul
     for entry in top.tables("stages"):
         stage = entry.text("name")
         condition = entry.choice("when", CONDITIONS)
-        not_yet = _not_yet(entry.table("not_yet", optional=True))
+        not_yet, label = _by_request(entry, "not_yet"), _by_request(entry, "label")
+        now = _by_request(entry, "now")
+        for sentence in now.values():
+            _sentence(entry, "now", sentence)
         if condition in ("before", "after"):
-            rules.append(
-                StageRule(stage, condition, entry.choice("behaviour", behaviours), not_yet=not_yet)
-            )
+            named = entry.choice("behaviour", behaviours)
+            rule = StageRule(stage, condition, named, not_yet=not_yet, label=label, now=now)
         elif condition == "count":
             counted = entry.choice("behaviour", behaviours)
             since = entry.choice("since", behaviours)
             if since == counted:
                 raise entry.wrong("since", "must be another behaviour than the counted one.")
             every = entry.whole("every", 1, 999)
-            rules.append(StageRule(stage, condition, counted, since, every, not_yet))
+            rule = StageRule(stage, condition, counted, since, every, not_yet, label, now)
         else:
-            rules.append(StageRule(stage, condition, not_yet=not_yet))
+            rule = StageRule(stage, condition, not_yet=not_yet, label=label, now=now)
+        rules.append(rule)
         entry.close()
     if not rules or rules[-1].condition != "otherwise":
         raise top.wrong("stages", "the last one must be when = 'otherwise'.")
     return tuple(rules)
 
 
-def _not_yet(table: Table) -> Mapping[str, str]:
+def _sentence(table: Table, key: str, sentence: str) -> str:
+    """Check that nothing but {name} is to be filled into a sentence."""
+    if "{" in sentence.replace("{name}", "") or "}" in sentence.replace("{name}", ""):
+        raise table.wrong(key, "can have nothing filled in but {name}.")
+    return sentence
+
+
+def _by_request(entry: Table, key: str) -> Mapping[str, str]:
+    table = entry.table(key, optional=True)
     words = {request: table.text(request) for request in ("ANR", "AR") if request in table}
     table.close(also=("ANR", "AR"))
     return MappingProxyType(words)

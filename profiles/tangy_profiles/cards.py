@@ -117,6 +117,8 @@ class CardState:
     checker: str
     hint: str
     not_yet: str = ""
+    now: str = ""
+    """What a host might do now, in a sentence; {name} is the person."""
 
 
 def judge(states: Sequence[CardState], deck: Deck, marked: int, called: int) -> str:

@@ -17,6 +17,18 @@ class CardView:
 
 
 @dataclass(frozen=True, slots=True)
+class Arranged:
+    """What a guided game is about to bring about: whose card will be how when they ask.
+
+    `hidden`: the card is out of view when the robot arrives.
+    """
+
+    person: str
+    user_state: str
+    hidden: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Scene:
     """Robot, people and game at one moment.
 

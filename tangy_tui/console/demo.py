@@ -39,7 +39,8 @@ def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[
                 case Executed(_, step, _, _, speech, _) if step.state.situation not in seen:
                     seen.add(step.state.situation)
                     write(f"   new: {activity.in_words(step.state.situation)}")
-                    write(f"        teacher: {step.behaviour}. Tangy: {speech}")
+                    done = activity.behaviour_words(step.behaviour)
+                    write(f"        teacher: {done}. Tangy: {speech}")
         steps = len(teaching.demonstration.steps)
         write(demo.shown_so_far(steps, len(seen), len(activity.situations)))
     policy = learn(workspace)
@@ -49,7 +50,7 @@ def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[
     for situation in activity.situations:
         decision = policy.decide(situation)
         write(
-            f"   {activity.in_words(situation)} -> {decision.behaviour} "
+            f"   {activity.in_words(situation)} -> {activity.behaviour_words(decision.behaviour)} "
             f"({decision.share:.0%} of the votes, {decision.seen} times shown)"
         )
     write(demo.effects_known(len(effects.values)))

@@ -47,6 +47,7 @@ from tangy_tui.learning.verification import (
     answer_help,
 )
 from tangy_tui.speech.input import Heard, SpeechInput
+from tangy_tui.text.coach import coach_words
 from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
 from tangy_tui.text.teaching_commands import (
@@ -277,7 +278,7 @@ class TeachingLines:
             case "why":
                 self._write_all(self._why())
             case "where":
-                self._where()
+                self._where(fully=True)
             case _:
                 self._write(HELP)
                 for behaviour in self._teaching.activity.behaviours.values():
@@ -295,13 +296,16 @@ class TeachingLines:
         if typed is not None and typed.done() and read_answer(typed.result() or "") is not None:
             self._typed = None
 
-    def _where(self) -> None:
+    def _where(self, *, fully: bool = False) -> None:
         teaching = self._teaching
         state = teaching.world.observe()
-        self._write(
-            f"Now: {teaching.activity.in_words(state.situation)}. "
-            + state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
-        )
+        scene = teaching.world.scene()
+        activity, name = teaching.activity, teaching.name
+        words = coach_words(activity, state, scene, name)
+        if fully:
+            words = f"{activity.in_words(state.situation)}. "
+            words += state_words(activity, state, scene, name)
+        self._write(f"Now: {words}")
 
     def _tell(self, events: Sequence[TeachingEvent]) -> None:
         if self._ears is not None:

@@ -13,13 +13,13 @@ def why_not(activity: Activity, state: ActivityState, decision: Decision) -> str
     """Say why Tangy does not act by itself here."""
     situation = activity.in_words(state.situation)
     if decision.contested:
-        answers = " or ".join(behaviour for behaviour, _ in decision.votes)
+        answers = " or ".join(activity.behaviour_words(b) for b, _ in decision.votes)
         return f"Demonstrations disagree about what to do here: {situation} ({answers})."
     if not decision.seen:
         return f"Nobody has shown Tangy what to do here yet: {situation}."
     return (
         f"Tangy is not sure what to do here: {situation} ({decision.share:.0%} of the votes for "
-        f"{decision.behaviour})."
+        f"{activity.behaviour_words(decision.behaviour)})."
     )
 
 

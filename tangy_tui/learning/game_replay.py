@@ -10,7 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_tui.learning.editing import new_id
-from tangy_tui.learning.library import Library
+from tangy_tui.learning.library import Library, LibraryEntry
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.world import World
 
@@ -65,3 +65,13 @@ def shown_again(library: Library, again: Again, teacher: str) -> Demonstration:
         origin="again",
         of=(source.id,),
     )
+
+
+def unfinished(library: Library, teacher: str, *, guided: bool) -> LibraryEntry | None:
+    """Return the last unfinished demonstration of a teacher; `guided`: a guided one is wanted."""
+    for entry in reversed(library.entries.values()):
+        kept = entry.demonstration
+        wanted = kept.guided or not guided
+        if wanted and kept.teacher == teacher and not kept.finished and not entry.hidden:
+            return entry
+    return None

@@ -139,7 +139,8 @@ class Remarks:
         state, behaviour = step.state, activity.behaviour(step.behaviour)
         target = step.target
         if behaviour.effect == "go to user" and target is not None:
-            if state.user(target).request == "AR" or not self._is_news("person", state.situation):
+            asked = all(user.request == "AR" for user in state.users if user.id == target)
+            if asked or not self._is_news("person", state.situation):
                 return None
             return WrongPerson(shown.number, step, state.attended)
         if activity.expected.get(state.situation) == step.behaviour:

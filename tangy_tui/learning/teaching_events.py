@@ -7,6 +7,7 @@ from typing import Literal, TypeAlias
 
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.scene import Arranged
 from tangy_profiles.state import Outcome
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.verification import (
@@ -142,6 +143,13 @@ class Settled:
 
 
 @dataclass(frozen=True, slots=True)
+class Announced:
+    """A guided game is about to bring this about."""
+
+    arranged: Arranged
+
+
+@dataclass(frozen=True, slots=True)
 class StepUndone:
     """Step `number` was taken back; the world is as it was before it."""
 
@@ -173,6 +181,7 @@ TeachingEvent: TypeAlias = (
     | Executed
     | Remark
     | Settled
+    | Announced
     | StepUndone
     | Begun
     | Finished

@@ -25,9 +25,16 @@ from tangy_profiles.teaching_records import (
     DemonstrationStepUndone,
 )
 from tangy_tui.language.commands import Learnt, Phrasebook
+from tangy_tui.learning.announcements import Announcements
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.editing import Editor, NotPossible, new_id
-from tangy_tui.learning.game_replay import MakeWorld, replay_game, shown_again
+from tangy_tui.learning.game_replay import (
+    MakeWorld,
+    ReplayedGame,
+    replay_game,
+    shown_again,
+    unfinished,
+)
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.remarks import Remarks
 from tangy_tui.learning.teaching_events import (
@@ -62,6 +69,7 @@ from tangy_tui.world import World
 _LOG = logging.getLogger(__name__)
 
 NO_REMARK = "There is nothing to settle: the last step raised no question."
+ANOTHER_SIMULATOR = "The unfinished game was made with another simulator; a new one begins."
 NOTHING_SAID = "(nothing: there are no numbers to say)"
 
 
@@ -104,9 +112,12 @@ class TeachingSession:
         self.teacher = teacher
         self.demonstration: Demonstration
         self.world: World
+        self.numbers: tuple[tuple[int, ...], ...] = ()
+        """The numbers that each step of the demonstration was about."""
         self.guided, self._first = guided, again
         self._verifier: Verifier
         self._undone: list[Step] = []
+        self._announcements = Announcements()
         self._people = {person.id: person for person in people}
         self._names = {person.id: person.name for person in people}
         self._store, self._make_world = store, make_world
@@ -158,28 +169,18 @@ class TeachingSession:
         """
         if self._first is not None:
             return self.check()
-        if resume:
-            entries = read_library(self._store, self.activity.name).entries.values()
-            for entry in reversed(entries):
-                kept = entry.demonstration
-                if self.guided and not kept.guided:
-                    continue  # a guided game was asked for
-                if kept.teacher == self.teacher and not kept.finished and not entry.hidden:
-                    world = self._replay(kept)
-                    if world is not None:
-                        self._enter(kept, world)
-                        self._undone = list(entry.undone)
-                        self._logged = True
-                        self._seed = max(self._seed, kept.seed + 1)
-                        return [Begun(kept, resumed=True)]
-                    return [
-                        Refused(
-                            "The unfinished demonstration was made with another simulator; "
-                            "it is kept, and a new one begins."
-                        ),
-                        *self._begin_new(),
-                    ]
-        return self._begin_new()
+        library = read_library(self._store, self.activity.name)
+        entry = unfinished(library, self.teacher, guided=self.guided) if resume else None
+        if entry is None:
+            return self._begin_new()
+        kept = entry.demonstration
+        if (replay := self._replay(kept)) is None:
+            return [Refused(ANOTHER_SIMULATOR), *self._begin_new()]
+        self._enter(kept, replay)
+        self._undone = list(entry.undone)
+        self._logged = True
+        self._seed = max(self._seed, kept.seed + 1)
+        return [Begun(kept, resumed=True)]
 
     def check(self) -> list[TeachingEvent]:
         """Try what is to be shown again, before a screen is opened for it.
@@ -231,7 +232,7 @@ class TeachingSession:
         who, of = tuple(self._names), self.activity.name
         new = Demonstration(new_id(), of, self.teacher, self._seed, who, guided=self.guided)
         self._seed += 1
-        self._enter(new, self._make_world(new))
+        self._enter(new, ReplayedGame(self._make_world(new), ()))
         self._logged = False
         return [Begun(new, resumed=False)]
 
@@ -255,8 +256,8 @@ class TeachingSession:
         steps = len(self.demonstration.steps)
         if not 0 <= kept < steps:
             return [Refused(f"There is no step {kept + 1} to show again.")]
-        before, undone = (self.demonstration, self.world), self._undone
-        logged = self._logged
+        before = (self.demonstration, ReplayedGame(self.world, self.numbers))
+        undone, logged = self._undone, self._logged
         try:
             with self._store.transaction():
                 return [event for _ in range(steps - kept) for event in self._undo()]
@@ -271,17 +272,17 @@ class TeachingSession:
             new = shown_again(library, again, self.teacher)
         except TangyError as error:
             return [Refused(str(error))]
-        world = self._replay(new)
-        if world is None:
+        replay = self._replay(new)
+        if replay is None:
             return [Refused("It was made with another simulator: show the whole game anew.")]
-        self._enter(new, world)
+        self._enter(new, replay)
         self._logged = False
         return [Begun(new, resumed=False)]
 
-    def _enter(self, demonstration: Demonstration, world: World) -> None:
+    def _enter(self, demonstration: Demonstration, led_to: ReplayedGame) -> None:
         """Go on with a demonstration, among those who take part, in a world that it led to."""
         self.demonstration = demonstration
-        self.world = world
+        self.world, self.numbers = led_to.world, led_to.numbers
         self._undone = []
         present = [self._people.get(id, Person(id, id)) for id in demonstration.people]
         self.phrasebook = Phrasebook(self.activity, present, self._learnt)
@@ -311,7 +312,7 @@ class TeachingSession:
         self._undone = []
         if (remark := self.remark) is not None:
             events.insert(1, remark)
-        return events
+        return [*events, *self._announcements.news(self.world)]
 
     def _carry_out(
         self, behaviour: Behaviour, target: str | None, log: Callable[[Step], Step]
@@ -330,18 +331,18 @@ class TeachingSession:
                 if finished:
                     self._store.append(DemonstrationFinished(demonstration=self.demonstration.id))
         except BaseException:
-            self.world = self._replay(self.demonstration) or self.world
+            replay = self._replay(self.demonstration)
+            self.world = self.world if replay is None else replay.world
             raise
         self._logged = True
+        self.numbers = (*self.numbers, outcome.numbers)
         self.demonstration = replace(self.demonstration.with_step(step), finished=finished)
         speech, image = self.activity.words_of(action, outcome, self.name)
         number, speech = len(self.demonstration.steps), speech or NOTHING_SAID
         events: list[TeachingEvent] = [Executed(number, step, action, outcome, speech, image)]
         shown = Shown(self.demonstration.id, self.teacher, number, step)
         self._remarks.notice(shown, over=finished)
-        if finished:
-            events.append(Finished(self.demonstration))
-        return events
+        return [*events, Finished(self.demonstration)] if finished else events
 
     def _settle(self, answer: RemarkAnswer) -> list[TeachingEvent]:
         if answer == "undo" and self.remark is not None:
@@ -360,7 +361,7 @@ class TeachingSession:
             return [Refused("There is no step to undo.")]
         last, number = self.demonstration.steps[-1], len(self.demonstration.steps)
         shorter = self.demonstration.without_last()
-        if (world := self._replay(shorter)) is None:
+        if (replay := self._replay(shorter)) is None:
             return [Refused("This step cannot be undone: the simulator has changed since.")]
         with self._store.transaction():
             self._log_beginning()
@@ -368,7 +369,7 @@ class TeachingSession:
             self._remarks.take_back(shorter.id, number, last)
         self._logged = True
         undone = [*self._undone, last]
-        self._enter(shorter, world)
+        self._enter(shorter, replay)
         self._undone = undone
         return [StepUndone(number, last)]
 
@@ -394,7 +395,6 @@ class TeachingSession:
         self._remarks.open = None  # it was said when the step was shown first
         return events
 
-    def _replay(self, demonstration: Demonstration) -> World | None:
+    def _replay(self, demonstration: Demonstration) -> ReplayedGame | None:
         """Make the world that a demonstration led to; None if its states come out differently."""
-        replay = replay_game(self.activity, self._make_world, demonstration)
-        return None if replay is None else replay.world
+        return replay_game(self.activity, self._make_world, demonstration)

@@ -20,6 +20,7 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
         votes: with a sentence on the votes; without it, they are drawn beside the sentences.
     """
     decision = why.decision
+    done = activity.behaviour_words(decision.behaviour)
     sentences = [f"Situation: {activity.in_words(why.situation)}."]
     teachers = dict.fromkeys(shown.teacher for shown in why.rests_on)
     times = "once" if len(why.rests_on) == 1 else f"{len(why.rests_on)} times"
@@ -31,21 +32,20 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
     elif not decision.seen:
         sentences.append("Nobody has shown Tangy what to do here: it does not act, it asks.")
     elif not why.rests_on:
-        sentences.append(f"A teacher said that {decision.behaviour!r} is right here.")
+        sentences.append(f"A teacher said that {done!r} is right here.")
     else:
-        sentences.append(
-            f"{decision.behaviour!r} was shown here {times}, by {', '.join(teachers)}."
-        )
+        sentences.append(f"{done!r} was shown here {times}, by {', '.join(teachers)}.")
         if decision.right and why.against:
-            sentences.append(
-                f"A teacher said that {listed(map(repr, decision.right), 'or')} is right here."
-            )
+            right = listed((repr(activity.behaviour_words(b)) for b in decision.right), "or")
+            sentences.append(f"A teacher said that {right} is right here.")
         if not decision.sure:
             sentences.append(
                 f"Fewer than {SURE:.0%} of the trees agree: Tangy does not act here, it asks."
             )
     if votes:
-        shares = ", ".join(f"{behaviour} {share:.0%}" for behaviour, share in decision.votes)
+        shares = ", ".join(
+            f"{activity.behaviour_words(b)} {share:.0%}" for b, share in decision.votes
+        )
         sentences.append(f"Votes of the trees: {shares}.")
     if why.near:
         guesses = dict.fromkeys(activity.in_words(s.step.state.situation) for s in why.near)
@@ -53,15 +53,16 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
     return sentences
 
 
-def shown_words(shown: Shown, name: Callable[[str], str]) -> str:
+def shown_words(activity: Activity, shown: Shown, name: Callable[[str], str]) -> str:
     """Name a demonstrated step: what, where it stands, by whom.
 
     Args:
+        activity: what was shown.
         shown: a demonstrated step, and of which demonstration.
         name: what to call a demonstration, by its id.
     """
     where = f"step {shown.number} of {name(shown.demonstration)}"
-    return f"{shown.step.behaviour}: {where}, by {shown.teacher}"
+    return f"{activity.behaviour_words(shown.step.behaviour)}: {where}, by {shown.teacher}"
 
 
 WHY_HEADINGS = ("It rests on", "Shown here as well", "Shown nearby")

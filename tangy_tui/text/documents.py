@@ -160,7 +160,7 @@ def lesson_document(workspace: Workspace, lesson: Lesson) -> dict[str, Any]:
         "replayed": found.steps,
         "changed": [[list(c.situation), c.before, c.after] for c in found.changed],
         "overruled": found.overruled,
-        "words": replay_words(found),
+        "words": replay_words(workspace.activity, found),
     }
 
 

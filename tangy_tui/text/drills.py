@@ -52,7 +52,7 @@ def round_parts(table: Tabletop, shown: Round) -> list[tuple[str, str]]:
     just = "The game has only begun."
     if acted is not None:
         target = f" ({table.name(acted.action.target)})" if acted.action.target else ""
-        just = f"{acted.action.behaviour.name}{target}. It said: {acted.speech}"
+        just = f"{acted.action.behaviour.question}{target}. It said: {acted.speech}"
     where = state_words(activity, shown.state, shown.scene, table.name)
     parts = [
         ("Now", f"{activity.in_words(shown.state.situation)}. {where}"),

@@ -54,7 +54,7 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
             why = f"as {teacher} said" if teacher else f"{decision.share:.0%} of the votes"
             return [
                 f"{number}. {activity.in_words(state.situation)} -> "
-                f"{action.behaviour.name}{target}{how}, {why}",
+                f"{action.behaviour.question}{target}{how}, {why}",
                 f"   Tangy says: {speech}" if outcome.completed else "   It was not carried out.",
             ]
         case Diagnosed() | Moved():
@@ -77,10 +77,10 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
         case Taught(teacher, lesson):
             return [
                 f"   Tangy has learnt that from {teacher}, as {lesson.policy.name!r}.",
-                f"   {replay_words(lesson.replay)}",
+                f"   {replay_words(activity, lesson.replay)}",
             ]
         case DoneOnce(_, instead):
-            return [f"   {once_words(instead)}"]
+            return [f"   {once_words(activity.behaviour_words(instead))}"]
         case GameEnded(pauses=pauses):
             return [ended_words(event), *paused_lines(*pauses)]
 

@@ -24,13 +24,15 @@ UNSETTLED: Mapping[Unsettled, str] = {
 }
 
 
-def replay_words(replay: PolicyReplay) -> str:
+def replay_words(activity: Activity, replay: PolicyReplay) -> str:
     """Say what came out when all steps were gone through with the new policy."""
     if not replay.steps:
         first = "There were no earlier steps to compare with."
     elif replay.changed:
         rows = "; ".join(
-            f"{' / '.join(c.situation)}: was {c.before}, is now {c.after}" for c in replay.changed
+            f"{activity.in_words(c.situation)}: was {activity.behaviour_words(c.before)}, "
+            f"is now {activity.behaviour_words(c.after)}"
+            for c in replay.changed
         )
         first = f"All {replay.steps} earlier steps were gone through. Changed as well: {rows}."
     else:
@@ -74,7 +76,9 @@ def learnt_lines(
     if contested:
         lines.append(f"Demonstrations disagree about {counted(len(contested), 'situation')}:")
         for situation in contested:
-            answers = " or ".join(b for b, _ in policy.decide(situation).votes)
+            answers = " or ".join(
+                activity.behaviour_words(b) for b, _ in policy.decide(situation).votes
+            )
             lines.append(f"  {activity.in_words(situation)}: {answers}")
         lines.append(
             "Tangy will ask there. `tangy demonstrations conflicts` shows the steps. Settle them "
@@ -95,7 +99,8 @@ def changed_lines(activity: Activity, before: str, changed: Sequence[Change]) ->
     lines = [f"Changes from {before!r}, the policy before it:"]
     for change in changed:
         where = activity.in_words(change.situation)
-        lines.append(f"  {where}: was {change.before}, is now {change.after}")
+        before, after = (activity.behaviour_words(b) for b in (change.before, change.after))
+        lines.append(f"  {where}: was {before}, is now {after}")
     return lines
 
 

@@ -37,7 +37,7 @@ def event_words(event: Event, name: Name) -> str:
         case Acted(number=number, action=action, outcome=outcome, speech=speech):
             whom = "" if action.target is None else f" ({name(action.target)})"
             done = "" if outcome.completed else "  not carried out"
-            return f"{number:4} {action.behaviour.name}{whom}: {speech}{done}"
+            return f"{number:4} {action.behaviour.question}{whom}: {speech}{done}"
         case GameEnded(pauses=pauses):
             return " ".join([ended_words(event), *paused_lines(*pauses)])
     return ""

@@ -80,7 +80,8 @@ def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
     target = f" ({name(done.target)})" if done.target else ""
     how = f", {done.strategy}" if done.strategy else ""
     why = f", as {done.teacher} said" if done.teacher else ""
-    lines = [f"{done.number}. {words} -> {done.behaviour}{target}{how}{why}"]
+    behaviour = done.behaviour if activity is None else activity.behaviour_words(done.behaviour)
+    lines = [f"{done.number}. {words} -> {behaviour}{target}{how}{why}"]
     if done.said:
         lines.append(f"   Tangy says: {done.said}")
     if not done.completed:

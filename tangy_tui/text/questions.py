@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tangy_profiles.activity import Activity
 from tangy_tui.learning.explanation import Why
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import ALL_RIGHT
@@ -41,13 +42,14 @@ def acceptable_words(reason: str) -> str:
     return f"{reason} If all is well, type: {ALL_RIGHT[0]}. If not, what should Tangy do?"
 
 
-def given_words(why: Why) -> str:
+def given_words(activity: Activity, why: Why) -> str:
     """Say which answers demonstrations give in a situation, how often and by whom."""
     given: dict[str, list[str]] = {}
     for shown in (*why.rests_on, *why.against):
         given.setdefault(shown.step.behaviour, []).append(shown.teacher)
     parts = [
-        f"{behaviour} ({counted(len(teachers), 'time')}, by {', '.join(dict.fromkeys(teachers))})"
+        f"{activity.behaviour_words(behaviour)} "
+        f"({counted(len(teachers), 'time')}, by {', '.join(dict.fromkeys(teachers))})"
         for behaviour, teachers in given.items()
     ]
     return f"Shown so far: {', '.join(parts)}." if parts else ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Step
@@ -45,10 +45,22 @@ def agreement_words(activity: Activity, policy: Policy) -> str:
     return f"asks in {counted(asks, 'situation')}" if asks else "matches the reference"
 
 
-def step_words(activity: Activity, step: Step, name: Name) -> str:
-    """Write one step of a trajectory: the situation, the behaviour, and for whom."""
+def step_words(
+    activity: Activity, step: Step, name: Name, numbers: Sequence[int] | None = None
+) -> str:
+    """Write one step of a trajectory: the situation, the behaviour, for whom, and what was called.
+
+    Args:
+        activity: what is taught.
+        step: the step.
+        name: gives a person's name for an id.
+        numbers: the numbers that it was about, where they are known.
+    """
     target = f" ({name(step.target)})" if step.target else ""
-    return f"{activity.in_words(step.state.situation)} -> {step.behaviour}{target}"
+    draws = [b.name for b in activity.behaviours.values() if b.effect == "draw"]
+    called = f" {activity.deck.label(numbers[0])}" if numbers and step.behaviour in draws else ""
+    done = f"{activity.behaviour_words(step.behaviour)}{called}{target}"
+    return f"{activity.in_words(step.state.situation)} -> {done}"
 
 
 def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
@@ -114,7 +126,8 @@ def conflict_lines(activity: Activity, library: Library, conflict: Conflict) -> 
     """Put a conflict into lines: the situation, and each answer with where it was given."""
     lines = [f"Demonstrations disagree: {activity.in_words(conflict.situation)}."]
     for number, (behaviour, steps) in enumerate(conflict.answers.items(), 1):
-        lines.append(f"  {number}. {behaviour}, shown {counted(len(steps), 'time')}:")
+        words = activity.behaviour_words(behaviour)
+        lines.append(f"  {number}. {words}, shown {counted(len(steps), 'time')}:")
         lines += [
             plain(f"       step {s.number} of {library.name(s.demonstration)}, by {s.teacher}")
             for s in steps[:MOST_STEPS]
@@ -139,7 +152,8 @@ def edit_words(activity: Activity, library: Library, edit: Edit) -> str:
             return f"{names}: split after step {kept} into {made}."
         case Settlement(resolution=said):
             are = "is" if len(said.right) == 1 else "are all"
-            return f"{activity.in_words(said.situation)}: {', '.join(said.right)} {are} right."
+            right = ", ".join(map(activity.behaviour_words, said.right))
+            return f"{activity.in_words(said.situation)}: {right} {are} right."
 
 
 def lesson_words(activity: Activity, lesson: Lesson) -> str:
@@ -147,7 +161,7 @@ def lesson_words(activity: Activity, lesson: Lesson) -> str:
     made = lesson.demonstration
     step = made.steps[-1]
     where = activity.in_words(step.state.situation)
-    return f"Learnt from {made.teacher}: {where} -> {step.behaviour}."
+    return f"Learnt from {made.teacher}: {where} -> {activity.behaviour_words(step.behaviour)}."
 
 
 ALL_RIGHT = ("all right", "all is right", "that is all right", "all is well", "ok")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from tangy_profiles.activity import Activity
 from tangy_tui.learning.teaching_events import (
+    Announced,
     Begun,
     Contradicted,
     EndedEarly,
@@ -18,6 +20,7 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
+from tangy_tui.text.coach import GUIDED, arranged_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.remarks import remark_lines, settled_words
 from tangy_tui.text.situations import step_words, verification_lines
@@ -28,9 +31,10 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
     match event:
         case Asked() | Offered() | NotUnderstood() | Refused() | Rejected():
             return verification_lines(event, yes)
-        case Executed(number, step, _, _, speech, _):
+        case Executed(number, step, _, outcome, speech, _):
+            words = step_words(teaching.activity, step, teaching.name, outcome.numbers)
             return [
-                f"{number}. {step_words(teaching.activity, step, teaching.name)}",
+                f"{number}. {words}",
                 f"   Tangy says: {speech}",
             ]
         case Contradicted() | Overlooked() | WrongPerson() | EndedEarly():
@@ -38,15 +42,19 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
             return remark_lines(event, teaching.activity, teaching.name, game)
         case Settled():
             return [settled_words(event, teaching.activity)]
+        case Announced(arranged):
+            return [f"   {arranged_words(teaching.activity, arranged, teaching.name)}"]
         case StepUndone(number, step):
-            return [f"Step {number} is undone: {step.behaviour}."]
+            done = teaching.activity.behaviour_words(step.behaviour)
+            return [f"Step {number} is undone: {done}."]
         case Begun(demonstration, resumed):
             if resumed:
                 return [
                     f"Going on with {teaching.teacher}'s demonstration of "
                     f"{len(demonstration.steps)} steps (game {demonstration.seed})."
                 ]
-            return [f"A new demonstration by {teaching.teacher} (game {demonstration.seed})."]
+            begun = f"A new demonstration by {teaching.teacher} (game {demonstration.seed})."
+            return [begun, GUIDED] if demonstration.guided else [begun]
         case Finished(demonstration):
             return [f"The game is over; {len(demonstration.steps)} steps were demonstrated."]
 
@@ -55,7 +63,6 @@ CHOOSE_STEP, CANCEL = "Choose a step", "Cancel"
 LEAVE = "Leave; your steps are kept"
 """What keys do while teaching."""
 
-ALL_SHOWN = "Everything that can happen was shown."
 NO_STEPS = "No steps yet."
 
 SAY_OR_TYPE = "Say or type"
@@ -113,11 +120,12 @@ def new_words(situation: str) -> str:
     return f"New to Tangy: {situation}."
 
 
-def undone_words(undone: Sequence[StepUndone]) -> str:
+def undone_words(undone: Sequence[StepUndone], activity: Activity) -> str:
     """Say which steps were taken back (the last one first), and how they come back."""
     last, first = undone[0], undone[-1]
     if last is first:
-        return f"Step {last.number} is undone: {last.step.behaviour}. F3 brings it back."
+        done = activity.behaviour_words(last.step.behaviour)
+        return f"Step {last.number} is undone: {done}. F3 brings it back."
     return f"Steps {first.number} to {last.number} are undone. F3 brings them back."
 
 
@@ -128,9 +136,10 @@ def beginning_words(teaching: TeachingSession, *, resumed: bool) -> str:
         return f"Going on where you left off, after {counted(len(shown.steps), 'step')}."
     if shown.origin == "again":
         return f"Show it again from step {len(shown.steps) + 1}; the steps before it stay."
-    arranged = ", arranged to show everything" if shown.guided else ""
     title = teaching.activity.title
-    return f"A new game of {title}{arranged}, demonstrated by {teaching.teacher}."
+    if shown.guided:
+        return GUIDED
+    return f"A new game of {title}, demonstrated by {teaching.teacher}."
 
 
 def complete_words(steps: int) -> str:

@@ -103,8 +103,9 @@ class GamePicture:
                 case Taught():
                     self._show_lesson(event)
                 case DoneOnce(_, instead):
-                    log.write(once_words(instead), "good")
-                    self._screen.notify(once_words(instead), markup=False)
+                    once = once_words(self._workspace.activity.behaviour_words(instead))
+                    log.write(once, "good")
+                    self._screen.notify(once, markup=False)
                 case Diagnosed() | Moved():
                     write_fault(self._screen, event)
                     self._show_scene(0, drive=False, pace=pace)
@@ -154,7 +155,7 @@ class GamePicture:
         who = f", {teacher} answered" if teacher else ""
         done = "" if event.outcome.completed else NOT_DONE
         screen.query_one(Transcript).append(
-            f"{words} -> {done}{event.action.behaviour.name}{target}{how}{who}"
+            f"{words} -> {done}{event.action.behaviour.question}{target}{how}{who}"
         )
         screen.query_one(LogView).write(event.speech)
         screen.query_one(RoomView).say(event.speech)
@@ -172,8 +173,9 @@ class GamePicture:
         learnt = lesson_words(activity, lesson)
         log = self._screen.query_one(LogView)
         log.write(learnt, "good")
-        log.write(replay_words(lesson.replay), "warn" if lesson.replay.changed else "good")
-        self.lesson = clean(f"{learnt} {replay_words(lesson.replay)}")
+        replayed = replay_words(activity, lesson.replay)
+        log.write(replayed, "warn" if lesson.replay.changed else "good")
+        self.lesson = clean(f"{learnt} {replayed}")
         self._screen.notify(
             self.lesson,
             severity="warning" if lesson.replay.changed else "information",

@@ -32,7 +32,7 @@ def why_of(workspace: Workspace, policy: Policy, situation: Situation) -> Why:
 def why_step(workspace: Workspace, ground: Ground, number: int) -> WhyDialog:
     """Explain a step of a game."""
     acted = ground.acted
-    done = answered_words(ground.teacher, acted.action.behaviour.name)
+    done = answered_words(ground.teacher, acted.action.behaviour.question)
     return WhyDialog(
         workspace,
         why_of(workspace, ground.policy, acted.state.situation),

@@ -56,7 +56,7 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
         table.add_row(
             str(number),
             activity.in_words(situation),
-            Text(_does(decision, also), style="" if decision.sure else "bold red"),
+            Text(_does(activity, decision, also), style="" if decision.sure else "bold red"),
             f"{decision.share:.2f}" if decision.seen else "",
             str(decision.seen) if decision.seen else Text("never", style="bold red"),
         )
@@ -69,12 +69,12 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
             console.print(Text(line))
     table = _table("What follows", "behaviour", "what was seen afterwards")
     for behaviour in activity.behaviours:
-        variables = effects.values.get(behaviour)
+        words, variables = activity.behaviour_words(behaviour), effects.values.get(behaviour)
         if variables is None:
-            table.add_row(behaviour, Text("never demonstrated", style="bold red"))
+            table.add_row(words, Text("never demonstrated", style="bold red"))
             continue
         table.add_row(
-            behaviour,
+            words,
             "\n".join(f"{v}: {' or '.join(sorted(seen))}" for v, seen in variables.items()),
         )
     console.print(table)
@@ -114,16 +114,16 @@ def print_comparison(
     for row in rows:
         style = "" if row.same else "bold red"
         mark = Text("" if row.same else "!", style=style)
-        answers = (Text(_does(decision), style=style) for decision in (row.a, row.b))
+        answers = (Text(_does(activity, decision), style=style) for decision in (row.a, row.b))
         table.add_row(mark, activity.in_words(row.situation), *answers)
     console.print(table)
     different = sum(not row.same for row in rows)
     console.print(f"{different} of {counted(len(rows), 'row')} differ.")
 
 
-def _does(decision: Decision, also: Sequence[str] = ()) -> str:
+def _does(activity: Activity, decision: Decision, also: Sequence[str] = ()) -> str:
     if decision.sure:
-        return listed([decision.behaviour, *also], "or")
+        return listed(map(activity.behaviour_words, [decision.behaviour, *also]), "or")
     why = "contested" if decision.contested else "never shown" if not decision.seen else "unsure"
     return f"asks ({why})"
 
@@ -138,7 +138,7 @@ def print_tally(workspace: Workspace, tally: Tally, beliefs: Mapping[str, Belief
     for row in tally.rows(workspace.activity.situations):
         table.add_row(
             workspace.activity.in_words(row.situation),
-            row.behaviour,
+            workspace.activity.behaviour_words(row.behaviour),
             str(row.instances),
             f"{row.success:.1%}",
         )

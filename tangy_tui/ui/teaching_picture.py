@@ -8,9 +8,12 @@ from typing import Any
 from textual.screen import Screen
 from textual.widgets import Static
 
+from tangy_profiles.state import ActivityState
+from tangy_tui.app.tour import Tour
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, missing_words
 from tangy_tui.learning.teaching_events import (
+    Announced,
     Begun,
     Contradicted,
     EndedEarly,
@@ -25,15 +28,20 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text import teaching as text
+from tangy_tui.text.coach import arranged_words, coach_words, unseen_words
 from tangy_tui.text.remarks import remark_words, settled_words
-from tangy_tui.text.situations import state_words, step_words
+from tangy_tui.text.situations import step_words
+from tangy_tui.text.tour import tour_words
 from tangy_tui.ui.shown_so_far import ShownSoFar
+from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.coverage_list import CoverageList
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.sayable_list import SayableList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
+WRAPPING = 14  # characters of two lines that breaking them at spaces may cost
 DRIVING_PACE = 4.0
 """How many times faster than the robot the picture of it drives: nobody waits for a picture."""
 
@@ -48,6 +56,8 @@ class TeachingPicture:
         self._workspace = workspace
         self._teaching = teaching
         self._shown = ShownSoFar(workspace, teaching)
+        self.tour: Tour | None = None
+        """The tour, while a new teacher is shown around."""
 
     def tell(self, event: TeachingEvent) -> None:
         """Show what followed from a command."""
@@ -58,6 +68,9 @@ class TeachingPicture:
                 self.remark(event)
             case Settled():
                 self._log.write(settled_words(event, self._teaching.activity), "dim")
+            case Announced(arranged):
+                words = arranged_words(self._teaching.activity, arranged, self._teaching.name)
+                self._log.write(words, "good")
             case StepUndone():
                 self._screen.query_one(Transcript).remove_last()
             case Begun(_, resumed):
@@ -69,7 +82,7 @@ class TeachingPicture:
         """Show a step that was carried out."""
         activity, situation = self._teaching.activity, event.step.state.situation
         self._screen.query_one(Transcript).append(
-            step_words(activity, event.step, self._teaching.name)
+            step_words(activity, event.step, self._teaching.name, event.outcome.numbers)
         )
         if self._shown.first(situation):
             self._log.write(text.new_words(activity.in_words(situation)), "good")
@@ -85,7 +98,7 @@ class TeachingPicture:
 
     def undone(self, undone: Sequence[StepUndone]) -> None:
         """Tell of steps that were taken back, the last one first."""
-        self._log.write(text.undone_words(undone), "warn")
+        self._log.write(text.undone_words(undone, self._teaching.activity), "warn")
         self._screen.query_one(RoomView).say("")
         self._scene(self._teaching.world.observe().place)
 
@@ -95,7 +108,10 @@ class TeachingPicture:
         shown = teaching.demonstration
         self._shown.begin()
         self._screen.query_one(Transcript).fill(
-            [step_words(teaching.activity, s, teaching.name) for s in shown.steps]
+            [
+                step_words(teaching.activity, step, teaching.name, numbers)
+                for step, numbers in zip(shown.steps, teaching.numbers, strict=True)
+            ]
         )
         self._scene(teaching.world.observe().place)
         goes_on = resumed or shown.origin == "again"
@@ -118,12 +134,26 @@ class TeachingPicture:
                 note=f"game {shown.seed}, {teaching.teacher}",
             )
         )
-        words = (
-            text.OVER
-            if teaching.world.over
-            else state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
-        )
-        self._screen.query_one("#now", Static).update(f"Now: {words}")
+        self._now(text.OVER if teaching.world.over else self._coach(state))
+        if teaching.world.over:
+            self._screen.query_one(SayableList).show(())
+        else:
+            self._screen.query_one(SayableList).show(teaching.sayable)
+        self._screen.query_one(CallBoard).show(teaching.world.scene().called)
+
+    def _coach(self, state: ActivityState) -> str:
+        teaching = self._teaching
+        return coach_words(teaching.activity, state, teaching.world.scene(), teaching.name)
+
+    def _now(self, words: str) -> None:
+        """Say what is going on; while the tour lasts, what it shows."""
+        tour, teaching = self.tour, self._teaching
+        if tour is not None and tour.at is not None:
+            phrase = next(iter(teaching.sayable), "")
+            words = tour_words(tour.at, teaching.teacher, teaching.activity.title, phrase)
+        now = self._screen.query_one("#now", Static)
+        now.set_class(tour is not None and tour.at is not None, "-tour")
+        now.update(words if now.has_class("-tour") else f"Now: {words}")
 
     def _scene(self, came_from: str) -> None:
         room = self._screen.query_one(RoomView)
@@ -140,6 +170,9 @@ class TeachingPicture:
         seen = [(activity.in_words(s), found.times[s]) for s in found.seen]
         here = len(self._shown.here().seen)
         self._screen.query_one(CoverageList).show(missing_words(activity, found), seen, here)
+        room = 2 * (self._screen.size.width - 4) - WRAPPING
+        words = unseen_words(activity, found.missing, room)
+        self._screen.query_one("#unseen", Static).update(words)
 
     @property
     def _log(self) -> LogView:

@@ -209,17 +209,18 @@ def resolve(
         if [bool(right), both, instead is not None].count(True) != 1:
             raise TangyError("Say which answer is right: --right ANSWER, or --both.")
         if instead is not None:
-            return editor.resolve(chosen, instead)
-        for answer in right or ():
+            return editor.resolve(chosen, editor.activity.behaviour_named(instead))
+        answers = [editor.activity.behaviour_named(answer) for answer in right or ()]
+        for answer in answers:
             if answer not in chosen.answers:
-                answers = " or ".join(chosen.answers)
+                shown = " or ".join(map(editor.activity.behaviour_words, chosen.answers))
                 raise TangyError(
                     plain(
-                        f"Nobody answered {answer!r}: choose {answers}, or say --instead "
+                        f"Nobody answered {answer!r}: choose {shown}, or say --instead "
                         "BEHAVIOUR if neither is right."
                     )
                 )
-        return editor.resolve(chosen, *(chosen.answers if both else right or ()))
+        return editor.resolve(chosen, *(chosen.answers if both else answers))
 
     _change(data, activity, as_json, settle)
 
@@ -229,7 +230,12 @@ def _chosen(found: list[Conflict], wanted: str, activity: Activity) -> Conflict:
     if wanted.isdecimal() and 1 <= int(wanted) <= len(found):
         return found[int(wanted) - 1]
     simple = " ".join(wanted.casefold().split())
-    named = [c for c in found if simple and simple in activity.in_words(c.situation).casefold()]
+
+    def words(conflict: Conflict) -> str:
+        situation = conflict.situation
+        return f"{activity.in_words(situation)} {' / '.join(situation)}".casefold()
+
+    named = [conflict for conflict in found if simple and simple in words(conflict)]
     if len(named) == 1:
         return named[0]
     there = "there is 1" if len(found) == 1 else f"there are {len(found)}"

@@ -245,7 +245,7 @@ def _why(workspace: Workspace, name: str, wanted: str, as_json: bool) -> None:
         if steps:
             print(f"{title}:")
             for step in steps[:MOST_SHOWN]:
-                print(plain(f"  {shown_words(step, library.name)}"))
+                print(plain(f"  {shown_words(workspace.activity, step, library.name)}"))
             if len(steps) > MOST_SHOWN:
                 print(f"  and {len(steps) - MOST_SHOWN} more (--json has them all)")
 
@@ -259,6 +259,7 @@ def _situation(workspace: Workspace, wanted: str) -> Situation:
     names = {activity.in_words(s).casefold(): s for s in situations}
     names |= {" / ".join(s).casefold(): s for s in situations}
     names |= {"/".join(s).casefold(): s for s in situations}
+    names |= {activity.not_yet(s).casefold(): s for s in situations}
     simple = " ".join(wanted.casefold().split())
     if simple in names:
         return names[simple]

@@ -147,6 +147,17 @@ def test_a_faultless_teacher_hears_nothing(workspace: Workspace, seed: int, guid
     assert remarks(told) == []
 
 
+def test_a_faultless_teacher_of_another_activity_hears_nothing(tmp_path: Path) -> None:
+    for name in ("trivia", str(Path(__file__).parents[1] / "lanterns.toml")):
+        opened = Workspace(tmp_path / Path(name).stem, activity=name)
+        teaching = opened.teaching("Ada", 3)
+        teaching.begin()
+        told = list(ScriptedTeacher(teaching).demonstrate())
+        opened.close()
+        assert teaching.demonstration.finished
+        assert remarks(told) == []
+
+
 # ------------------------------------------------------------------------------- the answers
 
 

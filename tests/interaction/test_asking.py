@@ -112,7 +112,7 @@ def test_demonstrations_that_disagree_are_asked_about(
     _, taught, *_ = reply(facilitation, activity)
     assert isinstance(taught, Taught)
     assert taught.lesson.replay.overruled > 0
-    assert "set aside" in replay_words(taught.lesson.replay)
+    assert "set aside" in replay_words(activity, taught.lesson.replay)
     assert facilitation.policy.decide(where).sure
 
 
@@ -161,7 +161,7 @@ def test_the_replay_goes_through_every_earlier_step(
     assert isinstance(taught, Taught)
     replay = taught.lesson.replay
     assert (replay.steps, replay.changed, replay.overruled) == (earlier, (), 0)
-    assert "nothing else changed" in replay_words(replay)
+    assert "nothing else changed" in replay_words(activity, replay)
 
 
 def test_the_game_goes_on_to_its_end_and_does_not_ask_twice(
@@ -309,7 +309,7 @@ def test_an_answer_that_somebody_gave_settles_the_conflict_for_later_learning_to
     lesson = answered(facilitation, activity, activity.expected[where]).lesson
     assert lesson.policy.decide(where).sure
     assert lesson.replay.unsettled == ""
-    assert "One earlier step said otherwise" in replay_words(lesson.replay)
+    assert "One earlier step said otherwise" in replay_words(activity, lesson.replay)
     assert read_library(store, "bingo").conflicts == []
 
 
@@ -321,7 +321,7 @@ def test_an_answer_that_nobody_gave_before_settles_nothing(
     lesson = answered(facilitation, activity, "celebrate").lesson
     assert lesson.policy.decide(where).contested
     assert lesson.replay.overruled == 0
-    assert "goes on asking here" in replay_words(lesson.replay)
+    assert "goes on asking here" in replay_words(activity, lesson.replay)
     (conflict,) = read_library(store, "bingo").conflicts
     assert set(conflict.answers) == {activity.expected[where], "joke", "celebrate"}
     assert until_asked(facilitation).state.situation == where
@@ -338,7 +338,7 @@ def test_what_a_teacher_has_settled_is_not_unsettled_by_an_answer_to_an_older_po
     facilitation = asking(store, activity, policy)
     lesson = answered(facilitation, activity, "joke").lesson
     assert lesson.policy.decide(where).behaviour == "joke"  # the game goes on
-    assert "A teacher said otherwise before" in replay_words(lesson.replay)
+    assert "A teacher said otherwise before" in replay_words(activity, lesson.replay)
     library = read_library(store, "bingo")
     assert library.resolutions == settled
     (left,) = library.conflicts

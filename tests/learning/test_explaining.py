@@ -103,8 +103,9 @@ def test_what_was_never_shown_is_said_and_where_the_trees_guess_from(
     }
     words = " ".join(why_words(activity, why))
     assert "Nobody has shown Tangy what to do here" in words
-    assert "help · wrong marks" in words
-    assert f"{why.decision.behaviour} {why.decision.share:.0%}" in words
+    assert "helping: wrong marks" in words
+    done = activity.behaviour_words(why.decision.behaviour)
+    assert f"{done} {why.decision.share:.0%}" in words
 
 
 def test_a_conflict_and_its_settlement_are_told(
@@ -121,9 +122,9 @@ def test_a_conflict_and_its_settlement_are_told(
     policy = learn_policy(activity, both, resolutions=[said], settings=FEW)
     why = explain(policy, both, first.state.situation)
     assert [(s.teacher, s.step.behaviour) for s in why.against] == [("Bea", "joke")]
-    assert "A teacher said that 'greeting' is right" in " ".join(why_words(activity, why))
-    assert shown_words(why.against[0], lambda id: f"game {id}") == (
-        f"joke: step 1 of game {other.id}, by Bea"
+    assert "A teacher said that 'greet everyone' is right" in " ".join(why_words(activity, why))
+    assert shown_words(activity, why.against[0], lambda id: f"game {id}") == (
+        f"tell a joke: step 1 of game {other.id}, by Bea"
     )
 
 

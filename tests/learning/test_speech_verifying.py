@@ -222,12 +222,12 @@ class TestBySpeech:
     ) -> None:
         session = Session(workspace, ScriptedEars(live=True))
         session.script = [
-            ("Now: start", GREET),
+            ("Now: Nobody has been", GREET),
             ("Did you say", "y"),
-            ("-> greeting", "quit"),
+            ("-> greet everyone", "quit"),
         ]
         written = session.run()
-        assert any("-> greeting" in line for line in written)
+        assert any("-> greet everyone" in line for line in written)
         assert session.ears.closed == 1
         assert session.ears.asked[:2] == [True, False]
 
@@ -235,29 +235,29 @@ class TestBySpeech:
         session = Session(workspace, ScriptedEars(live=True))
         offer = Say("greet the group", 0.5, (command("joke"), command("greeting")), sure=False)
         session.script = [
-            ("Now: start", offer),
+            ("Now: Nobody has been", offer),
             ("Did you mean", "9" * 5_000),
             (WHICH, "y"),
             (WHICH, "7"),
             ("There is no choice 7.", "2"),
             ("Did you say", "y"),
-            ("-> greeting", "quit"),
+            ("-> greet everyone", "quit"),
         ]
         written = session.run()
         assert session.script == []
-        assert any("-> greeting" in line for line in written)
+        assert any("-> greet everyone" in line for line in written)
 
     def test_a_stop_is_heard_while_a_question_is_open_and_answers_it_with_no(
         self, workspace: Workspace
     ) -> None:
         session = Session(workspace, ScriptedEars(live=True))
         session.script = [
-            ("Now: start", GREET),
+            ("Now: Nobody has been", GREET),
             ("Did you say", StopCommand("stop")),
             (STOPPED, "y"),
             (NO_QUESTION, "quit"),
         ]
-        assert not any("-> greeting" in line for line in session.run())
+        assert not any("-> greet everyone" in line for line in session.run())
 
     @pytest.mark.parametrize("yes", [True, False])
     def test_an_answer_can_be_spoken_where_that_is_switched_on(
@@ -265,9 +265,9 @@ class TestBySpeech:
     ) -> None:
         session = Session(workspace, ScriptedEars(live=True, answers=True))
         session.script = [
-            ("Now: start", GREET),
+            ("Now: Nobody has been", GREET),
             ("Did you say", Reply(yes)),
-            ("-> greeting" if yes else "Not done", "quit"),
+            ("-> greet everyone" if yes else "Not done", "quit"),
         ]
         session.run()
         assert session.script == []
@@ -280,7 +280,7 @@ class TestBySpeech:
         session.ears.hear(GREET, later)
         session.script = [
             ("Did you say: greet", "y"),
-            ("-> greeting", "#"),
+            ("-> greet everyone", "#"),
             ("Did you say: call", "n"),
             ("Not done", "quit"),
         ]
@@ -305,7 +305,7 @@ class TestBySpeech:
         session = Session(workspace, ScriptedEars(live=False))
         session.ears.hear(GREET, StopCommand("stop"), None)
         written = session.run("y", "where")
-        assert any("-> greeting" in line for line in written)
+        assert any("-> greet everyone" in line for line in written)
         assert STOPPED in written
 
     @pytest.mark.parametrize("live", [True, False])

@@ -134,7 +134,7 @@ async def test_what_was_learnt_is_said_in_a_message(
         while "gone through" not in screen_text(pilot.app):
             await pilot.pause(0.02)
         assert "earlier" in screen_text(pilot.app)
-        assert "else changed." in screen_text(pilot.app)
+        assert "changed." in screen_text(pilot.app)
 
 
 async def test_what_is_typed_while_tangy_asks_may_be_a_command_as_well(

@@ -314,7 +314,7 @@ async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_say
         assert isinstance(pilot.app.screen, ConflictsScreen)
         assert last_policy(workspace.store, "bingo") is None
         shown = pilot.text()
-        assert "help · wrong marks" in shown
+        assert "helping: wrong marks" in shown
         assert "remove markers" in shown and "encourage" in shown
         assert "demonstration 1" in shown and "Bea, 2026-03-02" in shown
         await press(pilot, "2")
@@ -359,7 +359,7 @@ async def test_something_else_can_be_right(run: Run, workspace: Workspace) -> No
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "enter", "O")
         assert isinstance(pilot.app.screen, WordsDialog)
-        await press(pilot, "j", "enter")  # joke
+        await press(pilot, "t", "enter")  # tell a joke
         assert library_of(workspace).resolutions[0].right == ("joke",)
 
 

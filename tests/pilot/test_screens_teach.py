@@ -61,7 +61,7 @@ async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
     async with run(app=program(workspace), size=size) as pilot:
         await say(pilot, "greet everyone")
         shown = screen_text(pilot.app)
-        assert "1 start · nobody asks -> greeting" in shown
+        assert "1 the game has not begun -> greet everyone" in shown
         assert "Hello, everybody" in shown
         assert "stage FACILITATE" in shown
         assert steps(workspace) == ["greeting"]
@@ -199,7 +199,7 @@ async def test_it_says_what_nobody_has_shown_yet(run: Run, workspace: Workspace)
         await mid_game(pilot, 15)  # the first person who is helped has wrong marks
         assert "nobody has had a wrong mark yet" not in seen.missing
         said = " ".join(pilot.app.screen.query_one(LogView).sentences)
-        assert "New to Tangy: help · wrong marks" in said
+        assert "New to Tangy: helping: wrong marks" in said
 
 
 async def test_on_a_large_screen_it_stands_below_the_steps(run: Run, workspace: Workspace) -> None:
@@ -329,7 +329,7 @@ async def test_leaving_and_coming_back_finds_the_steps(run: Run, workspace: Work
         await pilot.pause()
         assert isinstance(pilot.app.screen, HomeScreen)
     async with run(app=program(workspace)) as pilot:
-        assert "1 start · nobody asks -> greeting" in screen_text(pilot.app)
+        assert "1 the game has not begun -> greet everyone" in screen_text(pilot.app)
         assert "Going on where you left" in " ".join(pilot.app.screen.query_one(LogView).sentences)
 
 

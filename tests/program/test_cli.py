@@ -71,7 +71,7 @@ def test_the_policy_is_shown_exact_over_all_242_joint_states(tangy: Tangy, taugh
     assert all(row["share"] == 1.0 and row["seen"] for row in shown["rows"])
     text = tangy("policy", "--data", taught)
     assert text.returncode == 0
-    assert "move card closer" in text.stdout
+    assert "ask to move the card closer" in text.stdout
 
 
 def test_the_same_seed_plays_the_same_games(tangy: Tangy, taught: Path, tmp_path: Path) -> None:
@@ -128,11 +128,11 @@ def test_a_session_by_lines_is_left_and_resumed(tangy: Tangy, tmp_path: Path) ->
     data = ("--data", tmp_path / "mine", "--teacher", "Ada", "--plain")
     first = tangy("teach", *data, stdin="greet everyone\ny\nnext number\ny\ntell a joke\nn\n")
     assert first.returncode == 0
-    assert "2. facilitate" in first.stdout
+    assert "2. a number is due" in first.stdout
     assert "You left after 2 steps" in first.stdout
     second = tangy("teach", *data, stdin="undo\nundo\nquit\n")
     assert "Going on with Ada's demonstration of 2 steps" in second.stdout
-    assert "Step 1 is undone: greeting." in second.stdout
+    assert "Step 1 is undone: greet everyone." in second.stdout
 
 
 def test_a_script_is_taught_from_a_file(tangy: Tangy, tmp_path: Path) -> None:

@@ -53,7 +53,7 @@ def test_what_is_missing_is_said_in_words(tangy: Tangy, disagreeing: Path) -> No
     done = tangy("learn", "--unfinished", "--data", disagreeing)
     assert "nobody has had a wrong mark yet" in done.stdout
     assert "Demonstrations disagree about 1 situation" in done.stdout
-    assert "start · nobody asks: greeting or joke" in done.stdout
+    assert "the game has not begun: greet everyone or tell a joke" in done.stdout
 
 
 def test_a_conflict_is_shown_settled_and_opened_again(tangy: Tangy, disagreeing: Path) -> None:
@@ -67,12 +67,14 @@ def test_a_conflict_is_shown_settled_and_opened_again(tangy: Tangy, disagreeing:
     assert (row["contested"], row["sure"]) == (True, False)
 
     resolve = ("demonstrations", "resolve", "1", *at)
-    assert "choose greeting or joke" in refusal(tangy(*resolve, "--right", "celebrate"))
+    assert "choose greet everyone or tell a joke" in refusal(
+        tangy(*resolve, "--right", "celebrate")
+    )
     assert "did you mean 'celebrate'" in refusal(tangy(*resolve, "--instead", "celebrat"))
     assert "Say which answer is right" in refusal(tangy(*resolve))
     assert "there is 1" in refusal(tangy("demonstrations", "resolve", "2", "--both", *at))
     by_words = ("demonstrations", "resolve", "start", *at, "--right", "greeting")
-    assert "greeting is right" in tangy(*by_words).stdout
+    assert "greet everyone is right" in tangy(*by_words).stdout
     learnt = document(tangy("learn", "--json", *at))
     (row,) = [r for r in learnt["rows"] if r["stage"] == "start"]
     assert (row["behaviour"], row["contested"], row["sure"]) == ("greeting", False, True)
@@ -135,7 +137,7 @@ def test_policies_have_names_and_are_compared(tangy: Tangy, taught: Path) -> Non
 def test_why_is_told_by_number_by_words_and_as_a_document(tangy: Tangy, taught: Path) -> None:
     at = ("--data", taught)
     words = tangy("policy", "--why", "wrong marks", *at).stdout
-    assert "'remove markers' was shown here" in words
+    assert "'ask to remove markers' was shown here" in words
     assert "by scripted" in words
     situations = [r["user_state"] for r in document(tangy("policy", "--json", *at))["rows"]]
     number = situations.index("incorrectly marked") + 1
@@ -144,7 +146,7 @@ def test_why_is_told_by_number_by_words_and_as_a_document(tangy: Tangy, taught: 
     assert why["situation"] == WRONG
     assert len(why["rests_on"]) == why["seen"] > 0
     assert {s["behaviour"] for s in why["rests_on"]} == {"remove markers"}
-    assert "did you mean" in refusal(tangy("policy", "--why", "help · wrnog marks", *at))
+    assert "did you mean" in refusal(tangy("policy", "--why", "helping: wrnog marks", *at))
 
 
 # ------------------------------------------------------------------------------------- asking
@@ -167,7 +169,7 @@ def test_without_a_teacher_a_game_stops_where_tangy_is_not_sure(
     assert [stop["game"] for stop in played["stopped"]] == [1]
     assert played["stopped"][0]["reason"] == played["faults"][0]["reason"]
     (fault,) = played["faults"]
-    assert "Demonstrations disagree about what to do here: start" in fault["reason"]
+    assert "Demonstrations disagree about what to do here: the game" in fault["reason"]
     assert "tangy demonstrations resolve" in fault["reason"]
     assert played["steps"] == 0
 
@@ -238,7 +240,7 @@ def test_a_demonstration_is_shown_again_from_a_step(tangy: Tangy, disagreeing: P
 def test_undo_redo_seen_and_why_work_by_lines(tangy: Tangy, tmp_path: Path) -> None:
     lines = "greet everyone\ny\nundo\nredo\nseen\nwhy\nagain 1\nredo\nhelp\nquit\n"
     told = tangy("teach", "--plain", "--data", tmp_path / "d", stdin=lines).stdout
-    assert told.count("1. start · nobody asks -> greeting") == 3
+    assert told.count("1. the game has not begun -> greet everyone") == 3
     assert told.count("Step 1 is undone") == 2
     assert "1 of 11 situations were shown." in told
     assert "Nobody has shown Tangy what to do here" in told
@@ -262,7 +264,7 @@ def test_learning_says_what_is_done_otherwise_than_before(tangy: Tangy, disagree
     document(tangy("learn", "--json", *at))
     document(tangy("demonstrations", "delete", "3", "--json", *at))  # the answer to the opening
     fewer = tangy("learn", *at).stdout
-    assert "start · nobody asks: was greeting, is now to ask" in fewer
+    assert "the game has not begun: was greet everyone, is now to ask" in fewer
     again = tangy("learn", *at).stdout
     assert "It does the same as" in again
 
@@ -270,7 +272,7 @@ def test_learning_says_what_is_done_otherwise_than_before(tangy: Tangy, disagree
 def test_answers_by_script_are_told(tangy: Tangy, untaught: Path) -> None:
     at = ("--headless", "--teacher", "scripted", "--seed", 3, "--data", untaught)
     told = tangy("play", *at).stdout
-    assert "Learnt from scripted: start · nobody asks -> greeting." in told
+    assert "Learnt from scripted: the game has not begun -> greet everyone." in told
     played = document(tangy("play", "--json", "--games", 9, *at))
     assert all(set(a) >= {"situation", "behaviour", "words"} for a in played.get("answers", []))
 

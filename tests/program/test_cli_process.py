@@ -51,7 +51,7 @@ def test_a_session_by_lines_runs_in_any_terminal_and_locale(
         "teach", "--plain", home=tmp_path, typed="greet everyone\ny\nñandú\n", **environment
     )
     assert (taught.returncode, taught.stderr) == (0, b"")
-    assert b"1. start" in taught.stdout
+    assert b"1. the game has not begun" in taught.stdout
     assert b"You left after 1 step." in taught.stdout
 
 
@@ -119,7 +119,7 @@ def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) 
 
 def test_ctrl_c_leaves_a_session_by_lines_at_once_and_keeps_its_steps(tmp_path: Path) -> None:
     data = ["--data", str(tmp_path / "data")]
-    with greeting(data, b"Now: facilitate") as taught:
+    with greeting(data, b"Now: Nobody asks") as taught:
         sleep(0.5)  # until the next line is waited for
         taught.send_signal(signal.SIGINT)
         try:

@@ -53,7 +53,7 @@ def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(
     said = told(workspace)
     assert said[0].startswith("Teaching Bingo. Commands: ")
     assert said[1] == "A new demonstration by Ada (game 1)."
-    assert said[2] == ("Now: start · nobody asks. Tangy is at the front. Nobody asks for help.")
+    assert said[2] == ("Now: Nobody has been welcomed yet: time to greet everyone.")
     assert len(said) == 3, "looking in leaves nothing to go on from"
 
 
@@ -62,13 +62,13 @@ def test_the_question_names_the_behaviour_and_only_y_executes_it(workspace: Work
     question = "Did you say: greet everyone? Type Y to execute it or N for a new command."
     assert said[3] == question
     assert said[4:6] == ["Please answer Y to execute it, or N to give a new command."] * 2
-    assert said[6] == "1. start · nobody asks -> greeting"
+    assert said[6] == "1. the game has not begun -> greet everyone"
     assert said[7].startswith("   Tangy says: Hello")
 
 
 @pytest.mark.parametrize("yes", ["y", "Y", "yes", "Yes", " YES "])
 def test_yes_in_full_is_taken_as_well(workspace: Workspace, yes: str) -> None:
-    assert "1. start · nobody asks -> greeting" in told(workspace, "greet everyone", yes)
+    assert "1. the game has not begun -> greet everyone" in told(workspace, "greet everyone", yes)
 
 
 def test_help_at_the_question_says_what_can_be_answered(workspace: Workspace) -> None:
@@ -135,9 +135,10 @@ def test_undo_where_help_and_quit_are_understood(workspace: Workspace) -> None:
     typed = ("undo", "greet everyone", "y", "where", "help", "undo", "quit", "tell a joke")
     said = told(workspace, *typed)
     assert "There is no step to undo." in said
-    assert "Step 1 is undone: greeting." in said
-    assert said.count("Now: facilitate · nobody asks. Tangy is at the front. "
-                      "Nobody asks for help.") == 2  # fmt: skip
+    assert "Step 1 is undone: greet everyone." in said
+    assert said.count("Now: a number is due. Tangy is at the front. "
+                      "Nobody asks for help.") == 1  # fmt: skip
+    assert said.count("Now: Nobody asks for help: time for the next number.") == 1
     for behaviour in workspace.activity.behaviours.values():
         assert f"  {behaviour.question}: say {behaviour.phrases[0]!r}" in said
     assert not any("joke?" in line for line in said), "after quit nothing is read"
@@ -269,7 +270,7 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(
     supervision = workspace.supervision(policy, 3)
     said = play_by_turns(supervision, games=3, name=workspace.name, scripted=True)
     assert said[0] == "Game 1 begins."
-    assert said[1] == "1. start · nobody asks -> greeting, 100% of the votes"
+    assert said[1] == "1. the game has not begun -> greet everyone, 100% of the votes"
     assert sum(line.startswith("The game is over after ") for line in said) == 3
     late = " followed, but late, which counts as no ("
     learnt = [line for line in said if " complied (" in line or late in line]
@@ -302,7 +303,7 @@ def test_a_stopped_game_says_why(workspace: Workspace, cover: Cover) -> None:
     policy = learn_policy(workspace.activity, shown, settings=ForestSettings(trees=5))
     said = play_by_turns(workspace.supervision(policy, 3), scripted=True)
     stopped = next(line for line in said if line.startswith("The game stopped after "))
-    assert "Nobody has shown Tangy what to do here yet: end · somebody asks." in stopped
+    assert "Nobody has shown Tangy what to do here yet: somebody has won." in stopped
 
 
 def asked(workspace: Workspace, *lines: str, knows: bool = True) -> list[str]:
@@ -322,7 +323,7 @@ def asked(workspace: Workspace, *lines: str, knows: bool = True) -> list[str]:
         teacher="Cleo",
         demonstrations=(lambda: shown) if knows else None,
     )
-    assert said[1].startswith("Tangy asks. Nobody has shown Tangy what to do here yet: start")
+    assert said[1].startswith("Tangy asks. Nobody has shown Tangy what to do here yet: the game")
     stopped = next(n for n, line in enumerate(said) if line.startswith("The game stopped after"))
     return said[2:stopped]
 
@@ -338,18 +339,18 @@ def test_while_tangy_asks_a_typed_stop_stops_and_nothing_asked_is_done(
 
 def test_while_tangy_asks_it_says_why_and_what_it_sees(workspace: Workspace) -> None:
     why, *others = asked(workspace, "why", "Where")
-    assert why == "Situation: start · nobody asks."
+    assert why == "Situation: the game has not begun."
     assert "Nobody has shown Tangy what to do here: it does not act, it asks." in others
     assert "Votes of the trees: call number 100%." in others
     assert (
         others[-1]
-        == "Now: start · nobody asks. Tangy is at the front. Nobody asks for help. (asking)"
+        == "Now: the game has not begun. Tangy is at the front. Nobody asks for help. (asking)"
     )
 
 
 def test_without_the_demonstrations_it_still_says_the_votes(workspace: Workspace) -> None:
     assert asked(workspace, "why", knows=False) == [
-        "Nobody has shown Tangy what to do here yet: start · nobody asks.",
+        "Nobody has shown Tangy what to do here yet: the game has not begun.",
         "Votes of the trees: call number 100%.",
     ]
 
@@ -375,7 +376,9 @@ def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(workspace: 
     assert said[0].startswith("Did you say: greet everyone?")
     assert said[1] == said[2] == "Please answer Y to execute it, or N to give a new command."
     assert said[3].startswith("  y: ")
-    assert "1. start · nobody asks -> greeting, as Cleo said" in said, "not by votes for another"
+    assert "1. the game has not begun -> greet everyone, as Cleo said" in said, (
+        "not by votes for another"
+    )
     left = asked(workspace, "greet everyone", "quit", "greet everyone", "y")
     assert left[1:] == ["You ended the game. Tangy stands still."], "after quit nothing is read"
 

@@ -34,11 +34,11 @@ def scene(place: str = FRONT, *requests: str, card: CardView | None = None) -> S
 @pytest.mark.parametrize(
     ("situation", "words"),
     [
-        (("start", "ANR", "occluded"), "start · nobody asks"),
-        (("navigate", "AR", "occluded"), "navigate · somebody asks"),
-        (("help", "AR", "occluded"), "help · card not in view"),
-        (("help", "AR", "missing numbers"), "help · missed numbers"),
-        (("end", "AR", "occluded"), "end · somebody asks"),
+        (("start", "ANR", "occluded"), "the game has not begun"),
+        (("navigate", "AR", "occluded"), "somebody asks for help"),
+        (("help", "AR", "occluded"), "helping: card not in view"),
+        (("help", "AR", "missing numbers"), "helping: missed numbers"),
+        (("end", "AR", "occluded"), "somebody has won"),
     ],
 )
 def test_a_situation_is_its_stage_and_what_matters_there(
@@ -53,8 +53,8 @@ def test_a_step_names_the_behaviour_and_for_whom(activity: Activity) -> None:
     asked = state(Situation("navigate", "AR", "occluded"), attended="user2")
     group = Step("greeting", None, begun, begun)
     one = Step("navigate to user", "user2", asked, asked)
-    assert step_words(activity, group, name) == "start · nobody asks -> greeting"
-    assert step_words(activity, one, name) == "navigate · somebody asks -> navigate to user (Ken)"
+    assert step_words(activity, group, name) == "the game has not begun -> greet everyone"
+    assert step_words(activity, one, name) == "somebody asks for help -> go to the user (Ken)"
 
 
 def test_the_state_tells_who_asks_first_come_first(activity: Activity) -> None:

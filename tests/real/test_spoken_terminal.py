@@ -82,7 +82,7 @@ def test_a_recording_is_asked_about_and_becomes_a_step(
     terminal.until("Did you say: greet everyone?")
     terminal.settle(0.4)
     terminal.type("y")
-    terminal.until("-> greeting")
+    terminal.until("-> greet everyone")
     terminal.type("\x03")
     assert terminal.wait() == 0
     assert steps(tangy, tmp_path / "data") == ["greeting"]
@@ -107,7 +107,7 @@ def test_a_laptops_microphone_is_pushed_to_talk_and_becomes_a_step(
     terminal.until("Did you say: greet everyone?")
     terminal.settle(0.4)
     terminal.type("y")
-    terminal.until("-> greeting")
+    terminal.until("-> greet everyone")
     terminal.until("○ t talk")
     terminal.type("t")
     terminal.until("● listening")
@@ -158,7 +158,7 @@ def test_sound_on_standard_input_leaves_the_keys_to_the_terminal(
 
 
 def _confirmed(tmux: Tmux, text: str) -> bool:
-    if "-> greeting" in text:
+    if "-> greet everyone" in text:
         return True
     if "Did you say" in text:
         tmux("send-keys", "y")
@@ -193,6 +193,6 @@ def test_lines_hear_a_recording_and_a_script_answers(
         timeout=PATIENCE,
         check=True,
     )
-    assert b"-> greeting" in done.stdout
+    assert b"-> greet everyone" in done.stdout
     assert b"-> call number" in done.stdout
     assert done.stderr == b""

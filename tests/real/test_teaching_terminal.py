@@ -37,14 +37,14 @@ def test_a_step_is_typed_asked_about_confirmed_and_still_there_next_time(
     tmux("send-keys", "C-c")
     tmux.until(lambda text: text.rstrip().endswith(("#", "$")))  # the shell's prompt is back
     tmux.run("clear;", *command)
-    again = tmux.until("-> greeting")
+    again = tmux.until("-> greet everyone")
     assert "step 1" in again
     assert "type a command" in again
 
 
 def _answered(tmux: Tmux, text: str) -> bool:
     """Press y until the question has taken it: it takes none in its first moment."""
-    if "-> greeting" in text:
+    if "-> greet everyone" in text:
         return True
     if "Did you say" in text:
         tmux("send-keys", "y")
@@ -58,9 +58,9 @@ def test_a_y_typed_ahead_does_not_answer(open_terminal: OpenTerminal) -> None:
     terminal.until("Did you say: greet everyone?")
     terminal.settle()
     assert "Did you say" in terminal.text
-    assert "-> greeting" not in terminal.text
+    assert "-> greet everyone" not in terminal.text
     terminal.type("y")
-    terminal.until("-> greeting")
+    terminal.until("-> greet everyone")
 
 
 def test_no_puts_the_words_back(open_terminal: OpenTerminal) -> None:
@@ -98,11 +98,11 @@ def test_a_closed_window_ends_the_program_and_loses_nothing(
     terminal.until("Did you say")
     terminal.settle(0.4)
     terminal.type("y")
-    terminal.until("-> greeting")
+    terminal.until("-> greet everyone")
     terminal.close()
     terminal.process.wait(timeout=20)
     again = open_terminal("teach")
-    again.until("-> greeting")
+    again.until("-> greet everyone")
 
 
 @pytest.mark.slow
@@ -142,7 +142,7 @@ def test_a_dumb_terminal_gets_lines(open_terminal: OpenTerminal) -> None:
     terminal.type("greet everyone\n")
     terminal.until("Type Y to execute")
     terminal.type("y\n")
-    terminal.until("-> greeting")
+    terminal.until("-> greet everyone")
     terminal.type("quit\n")
     assert terminal.wait() == 0
     assert b"\x1b" not in terminal.raw

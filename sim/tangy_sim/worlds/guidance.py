@@ -15,6 +15,7 @@ from typing import TypeVar
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.cards import CardState
+from tangy_profiles.scene import Arranged
 from tangy_profiles.state import FRONT, ActivityState, Outcome
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.guided_plan import FEWEST, LINE, Cue, GuidedPlan
@@ -62,6 +63,14 @@ class GuidedWorld(SimulatedWorld):
         self._asks_at_end = self._game % 2 == 1
         self._game += 1
         return state
+
+    @property
+    def coming(self) -> Arranged | None:
+        """What is about to come about, until somebody has asked."""
+        cue = self.cue
+        if cue is None or cue.asked:
+            return None
+        return Arranged(cue.person, cue.shows.name, cue.hidden and self.plan.lacks_hidden)
 
     def execute(self, action: Action) -> Outcome:
         """Let the robot carry out an action, and people do what the plan has for them."""

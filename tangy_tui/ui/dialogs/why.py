@@ -11,6 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.content import Content
 
+from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beta
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.persuasion import StrategyChoice
@@ -110,7 +111,7 @@ class WhyDialog(Dialog[None]):
         words = why_words(self._workspace.activity, self._why, votes=False)
         for sentence in (*self._remarks, *words):
             lines += paragraph(clean(sentence), width)
-        lines += vote_lines(self._why, width)
+        lines += vote_lines(self._workspace.activity, self._why, width)
         if self._choice is not None:
             lines += choice_lines(self._choice, self._workspace.name(self._choice.person), width)
         return lines + self._step_lines(width)
@@ -132,7 +133,7 @@ class WhyDialog(Dialog[None]):
         """Write a step: what, where it stands, by whom; of a near one its situation too."""
         number = self._numbers.get(shown.demonstration)
         where = f"demonstration {number}" if number else shown.demonstration
-        behaviour = clean(shown.step.behaviour)
+        behaviour = clean(self._workspace.activity.behaviour_words(shown.step.behaviour))
         if elsewhere:
             situation = self._workspace.activity.in_words(shown.step.state.situation)
             behaviour = f"{clean(situation)} -> {behaviour}"
@@ -145,20 +146,21 @@ class WhyDialog(Dialog[None]):
         )
 
 
-def vote_lines(why: Why, width: int) -> list[PageLine]:
+def vote_lines(activity: Activity, why: Why, width: int) -> list[PageLine]:
     """Draw the votes as bars, most first."""
     votes = why.decision.votes
-    label = min(max(cell_len(clean(b)) for b, _ in votes), max(8, width - 12))
+    names = [clean(activity.behaviour_words(behaviour)) for behaviour, _ in votes]
+    label = min(max(map(cell_len, names)), max(8, width - 12))
     points = min(LONGEST_BAR, max(0, width - label - 9))
     lines = heading(VOTES)
-    for behaviour, share in votes:
+    for name, (behaviour, share) in zip(names, votes, strict=True):
         decided = behaviour == why.decision.behaviour
         ink = "curve" if share >= SURE else "warn"
         lines.append(
             PageLine(
                 (
                     ("  ", "text"),
-                    (fit(clean(behaviour), label), "strong" if decided else "text"),
+                    (fit(name, label), "strong" if decided else "text"),
                     ("  ", "text"),
                     (bar(share, points), ink),
                     (f" {share:>4.0%}", "text" if share >= SURE else "warn"),

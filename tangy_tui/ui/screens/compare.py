@@ -10,6 +10,7 @@ from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
+from tangy_profiles.activity import Activity
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.comparison import SituationComparison, compare
 from tangy_tui.learning.policy import Decision, Policy
@@ -65,14 +66,14 @@ async def choose_policy(app: App[Any], workspace: Workspace) -> str | None:
     return await app.push_screen_wait(ChooseDialog(WHICH, options))
 
 
-def decision_words(decision: Decision) -> str:
+def decision_words(activity: Activity, decision: Decision) -> str:
     """Write what is done and the share of the votes, or why Tangy would ask."""
     if not decision.seen:
         return "asks: never shown"
     if decision.contested:
         return "asks: contested"
     asks = "" if decision.sure else " (asks)"
-    return f"{decision.behaviour} {decision.share:.0%}{asks}"
+    return f"{activity.behaviour_words(decision.behaviour)} {decision.share:.0%}{asks}"
 
 
 class CompareScreen(TangyScreen[None]):
@@ -190,4 +191,5 @@ class CompareScreen(TangyScreen[None]):
 
     def _side(self, letter: str, decision: Decision, same: bool, width: int) -> tuple[Span, ...]:
         ink = "text" if same else ("strong" if decision.sure else "warn")
-        return ((f"{letter} ", "dim"), (fit(clean(decision_words(decision)), width - 2), ink))
+        words = decision_words(self._workspace.activity, decision)
+        return ((f"{letter} ", "dim"), (fit(clean(words), width - 2), ink))

@@ -140,11 +140,12 @@ class ConflictsScreen(TangyScreen[bool]):
 
     async def _other(self, conflict: Conflict) -> None:
         """Let another behaviour be chosen that nobody showed here."""
-        others = [b for b in self._workspace.activity.behaviours if b not in conflict.answers]
-        dialog = WordsDialog(text.OTHER, others)
+        activity = self._workspace.activity
+        others = [b for b in activity.behaviours if b not in conflict.answers]
+        dialog = WordsDialog(text.OTHER, list(map(activity.behaviour_words, others)))
         chosen = await self.app.push_screen_wait(dialog)
         if chosen is not None and conflict is self._present:
-            await self._resolve(conflict, chosen)
+            await self._resolve(conflict, activity.behaviour_named(chosen))
 
     async def _leave_open(self, conflict: Conflict) -> None:
         self._answered.append(None)

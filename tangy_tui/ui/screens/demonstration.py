@@ -130,7 +130,9 @@ class DemonstrationScreen(TangyScreen[None]):
     def _step_content(self, number: int, step: Step) -> Content:
         activity, name = self._workspace.activity, self._workspace.name
         place = "at the front" if step.state.place == FRONT else f"with {name(step.state.place)}"
-        done = step.behaviour + (f", for {name(step.target)}" if step.target else "")
+        done = activity.behaviour_words(step.behaviour) + (
+            f", for {name(step.target)}" if step.target else ""
+        )
         lines = [
             ("Step", f"{number} of {len(self._shown.steps)}"),
             ("Situation", f"{activity.in_words(step.state.situation)}; Tangy is {place}"),

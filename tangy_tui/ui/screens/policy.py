@@ -27,20 +27,21 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
     """Return a row for every situation that can come about, in the order of a game."""
     return [
-        _row(activity.in_words(situation), policy.decide(situation))
+        _row(activity, activity.in_words(situation), policy.decide(situation))
         for situation in activity.situations
     ]
 
 
-def _row(words: str, decision: Decision) -> PolicyRow:
+def _row(activity: Activity, words: str, decision: Decision) -> PolicyRow:
     """Write what is done in a situation; where Tangy would ask, the words say why."""
     if not decision.seen:  # whatever the trees would vote for, Tangy asks there
         return PolicyRow(words, "never shown", 0.0, 0)
     if decision.contested:
-        answers = listed((behaviour for behaviour, _ in decision.votes), "or")
+        answers = listed((activity.behaviour_words(b) for b, _ in decision.votes), "or")
         return PolicyRow(words, "contested", decision.share, decision.seen, answers)
     note = "" if decision.sure else "not sure: asks"
-    return PolicyRow(words, decision.behaviour, decision.share, decision.seen, note)
+    done = activity.behaviour_words(decision.behaviour)
+    return PolicyRow(words, done, decision.share, decision.seen, note)
 
 
 class PolicyScreen(TangyScreen[None]):

@@ -17,7 +17,7 @@ def question_words(workspace: Workspace, game: Supervision, question: Unsure) ->
         return clean(acceptable_words(question.reason))
     if not question.fault and question.decision.seen:
         why = why_of(workspace, game.policy, question.state.situation)
-        return clean(asked_words(question.reason, given_words(why)))
+        return clean(asked_words(question.reason, given_words(workspace.activity, why)))
     return clean(asked_words(question.reason))
 
 

@@ -56,10 +56,12 @@ from tangy_tui.ui.screens.teach_why import TeachWhy
 from tangy_tui.ui.screens.teach_words import follow_word
 from tangy_tui.ui.speaking import preference_of, speaker_of
 from tangy_tui.ui.teaching_picture import TeachingPicture
+from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.sayable_list import SayableList
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
@@ -118,11 +120,14 @@ class TeachScreen(TangyScreen[bool]):
         with Horizontal(id="body"):
             with Vertical(id="left"):
                 yield room_panel(self._workspace)
+                yield panel(CallBoard(self._teaching.activity.deck))
+                yield panel(SayableList())
                 yield panel(LogView(id="log"))
             with Vertical(id="right"):
                 yield panel(Transcript(empty=text.begin_words(heard=hearing is not None)))
                 yield panel(CoverageList())
         yield Static(id="now", markup=False)
+        yield Static(id="unseen", markup=False)
         if hearing is not None:
             self._listener.hearing = hearing
             if hearing.by_key:

@@ -44,7 +44,7 @@ class AnswerSteps(ChoiceList):
         steps: Sequence[Shown],
     ) -> None:
         super().__init__(
-            f"{number} {clean(behaviour)}",
+            f"{number} {clean(workspace.activity.behaviour_words(behaviour))}",
             ANSWER_HELP,
         )
         self.border_subtitle = counted(len(steps), "time")

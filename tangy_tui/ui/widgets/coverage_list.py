@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tangy_tui.text.teaching import ALL_SHOWN
+from tangy_tui.text.coach import ALL_SHOWN
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, Rows, shorten

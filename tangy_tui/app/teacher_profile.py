@@ -1,0 +1,71 @@
+"""Who teaches at this data folder, as they said when they began: `teacher.toml` in it."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import LONGEST_NAME, read_name
+from tangy_profiles.reading import plain, read_toml
+
+FILE = "teacher.toml"
+NOBODY = "teacher"
+"""Who teaches where nobody can be asked, and there is no login name."""
+
+
+@dataclass(frozen=True, slots=True)
+class TeacherProfile:
+    """What is kept of the teacher. `name`: "" if they were not asked; `toured`: had the tour."""
+
+    name: str = ""
+    toured: bool = False
+
+
+def read_profile(folder: Path) -> TeacherProfile:
+    """Read who teaches here; an empty profile where nobody has said so.
+
+    Raises:
+        TangyError: the file has a mistake.
+    """
+    path = folder / FILE
+    if not path.exists():
+        return TeacherProfile()
+    table = read_toml(path)
+    name = table.text("name", "")
+    toured = table.choice("tour", ("open", "done"), "open") == "done"
+    table.close()
+    return TeacherProfile(checked(name) if name else "", toured)
+
+
+def save_profile(folder: Path, profile: TeacherProfile) -> None:
+    """Keep who teaches here.
+
+    Raises:
+        TangyError: the file cannot be written.
+    """
+    tour = "done" if profile.toured else "open"
+    name = json.dumps(profile.name, ensure_ascii=False)
+    new = folder / f"{FILE}.new"
+    try:
+        new.write_text(f'name = {name}\ntour = "{tour}"\n', encoding="utf-8")
+        new.replace(folder / FILE)
+    except OSError as error:
+        raise TangyError(plain(f"{folder / FILE}: cannot be written: {error.strerror}.")) from None
+
+
+def checked(name: str) -> str:
+    """Return a teacher's name as it is kept.
+
+    Raises:
+        TangyError: it is none that may be kept.
+    """
+    return read_name(name, "The name")
+
+
+def login_name() -> str:
+    """Return the login name, or what stands for it where there is none."""
+    login = os.environ.get("USER") or os.environ.get("USERNAME") or ""
+    return plain(login).strip()[:LONGEST_NAME].strip() or NOBODY

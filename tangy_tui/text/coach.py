@@ -1,0 +1,110 @@
+"""The coach: what is going on while one teaches, what a host might do now, what lacks still."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from tangy_profiles.activity import Activity, StageRule
+from tangy_profiles.scene import Arranged, Scene
+from tangy_profiles.state import FRONT, ActivityState, Situation
+from tangy_tui.text.situations import card_words
+
+Name = Callable[[str], str]
+
+NOBODY = "Nobody asks for help."
+ALL_SHOWN = "Everything that can happen was shown."
+GUIDED = (
+    "A guided game: everything that can happen comes about once, so that you can show it. Each "
+    "is announced."
+)
+
+
+SAYABLE = "You can say now"
+
+
+def sayable_now(commands: Sequence[str]) -> str:
+    """List what can be said now."""
+    return " · ".join(commands)
+
+
+def coach_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
+    """Say in one sentence what is going on and what a host might do, then what is to be known."""
+    return " ".join([host_sentence(activity, state, name), *_facts(activity, state, scene, name)])
+
+
+def host_sentence(activity: Activity, state: ActivityState, name: Name) -> str:
+    """Say what is going on and what a host might do, in the words of the activity."""
+    who = name(state.attended) if state.attended else "Somebody"
+    if said := activity.host_words(state.situation):
+        return said.replace("{name}", who)
+    rule = next(r for r in activity.stage_rules if r.stage == state.stage)
+    return _by_rule(activity, rule, state.situation, who)
+
+
+def _by_rule(activity: Activity, rule: StageRule, situation: Situation, who: str) -> str:
+    """Say the same where the activity has no words for it."""
+    match rule.condition:
+        case "before":
+            return f"It is time to {activity.behaviour_words(rule.behaviour)}."
+        case "count":
+            return f"{NOBODY} It is time to {activity.behaviour_words(rule.since)}."
+        case "beside requester":
+            shown = (s.hint for s in activity.user_states if s.name == situation.user_state)
+            return next(shown, "") or f"{who}: {activity.state_label(situation.user_state)}."
+        case "requested or away" if situation.request == "AR":
+            return f"{who} asks for help."
+        case "requested or away":
+            return "Nobody asks any more."
+        case "after":
+            return "It is time to end the game."
+        case _:
+            return f"{activity.in_words(situation).capitalize()}."
+
+
+def _facts(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> list[str]:
+    facts: list[str] = []
+    if state.place != FRONT:
+        facts.append(f"Tangy is with {name(state.place)}.")
+    waiting = [person for person in scene.requests if person != state.attended]
+    if waiting:
+        facts.append(f"Waiting: {', then '.join(map(name, waiting))}.")
+    if scene.card is not None and activity.reads(state.stage):
+        facts.append(card_words(activity, scene.card))
+    return [fact for fact in facts if fact]
+
+
+def arranged_words(activity: Activity, arranged: Arranged, name: Name) -> str:
+    """Announce what a guided game is about to bring about, and why."""
+    states = [activity.unread, arranged.user_state] if arranged.hidden else [arranged.user_state]
+    labels = " and ".join(activity.state_label(state) for state in states)
+    why = "nobody has shown that in this game yet"
+    return f"Coming up: {name(arranged.person)} will ask for help ({labels}), because {why}."
+
+
+def unseen_words(activity: Activity, missing: Sequence[Situation], room: int) -> str:
+    """Name what nobody has shown yet, in so many characters at most.
+
+    Args:
+        activity: what is taught.
+        missing: the situations that nobody has shown.
+        room: characters; what does not fit is counted.
+    """
+    if not missing:
+        return f"✓ {ALL_SHOWN}"
+    names = [_short(activity, situation) for situation in missing]
+    said = f"Still to show ({len(names)}): "
+    for number, label in enumerate(names):
+        joint = " · " if number else ""
+        rest = len(names) - number
+        more = f" … and {rest} more"
+        if number and len(said) + len(joint) + len(label) + len(more) * (rest > 1) > room:
+            return said + more
+        said += joint + label
+    return said
+
+
+def _short(activity: Activity, situation: Situation) -> str:
+    """Name a situation by what tells it apart: how a card is, or what the stage is called."""
+    if activity.reads(situation.stage):
+        return activity.state_label(situation.user_state)
+    return activity.in_words(situation)
