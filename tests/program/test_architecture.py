@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -161,3 +162,9 @@ def test_no_test_imports_the_conftest_of_another_folder() -> None:
         if folder != path.parent.name
     ]
     assert others == []
+
+
+def test_each_file_of_tests_has_a_name_of_its_own() -> None:
+    # pytest imports them by name alone: of two that are called the same, one is not collected.
+    names = sorted(path.name for path in (ROOT / "tests").rglob("test_*.py"))
+    assert [name for name, after in pairwise(names) if name == after] == []
