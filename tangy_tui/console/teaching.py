@@ -165,7 +165,7 @@ class TeachingLines:
             if self._ears is not None:
                 if asked is not None and teaching.question is not asked:  # it answers no other
                     self._ears.asking(False)
-                self._ears.asking(teaching.question is not None)
+                self._ears.asking(teaching.question is not None, _choices(teaching.question))
 
     def _leave(self) -> None:
         """Say what becomes of what was shown, and what to do next."""
@@ -334,3 +334,13 @@ def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:
     if not spoken.done() or spoken.cancelled() or spoken.exception() is not None:
         return False
     return isinstance(spoken.result(), Say)
+
+
+def _choices(question: Asked | Offered | None) -> tuple[str, ...]:
+    """Return what can be chosen in place of what a question is about, as it is asked about."""
+    match question:
+        case Offered():
+            return question.questions
+        case Asked():
+            return question.others
+    return ()

@@ -61,6 +61,8 @@ class Phrases:
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
         """Enter the phrases, then what is made of them with people; the first keeps its meaning."""
         self._order = tuple(activity.behaviours)
+        self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
+        """The behaviours as they are asked about, as it is said."""
         self.numbers = _numbers_of(people)
         self.names = _names_of(people)
         self.seats = _seats_of(people)

@@ -13,13 +13,13 @@ from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
+from tangy_tui.language.answers import PLAIN
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.phrasebook import Phrase
 from tangy_tui.language.pronunciation import can_look_up
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.language.words import words_of
 from tangy_tui.speech.lexicon import Alike, Lexicon, distinct_word
-from tangy_tui.speech.understanding import NO, YES
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +146,7 @@ def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
     """Tell of phrases that always mean something else: they stop the robot, or answer it."""
     for phrase in phrasebook.table.all():
         stop, said = stops(phrase.said), phrase.said
-        if phrase.heard and (stop or said in YES or said in NO):
+        if phrase.heard and (stop or said in PLAIN):
             why = "always stops the robot" if stop else "is an answer to Tangy's questions"
             word = distinct_word(phrasebook, phrase.behaviour, phrase)
             such = f", such as {word!r}" if word else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -96,7 +96,7 @@ class SpeechInput:
         self._free = asyncio.Event()
         self._free.set()
         self._shuts = 0  # those who have shut it, and not opened it again
-        self._asking = False
+        self._asking, self._choices = False, tuple[str, ...]()
         self._renew = False  # there are other phrases to listen for
         self._noticed: set[str] = set()
         if recorder is not None:
@@ -160,8 +160,9 @@ class SpeechInput:
             self._free.set()
             self.changed()
 
-    def asking(self, asks: bool) -> None:
-        """Take note that a question is open, or no longer."""
+    def asking(self, asks: bool, choices: Sequence[str] = ()) -> None:
+        """Take note that a question is open, with what can be chosen instead, or no longer."""
+        self._choices = tuple(choices)
         if self._asking != asks:
             self._asking = asks
             if self.live:
@@ -349,7 +350,7 @@ class SpeechInput:
                 dropped = min(self._deaf, len(chunk))
                 self._deaf -= dropped
                 if self._utterance is not None:
-                    self._utterance.add(chunk[dropped:])
+                    self._utterance.add(chunk[dropped:], asyncio.get_running_loop().time())
                     self._thinks()
         finally:
             self._ended = True
@@ -374,7 +375,7 @@ class SpeechInput:
     def _understand(self, evidence: AcousticEvidence) -> Heard | None:
         heard: Heard | None
         if self._asking:
-            heard, told = replied(evidence, self._settings, answers=self.answers)
+            heard, told = replied(evidence, self._settings, self._choices, answers=self.answers)
         else:
             heard, told = commanded(evidence, self._phrasebook, self._settings, live=self.live)
         self._told(told)

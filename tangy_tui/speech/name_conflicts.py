@@ -10,6 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.reading import plain
+from tangy_tui.language.answers import PLAIN
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.phrasebook import name_phones
 from tangy_tui.language.pronunciation import pronounce
@@ -17,7 +18,6 @@ from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import Words, bare, clean, spoken, words_of
 from tangy_tui.speech.lexicon import MOST_WAYS, Lexicon
 from tangy_tui.speech.name_pronunciation import how_said
-from tangy_tui.speech.understanding import NO, YES
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ def check_new_name(activity: Activity, people: Sequence[Person], person: Person)
     why = ""
     if stops(person.name):
         why = "stops the robot when it is said"
-    elif words in {words_of(text) for text in (*YES, *NO)}:
+    elif words in {words_of(text) for text in PLAIN}:
         why = "is an answer to Tangy's questions"
     elif named is not None:
         why = f"is what {named.id} is called"
@@ -132,7 +132,7 @@ def _alike(
             yield like, person.name if own is one.phrase else lost
     ways = set(_ways(activity, name, name_phones(person)))
     phrases = (p.words for p in lexicon.phrases if p.user is None)
-    for words in (*map(words_of, (*STOPS, *YES, *NO)), *phrases):
+    for words in (*map(words_of, (*STOPS, *PLAIN)), *phrases):
         if words != name and not ways.isdisjoint(_ways(activity, words, {})):
             yield repr(spoken(words)), ""
 

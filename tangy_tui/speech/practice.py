@@ -25,7 +25,7 @@ from tangy_tui.speech.evidence import (
     Wanted,
 )
 from tangy_tui.speech.labels import STOP, LabelledRecordings, UtteranceLabel
-from tangy_tui.speech.recogniser import SpeechUnavailable
+from tangy_tui.speech.recogniser import SpeechUnavailable, cpu_seconds
 from tangy_tui.speech.transcription import tier_of
 from tangy_tui.speech.understanding import understand, wanted
 
@@ -232,15 +232,6 @@ def judged(
         round(min(seconds, LONGEST), 3),
         latency,
     )
-
-
-def cpu_seconds(pid: int | None) -> float | None:
-    """Return the CPU time in s that a process has used; None where the system does not tell it."""
-    try:
-        told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-        return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
-    except (OSError, ValueError, IndexError):
-        return None
 
 
 def _fits(said: UtteranceLabel, understood: UtteranceLabel) -> bool:

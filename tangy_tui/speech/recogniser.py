@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import os
 import sys
 from collections.abc import Callable
 from dataclasses import fields
@@ -22,6 +23,8 @@ from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting
 WORKER = (sys.executable, "-P", "-m", "tangy_tui.speech.worker")
 START_SECONDS = 30.0  # for the worker to load its models: 0.8 s when nothing else runs
 DECODE_SECONDS = 30.0  # for an utterance: 0.2 s when nothing else runs
+STALLED_SECONDS = 2.0  # in which a worker that is to decode does nothing at all: it hangs
+LOOK_SECONDS = 0.1
 END_SECONDS = 2.0
 BEHIND = 5.0  # s of sound that are on the way to the worker at most
 ATTEMPTS = 2  # at one utterance, before it is given up
@@ -189,7 +192,7 @@ class Recogniser:
                     await self._send({"pcm": base64.b64encode(chunk).decode()})
             if not answer.done():
                 await self._send({"id": id, "end": True})
-            got = await self._wait(answer, DECODE_SECONDS)
+            got = await self._decoded(answer)
             evidence = AcousticEvidence(
                 **{field.name: got["heard"][field.name] for field in fields(AcousticEvidence)}
             )
@@ -287,6 +290,25 @@ class Recogniser:
                 "it is started again at the next use."
             ) from None
 
+    async def _decoded(self, answer: asyncio.Future[dict[str, Any]]) -> dict[str, Any]:
+        """Wait for a decoded utterance; a worker that does nothing for it is ended.
+
+        Raises:
+            _WorkerDied: it was ended; the utterance can be decoded by another one.
+        """
+        loop = asyncio.get_running_loop()
+        begun = moved = loop.time()
+        before = cpu_seconds(self.pid)
+        while not (await asyncio.wait({answer}, timeout=LOOK_SECONDS))[0]:
+            now, used = loop.time(), cpu_seconds(self.pid)
+            if used != before or used is None:
+                before, moved = used, now
+            if now - moved > STALLED_SECONDS or now - begun > DECODE_SECONDS:
+                if self._worker is not None:
+                    self._worker.kill()
+                break
+        return await answer
+
     def _hear_of(self, said: dict[str, Any], _: bytes) -> bool:
         """Show what is heard meanwhile; return whether that was no answer."""
         if "partial" not in said and "speaking" not in said:
@@ -317,6 +339,15 @@ def _answer(said: dict[str, Any]) -> dict[str, Any]:
     if "error" in said:
         raise SpeechUnavailable(str(said["error"]))
     return said
+
+
+def cpu_seconds(pid: int | None) -> float | None:
+    """Return the CPU time in s that a process has used; None where the system does not tell it."""
+    try:
+        told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+        return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
+    except (OSError, ValueError, IndexError):
+        return None
 
 
 def _forget(said: list[bytes]) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 
+from tangy_tui.language.answers import NO, YES, choice_in, choice_phrases, yes_or_no
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import clean
@@ -36,8 +37,6 @@ UNDERSTOOD = 0.35
 """The confidence below which the paper's mode takes nothing for a command."""
 
 OWN_NAME = {"tangy": ("T AE NG IY",)}
-YES = ("yes", "yes please", "yes do it", "yes that is right")
-NO = ("no", "no thank you", "no do not", "no that is wrong")
 LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The margins from which words are an answer: where the grammar finds it too, and where not."""
 
@@ -56,7 +55,7 @@ def wanted(
     """
     return Wanted(
         (*(phrasebook.spoken() if phrases is None else phrases), *STOPS),
-        (*YES, *NO, *STOPS),
+        (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions, *STOPS),
         STOPS,
         {**OWN_NAME, **phrasebook.pronunciations()},
         settings,
@@ -129,13 +128,18 @@ def commanded(
 
 
 def replied(
-    evidence: AcousticEvidence, settings: EvidenceSettings, *, answers: bool
+    evidence: AcousticEvidence,
+    settings: EvidenceSettings,
+    choices: Sequence[str] = (),
+    *,
+    answers: bool,
 ) -> tuple[Reply | StopCommand | None, str]:
     """Return what an utterance answers to a question, and what is to be said of it, or "".
 
-    Where no `answers` are taken, only what stops the robot counts.
+    Where no `answers` are taken, only what stops the robot counts; `choices` are the words of
+    what can be chosen instead.
     """
-    said = answer(evidence, settings)
+    said = answer(evidence, settings, choices)
     none = answers and said is None and evidence.seconds
     told = "I heard something, but no yes, no or stop." if none else ""
     return (said if answers or isinstance(said, StopCommand) else None), told
@@ -158,21 +162,35 @@ def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str,
     return words, evidence.margin
 
 
-def answer(evidence: AcousticEvidence, settings: EvidenceSettings) -> Reply | StopCommand | None:
+def answer(
+    evidence: AcousticEvidence, settings: EvidenceSettings, choices: Sequence[str] = ()
+) -> Reply | StopCommand | None:
     """Return the answer to a question that an utterance gives, if it gives one.
 
-    A yes moves the robot: the grammar, in which any phones can be said instead, has to find it as
-    well, or the words to explain the sound nearly as well as any phones do. The paper's mode has
-    nothing that other speech could be, so it hears no answers.
+    A yes moves the robot: the grammar, in which any phones can be said instead, has to find such
+    an answer as well, or the words to explain the sound nearly as well as any phones do. The
+    paper's mode has nothing that other speech could be, so it hears no answers.
     """
     said = evidence.words
     if stops(said):
         return StopCommand(said)
-    least = {said: LEAST_ANSWER, "": LEAST_ALONE}.get(evidence.phrase)
-    agreed = least is not None and evidence.margin - settings.shift >= least
-    if settings.mode != "paper" and agreed and (said in YES or said in NO):
-        return Reply(said in YES)
-    return None
+    if settings.mode == "paper":
+        return None
+    reply, phrase = _reply(said, choices), _reply(evidence.phrase, choices)
+    if reply is None and phrase == Reply(False) and evidence.margin < SMALL_MARGIN:
+        reply = phrase  # a no that was misheard moves nothing
+    if reply is None:
+        return None
+    least = LEAST_ANSWER if phrase == reply else LEAST_ALONE if not evidence.phrase else math.inf
+    return reply if evidence.margin - settings.shift >= least else None
+
+
+def _reply(said: str, choices: Sequence[str]) -> Reply | None:
+    yes = yes_or_no(said)
+    if yes is not None:
+        return Reply(yes)
+    number = choice_in(said, choices)
+    return None if number is None else Reply(yes=False, alternative=number)
 
 
 def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0) -> float:

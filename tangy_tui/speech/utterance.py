@@ -8,6 +8,8 @@ from tangy_tui.speech.evidence import RATE
 
 LONGEST_TALK = 6.0  # s after which push-to-talk ends by itself
 PIECE = 3_200  # bytes, 0.1 s: words are shown as they come if they come in pieces
+STALLED = 3.0  # s without any sound, after which what comes continues nothing
+QUIET = bytes(2 * RATE)  # 1 s: with it an utterance is over
 MOST_WAITING = 60  # s of a stream that wait for the decoder
 
 
@@ -36,14 +38,23 @@ class Utterance:
         self.dropped = False
         """It counts for nothing."""
         self._found = found
+        self._came: float | None = None  # when the last chunk came
         self._left = round(LONGEST_TALK * RATE) * 2
         self.add(begun)
 
-    def add(self, chunk: bytes) -> None:
-        """Take the next chunk. Push-to-talk ends in time; of a stream the oldest is forgotten."""
+    def add(self, chunk: bytes, came: float | None = None) -> None:
+        """Take the next chunk. Push-to-talk ends in time; of a stream the oldest is forgotten.
+
+        Args:
+            chunk: 16 kHz mono s16le.
+            came: when it came, in s by any clock. A stream that has stalled is parted by quiet.
+        """
         if self.over or not chunk:
             return
         if self._found:
+            if came is not None and self._came is not None and came - self._came > STALLED:
+                self.chunks.put_nowait(QUIET)
+            self._came = came
             for place in range(0, len(chunk), PIECE):
                 self.chunks.put_nowait(chunk[place : place + PIECE])
             while self.chunks.held > 2 * RATE * MOST_WAITING:

@@ -155,10 +155,11 @@ class Hearing:
 
     def look(self) -> None:
         """Look whether commands are taken now, and give what was kept until they are."""
+        choices = () if self._question is None else self._question.choices
         if self.ears.live:
-            self.ears.asking(not self._free)
+            self.ears.asking(not self._free, choices)
         else:  # a recording says its next command when it is asked for it
-            self.ears.asking(self.ears.answers and self._question is not None)
+            self.ears.asking(self.ears.answers and self._question is not None, choices)
         while self._kept and self._free:
             self._listeners[-1].hear(self._kept.popleft())
         self._changed()
@@ -214,19 +215,19 @@ class Hearing:
             case StopCommand(text):
                 self._stop()
                 self.tell(f"Heard: {text}.", "warn")
-            case Reply(yes):
-                self._answer(yes)
+            case Reply():
+                self._answer(heard)
             case Say() if self._listeners and self.on:
                 self._kept.append(heard)
                 self.look()
 
-    def _answer(self, yes: bool) -> None:
+    def _answer(self, reply: Reply) -> None:
         """Answer the open question as its key would, if it was there when somebody began."""
         question = self._question
         if question is None or self._about not in (None, question):
             return
-        wrong = question.hear(yes=yes)
-        said = f"Heard: {'yes' if yes else 'no'}."
+        wrong = question.hear(yes=reply.yes, alternative=reply.alternative)
+        said = f"Heard: {reply.alternative or ('yes' if reply.yes else 'no')}."
         self.tell(f"{said} {wrong}".rstrip(), "warn" if wrong else "text")
 
     async def _wanted(self) -> None:

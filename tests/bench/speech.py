@@ -37,6 +37,7 @@ from tangy_hw.audio.wav import RATE, read_wav
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_profiles.room import load_room
+from tangy_tui.language.answers import NO, YES, yes_or_no
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.verification import Reply, Say
@@ -233,7 +234,7 @@ def gather(
     """Have everything said, and decode it."""
     said = texts(half)
     if expecting == "answers":
-        said += [("answer", text) for text in (*understanding.YES, *understanding.NO)]
+        said += [("answer", text) for text in (*YES, *NO)]
     for voice in voices:
         say(voice, [text for _, text in said], folder)
     jobs: list[Job] = [
@@ -336,7 +337,7 @@ def answers(decoded: Sequence[tuple[Job, AcousticEvidence]], settings: EvidenceS
         taken = understanding.answer(evidence, settings)
         outcome = "none"
         if isinstance(taken, Reply):
-            meant = kind == "answer" and taken.yes == (text in understanding.YES)
+            meant = kind == "answer" and taken.yes == yes_or_no(text)
             outcome = "right" if meant else "yes" if taken.yes else "no"
         counts.setdefault((condition, kind), Counter())[outcome] += 1
     print("per cent             n    right   wrongly yes   wrongly no")

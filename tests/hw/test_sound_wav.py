@@ -87,6 +87,23 @@ class TestWav:
         assert np.abs(np.frombuffer(decode_wav(content, "it"), "<i2").astype(int)).max() <= 32_767
 
     @pytest.mark.parametrize(
+        ("codec", "codes", "samples"),  # as the tables of G.711 have them
+        [
+            (7, [0xFF, 0x7F, 0x80, 0x00, 0xF0], [0, 0, 32_124, -32_124, 120]),
+            (6, [0xD5, 0x55, 0xAA, 0x2A, 0xC5], [8, -8, 32_256, -32_256, 264]),
+        ],
+    )
+    def test_the_codes_of_telephones_are_read(
+        self, codec: int, codes: list[int], samples: list[int]
+    ) -> None:
+        content = wav(bytes(codes), codec=codec, bits=8)
+        assert np.frombuffer(decode_wav(content, "it"), "<i2") == pytest.approx(samples, abs=1)
+
+    def test_a_file_that_says_it_is_empty_and_is_not_is_heard_to_its_end(self) -> None:
+        sound = pcm(tone(0.1))
+        assert decode_wav(wav(sound, size=0), "it") == sound
+
+    @pytest.mark.parametrize(
         ("content", "word"),
         [
             (b"", "breaks off"),
@@ -96,7 +113,7 @@ class TestWav:
             (wav(pcm(tone(0.1)))[:30], "breaks off"),
             (wav(b""), "no samples"),
             (wav(b"\x01"), "no samples"),
-            (wav(bytes(100), codec=7, bits=8), "mu-law"),
+            (wav(bytes(100), codec=0x31, bits=8), "GSM"),
             (wav(bytes(100), bits=12), "12-bit"),
             (wav(bytes(100), channels=0), "0 channels"),
             (wav(bytes(100), rate=1), "1 samples"),

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from tangy_hw.audio.wav import RATE
+from tangy_tui.language.answers import NO, YES
 from tangy_tui.speech.evidence import AcousticEvidence, Expecting, Wanted
-from tangy_tui.speech.understanding import NO, YES
 
 PATIENCE = 10.0
 

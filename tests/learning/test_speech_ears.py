@@ -18,7 +18,7 @@ from tangy_tui.speech import input as room
 from tangy_tui.speech.input import Heard, SpeechInput
 from tangy_tui.speech.recogniser import SpeechUnavailable
 from tangy_tui.speech.recordings import Recorder
-from tangy_tui.speech.utterance import LONGEST_TALK, MOST_WAITING
+from tangy_tui.speech.utterance import LONGEST_TALK, MOST_WAITING, QUIET, STALLED, Utterance
 from tests.learning.speech_fakes import PATIENCE, FakeRecogniser, FakeSource, soon, sound
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
@@ -557,6 +557,22 @@ class TestHandsFree:
         utterance = here.ears._utterance
         assert utterance is not None
         assert utterance.chunks.held <= 2 * RATE * MOST_WAITING
+
+
+class TestStalls:
+    def test_what_comes_after_a_stall_continues_nothing(self) -> None:
+        utterance = Utterance(found=True)
+        utterance.add(sound("a", 0.1), 1.0)
+        utterance.add(sound("b", 0.1), 1.0 + STALLED)
+        assert utterance.rest() == sound("a", 0.1) + sound("b", 0.1)
+        utterance.add(sound("c", 0.1), 1.1 + 2 * STALLED)
+        assert utterance.rest() == QUIET + sound("c", 0.1)
+
+    def test_a_key_that_is_pushed_keeps_together_what_was_said(self) -> None:
+        utterance = Utterance(found=False)
+        utterance.add(sound("a", 0.1), 1.0)
+        utterance.add(sound("b", 0.1), 2.0 + STALLED)
+        assert utterance.rest() == sound("a", 0.1) + sound("b", 0.1)
 
 
 class TestRecordings:

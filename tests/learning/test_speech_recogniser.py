@@ -230,18 +230,25 @@ class TestDeath:
         with pytest.raises(SpeechUnavailable, match="No such file"):
             await heard.recogniser.start(WANTED)
 
-    async def test_a_worker_that_does_not_answer_is_ended(
+    async def test_an_utterance_over_which_a_worker_hangs_is_decoded_again(
         self, begin: Begin, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr(room, "DECODE_SECONDS", 0.05)
+        monkeypatch.setattr(room, "STALLED_SECONDS", 0.05)
         heard = begin({"end": "hang"}, {})
         await heard.recogniser.start(WANTED)
         heard.say(*CHUNKS, b"")
-        with pytest.raises(SpeechUnavailable, match="did not answer"):
+        assert (await heard.hear()).words == "call number"
+        assert heard.workers.heard[1] == b"".join(CHUNKS)
+
+    async def test_a_worker_that_hangs_twice_over_an_utterance_gives_it_up(
+        self, begin: Begin, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(room, "STALLED_SECONDS", 0.05)
+        heard = begin({"end": "hang"}, {"end": "hang"}, {})
+        await heard.recogniser.start(WANTED)
+        heard.say(*CHUNKS, b"")
+        with pytest.raises(SpeechUnavailable, match="twice over one utterance"):
             await heard.hear()
-        assert heard.recogniser.pid is None
-        monkeypatch.undo()
-        monkeypatch.setattr(room, "WORKER", heard.workers.command)
         heard.say(CHUNKS[0], b"")
         assert (await heard.hear()).words == "call number"
 

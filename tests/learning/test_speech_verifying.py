@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 
 import pytest
 
@@ -151,7 +151,7 @@ class ScriptedEars:
         for one in heard:
             self._coming.put_nowait(one)
 
-    def asking(self, asks: bool) -> None:
+    def asking(self, asks: bool, choices: Sequence[str] = ()) -> None:
         self.asked.append(asks)
 
     def follow(self, events: object) -> None:

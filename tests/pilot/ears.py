@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
@@ -77,7 +77,7 @@ class FakeEars:
         """Hear again."""
         self.be("off" if self.live and not self.hands_free else "listening")
 
-    def asking(self, asks: bool) -> None:
+    def asking(self, asks: bool, choices: Sequence[str] = ()) -> None:
         """Take note that a question is open."""
         self.asks = asks
 

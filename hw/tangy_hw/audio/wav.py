@@ -24,7 +24,8 @@ UNKNOWN_SIZE = 0x7FFF_0000  # bytes of samples, or more: what recorders write wh
 LARGEST_WAV = 100_000_000  # bytes: 17 minutes of 48 kHz stereo
 KERNEL = 16  # zero crossings of the resampling kernel to each side
 HOW_TO_RECORD = "record one with: arecord -f S16_LE -r 16000 -c 1 FILE.wav"
-CODECS = {2: "ADPCM", 6: "A-law", 7: "mu-law", 0x11: "ADPCM", 0x31: "GSM", 0x55: "MP3"}
+A_LAW, MU_LAW = 6, 7  # codecs of telephones, 8 bits a sample
+CODECS = {2: "ADPCM", 0x11: "ADPCM", 0x31: "GSM", 0x55: "MP3"}
 
 
 class SoundError(TangyError):
@@ -35,7 +36,7 @@ class SoundError(TangyError):
 class Format:
     """How a WAV file writes its samples."""
 
-    codec: int  # 1 integers, 3 floating point
+    codec: int  # 1 integers, 3 floating point, 6 A-law, 7 mu-law
     channels: int
     rate: int
     bits: int
@@ -110,7 +111,7 @@ def read_header(content: bytes, name: str) -> tuple[Format, int, int] | None:
         if chunk == b"data":
             if form is None:
                 raise SoundError(f"{name}: does not say how its samples are written.")
-            return form, place, size
+            return form, place, size or UNKNOWN_SIZE  # 0 is also written where nobody knows yet
         if chunk == b"fmt ":
             if place + min(size, 40) > len(content):
                 return None
@@ -126,7 +127,16 @@ def _format(chunk: bytes, name: str) -> Format:
     if codec == 0xFFFE and len(chunk) >= 26:
         (codec,) = struct.unpack_from("<H", chunk, 24)
     form = Format(codec, channels, rate, bits)
-    if (codec, bits) not in {(1, 8), (1, 16), (1, 24), (1, 32), (3, 32), (3, 64)}:
+    if (codec, bits) not in {
+        (1, 8),
+        (1, 16),
+        (1, 24),
+        (1, 32),
+        (3, 32),
+        (3, 64),
+        (A_LAW, 8),
+        (MU_LAW, 8),
+    }:
         kind = CODECS.get(codec, f"{bits}-bit" if codec in (1, 3) else f"kind {codec}")
         raise SoundError(f"{name}: its samples are {kind}, which is not read; {HOW_TO_RECORD}.")
     if not 1 <= channels <= 8 or not 4_000 <= rate <= 192_000:
@@ -143,6 +153,8 @@ def _mono(sound: bytes, form: Format) -> Samples:
     values: NDArray[Any]
     if form.codec == 3:
         values = np.nan_to_num(np.frombuffer(sound, f"<f{width}").astype(np.float64))
+    elif form.codec in (A_LAW, MU_LAW):
+        values = _expanded(np.frombuffer(sound, np.uint8), form.codec)
     elif width == 1:
         values = (np.frombuffer(sound, np.uint8) - 128.0) / 128
     elif width == 3:
@@ -153,6 +165,23 @@ def _mono(sound: bytes, form: Format) -> Samples:
         values = np.frombuffer(sound, f"<i{width}") / 2.0 ** (form.bits - 1)
     mono: Samples = np.clip(values, -1, 1).reshape(-1, form.channels).mean(axis=1)
     return mono
+
+
+def _expanded(codes: NDArray[np.uint8], codec: int) -> Samples:
+    """Return the samples from -1 to 1, of shape (codes,), for the codes of telephones (G.711)."""
+    import numpy as np
+
+    turned = (codes ^ (0x55 if codec == A_LAW else 0xFF)).astype(np.int64)
+    segment, step = (turned >> 4) & 7, turned & 15
+    if codec == MU_LAW:
+        size = (((step << 3) + 0x84) << segment) - 0x84
+        positive = turned < 0x80
+    else:
+        size = np.where(
+            segment > 0, ((step << 4) + 0x108) << np.maximum(segment - 1, 0), (step << 4) + 8
+        )
+        positive = turned >= 0x80
+    return np.where(positive, size, -size) / 2.0**15
 
 
 def _resampled(samples: Samples, rate: int) -> Samples:

@@ -129,10 +129,18 @@ class VerifyingDialog(Dialog[Answer]):
         elif key in self._numbers:
             self.answer(Answer(False, self._numbers.index(key)))
 
-    def hear(self, *, yes: bool) -> str:
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """What can be chosen by its number or its words."""
+        return self._choices
+
+    def hear(self, *, yes: bool, alternative: int | None = None) -> str:
         """Take an answer that was said; return what is wrong with it ("": nothing)."""
         if not self.painted:
             return SAID_TOO_EARLY
+        if alternative is not None and alternative <= len(self._choices):
+            self.answer(Answer(False, alternative - 1))
+            return ""
         if yes:
             return self._yes()
         self.answer(NO)
