@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
 
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.game_world import GAME_WORLDS, SIMULATED, GameWorld
 from tangy_profiles.persuading import PAPER, PersuasionConfig
 from tangy_profiles.store import Store
+from tangy_tui.interaction.drift import FEWEST, DriftWatch, most_seen
 from tangy_tui.interaction.feedback import Feedback, FeedbackEntry
 from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.interaction.methods import Method, Thompson, method_of, others
@@ -34,6 +35,8 @@ class PersonModel:
     off: frozenset[str] = frozenset()
     chosen: PersuasionConfig = PAPER
     own: bool = False
+    watch: DriftWatch = field(default_factory=DriftWatch)
+    """Whether what works with them has changed."""
 
 
 class PersonModels:
@@ -101,13 +104,24 @@ class PersonModels:
         chosen = own or self._chosen
         method = method_of(chosen, others(responses, person) if chosen.prior == "people" else ())
         prior = method.prior(self._strategies)
+        watch = DriftWatch()
+        if most_seen(responses, person) >= FEWEST:  # with fewer no change could be known
+            watch = DriftWatch(in_order(self.history(person), self._strategies))
         if method.forgets:
             beliefs = replayed(method, prior, self.history(person), self.now())
         else:
-            beliefs = counted(prior, person, responses)
-        return PersonModel(
-            method, prior, beliefs, self.feedback.off(person), chosen, own is not None
-        )
+            beliefs = watch.forgotten(counted(prior, person, responses), prior)
+        off = self.feedback.off(person)
+        return PersonModel(method, prior, beliefs, off, chosen, own is not None, watch)
+
+
+def in_order(
+    history: Sequence[FeedbackEntry], strategies: Collection[str]
+) -> Iterator[tuple[str, bool]]:
+    """Return the responses that count, in the order of the requests."""
+    for entry in sorted(history, key=lambda entry: (entry.at, entry.seq)):
+        if entry.counts and entry.complied is not None and entry.strategy in strategies:
+            yield entry.strategy, entry.complied
 
 
 def unknown(strategies: Sequence[str], method: Method | None = None) -> PersonModel:

@@ -50,6 +50,7 @@ class Persuasion:
         counts: Responses | None = None,
         method: Method | None = None,
         memory: PersonModels | None = None,
+        notices_drift: bool | None = None,
     ) -> None:
         """Begin with what is known already.
 
@@ -60,8 +61,11 @@ class Persuasion:
             counts: (person, strategy) -> how often they complied, and did not.
             method: how to choose and to learn where there is no memory (default: as the paper).
             memory: recalls each person from the log, with the method that was chosen for them.
+            notices_drift: whether what came before a change of what works with somebody is
+                forgotten; by default where there is a memory.
         """
         self._memory = memory
+        self._notices_drift = memory is not None if notices_drift is None else notices_drift
         self._rng = rng
         self._known: dict[str, PersonModel] = {}
         self._touched: dict[str, datetime] = {}
@@ -116,6 +120,9 @@ class Persuasion:
         beliefs = known.method.updated(
             self.beliefs[person], known.prior, strategy, response.complied
         )
+        notices = self._notices_drift and not known.method.forgets
+        if notices and known.watch.add(strategy, response.complied) is not None:
+            beliefs = known.watch.forgotten(beliefs, known.prior)
         self.beliefs[person] = beliefs
         return beliefs[strategy]
 

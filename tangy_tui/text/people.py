@@ -70,6 +70,19 @@ def method_words(record: Record) -> str:
     return f"{record.known.method.words} ({whose})"
 
 
+def drift_lines(record: Record) -> list[str]:
+    """Say which strategies have come to work less well, or better, with a person than before."""
+    lines = []
+    for drift in record.known.watch.drifts:
+        before, now = (f"{yes} of {yes + no}" for yes, no in (drift.before, drift.after))
+        name, strategy = record.person.name, drift.strategy
+        if drift.worse:
+            lines.append(f"{strategy} used to work with {name} ({before}), lately not ({now}).")
+        else:
+            lines.append(f"{strategy} works with {name} lately ({now}); before, {before}.")
+    return lines
+
+
 def prior_words(prior: Beliefs) -> str:
     """Say where the beliefs began, with what earlier people lend to each strategy."""
     lent = [

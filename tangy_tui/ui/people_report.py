@@ -18,6 +18,7 @@ from tangy_tui.text.people import (
     P_BEST,
     SETTLED,
     STAR,
+    drift_lines,
     entry_words,
     method_words,
     prior_words,
@@ -61,7 +62,8 @@ def print_person(record: Record) -> None:
         )
     console.print(table)
     _print_legend(console, SETTLED)
-    console.print(Text(plain(sentence(record))))
+    for line in (sentence(record), *drift_lines(record)):
+        console.print(Text(plain(line)))
     console.print(Text(f"Method: {method_words(record)}; it {prior_words(record.known.prior)}."))
     print_history(record)
 

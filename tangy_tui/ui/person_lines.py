@@ -11,6 +11,7 @@ from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
 from tangy_tui.text.people import (
     NO_REQUESTS,
+    drift_lines,
     entry_words,
     method_words,
     prior_words,
@@ -59,7 +60,7 @@ def strategy_lines(record: Record, width: int, height: int) -> list[ChoiceLine]:
         lines.append(ChoiceLine(_strategy(record, strategy, label, last), strategy))
         if tall > 1:
             lines.append(ChoiceLine(()))
-    for words in (method_words(record), prior_words(record.known.prior)):
+    for words in (*drift_lines(record), method_words(record), prior_words(record.known.prior)):
         lines += [ChoiceLine(((line, "dim"),)) for line in wrap(clean(words), width)]
     return lines
 

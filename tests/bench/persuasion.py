@@ -52,8 +52,10 @@ class Chooser(Protocol):
 class Ours:
     """One of Tangy's methods with one person, as the program uses it."""
 
-    def __init__(self, method: Method, seed: object) -> None:
-        self._persuasion = Persuasion(("p",), STRATEGIES, Random(f"{seed}"), method=method)
+    def __init__(self, method: Method, seed: object, *, notices_drift: bool = False) -> None:
+        self._persuasion = Persuasion(
+            ("p",), STRATEGIES, Random(f"{seed}"), method=method, notices_drift=notices_drift
+        )
 
     def choose(self) -> str:
         return self._persuasion.choose("p").strategy
@@ -175,6 +177,14 @@ def bayes_ucb_forgetting(before: Sequence[Counts], seed: object) -> Chooser:
     return Ours(Forgetting(BayesUcb(), KEEP), seed)
 
 
+def thompson_noticing_drift(before: Sequence[Counts], seed: object) -> Chooser:
+    return Ours(Thompson(), seed, notices_drift=True)
+
+
+def bayes_ucb_noticing_drift(before: Sequence[Counts], seed: object) -> Chooser:
+    return Ours(BayesUcb(), seed, notices_drift=True)
+
+
 def mabwiser_thompson(before: Sequence[Counts], seed: object) -> Chooser:
     from mabwiser.mab import LearningPolicy
 
@@ -190,6 +200,7 @@ def mabwiser_ucb(before: Sequence[Counts], seed: object) -> Chooser:
 PLAIN = (thompson, bayes_ucb, mabwiser_thompson, mabwiser_ucb)
 PRIOR = (thompson_prior, bayes_ucb_prior)
 FORGETTING = (thompson_forgetting, bayes_ucb_forgetting)
+NOTICING = (thompson_noticing_drift, bayes_ucb_noticing_drift)
 
 
 def table(title: str, crowd: Crowd, people: int, drifting: bool = False) -> None:
@@ -197,7 +208,7 @@ def table(title: str, crowd: Crowd, people: int, drifting: bool = False) -> None
     print(f"\n{title} ({people} people)")
     print(f"  {'regret at T =':24}" + "".join(f"{t:>14}" for t in HORIZONS) + "   ratio at 60")
     yardstick = 0.0
-    extra = FORGETTING if drifting or crowd is even else ()
+    extra = (*FORGETTING, *NOTICING) if drifting or crowd is even else ()
     for make in (*PLAIN, *(PRIOR if crowd is not even else ()), *extra):
         change = CHANGE if drifting else 0
         found = regrets(make, crowd, people, HORIZONS[-1], earlier=make in PRIOR, change=change)
