@@ -16,11 +16,17 @@ from os.path import isdir
 from pathlib import Path
 from types import MappingProxyType
 
+from tangy_profiles.activity_parts import (
+    read_by_request,
+    read_pressing,
+    read_sentence,
+    read_strategies,
+    read_user_states,
+)
 from tangy_profiles.asking_limits import AskingLimits, read_asking_limits
 from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
-from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
+from tangy_profiles.cards import CardState, Deck, read_deck
 from tangy_profiles.declared.vocabulary import declares
-from tangy_profiles.defaults import PRESSING_STRATEGIES
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.extensions import activity_files
 from tangy_profiles.persuading import PAPER, PersuasionConfig, read_persuading
@@ -181,6 +187,13 @@ class Activity:
         for stage, request, state in product(self.stages, requests, self.user_states):
             yield Situation(stage, request, state.name)
 
+    def need_cards(self) -> None:
+        """Refuse what can only be done with an activity that is played with cards.
+
+        Raises:
+            ProfileError: it is played without.
+        """
+
     @property
     def teams(self) -> tuple[str, ...]:
         """The teams that take turns, where people do not play each for themselves."""
@@ -283,9 +296,9 @@ def read_activity(path: Path) -> Activity:
         from tangy_profiles.declared.activity import read_declared
 
         return read_declared(path)
-    strategies = _strategies(top.table("strategies"))
+    strategies = read_strategies(top.table("strategies"))
     plain_strategy = top.choice("plain_strategy", strategies)
-    states = _user_states(top)
+    states = read_user_states(top)
     state_names = [s.name for s in states]
     behaviours = _behaviours(top, strategies, state_names)
     rules = _stage_rules(top, behaviours)
@@ -309,7 +322,7 @@ def read_activity(path: Path) -> Activity:
         ),
         listening=listening.choice("mode", LISTENING, LISTENING[0]),
         names_pressing="pressing_strategies" in top,
-        pressing=_pressing(top, strategies),
+        pressing=read_pressing(top, strategies),
         asking=read_asking_limits(top),
     )
     listening.close()
@@ -318,46 +331,6 @@ def read_activity(path: Path) -> Activity:
         if situation not in activity.situations:
             raise top.wrong("expected", f"{' / '.join(situation)} can never come about.")
     return activity
-
-
-def _strategies(table: Table) -> dict[str, str]:
-    strategies = {key: table.text(key) for key in table}
-    if not strategies:
-        raise table.wrong("", "must name at least one persuasive strategy.")
-    return strategies
-
-
-def _pressing(top: Table, strategies: dict[str, str]) -> tuple[str, ...]:
-    usual = tuple(name for name in PRESSING_STRATEGIES if name in strategies)
-    usual = usual if len(usual) < len(strategies) else ()
-    pressing = top.words("pressing_strategies", strategies, usual)
-    if set(pressing) == set(strategies):
-        raise top.wrong("pressing_strategies", "must leave a strategy for people who refuse.")
-    return pressing
-
-
-def _user_states(top: Table) -> tuple[CardState, ...]:
-    states: list[CardState] = []
-    for entry in top.tables("user_states"):
-        name = entry.text("name")
-        states.append(
-            CardState(
-                name,
-                entry.text("label", name),
-                entry.choice("checker", CHECKERS),
-                entry.text("hint", ""),
-                entry.text("not_yet", ""),
-                _sentence(entry, "now", entry.text("now", "")),
-            )
-        )
-        entry.close()
-    checkers = [s.checker for s in states]
-    if len({s.name for s in states}) < len(states):
-        raise top.wrong("user_states", "two of them have the same name.")
-    for needed in ("unread", "otherwise"):
-        if checkers.count(needed) != 1:
-            raise top.wrong("user_states", f"exactly one must have the checker {needed!r}.")
-    return tuple(sorted(states, key=lambda s: s.checker == "otherwise"))
 
 
 def _behaviours(top: Table, strategies: dict[str, str], states: list[str]) -> dict[str, Behaviour]:
@@ -385,10 +358,10 @@ def _stage_rules(top: Table, behaviours: dict[str, Behaviour]) -> tuple[StageRul
     for entry in top.tables("stages"):
         stage = entry.text("name")
         condition = entry.choice("when", CONDITIONS)
-        not_yet, label = _by_request(entry, "not_yet"), _by_request(entry, "label")
-        now = _by_request(entry, "now")
+        not_yet, label = read_by_request(entry, "not_yet"), read_by_request(entry, "label")
+        now = read_by_request(entry, "now")
         for sentence in now.values():
-            _sentence(entry, "now", sentence)
+            read_sentence(entry, "now", sentence)
         if condition in ("before", "after"):
             named = entry.choice("behaviour", behaviours)
             rule = StageRule(stage, condition, named, not_yet=not_yet, label=label, now=now)
@@ -406,20 +379,6 @@ def _stage_rules(top: Table, behaviours: dict[str, Behaviour]) -> tuple[StageRul
     if not rules or rules[-1].condition != "otherwise":
         raise top.wrong("stages", "the last one must be when = 'otherwise'.")
     return tuple(rules)
-
-
-def _sentence(table: Table, key: str, sentence: str) -> str:
-    """Check that nothing but {name} is to be filled into a sentence."""
-    if "{" in sentence.replace("{name}", "") or "}" in sentence.replace("{name}", ""):
-        raise table.wrong(key, "can have nothing filled in but {name}.")
-    return sentence
-
-
-def _by_request(entry: Table, key: str) -> Mapping[str, str]:
-    table = entry.table(key, optional=True)
-    words = {request: table.text(request) for request in ("ANR", "AR") if request in table}
-    table.close(also=("ANR", "AR"))
-    return MappingProxyType(words)
 
 
 def _expected(

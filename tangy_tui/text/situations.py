@@ -22,6 +22,7 @@ from tangy_tui.learning.verification import (
     Rejected,
     Verification,
 )
+from tangy_tui.text.activities import facts_words
 from tangy_tui.text.numbers import counted
 
 MOST_STEPS = 3
@@ -81,6 +82,8 @@ def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Na
         sentences.append(shown.hint)
         if scene.card is not None:
             sentences.append(card_words(activity, scene.card))
+    if state.facts:
+        sentences += facts_words(state, name)
     return " ".join(part for part in sentences if part)
 
 

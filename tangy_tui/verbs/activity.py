@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +13,7 @@ from tangy_profiles.asking_limits import GAME, VISIT
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import ActivityName, Data, Json, Users, print_json
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, print_json
 from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
@@ -109,6 +110,89 @@ def activity_check(
         raise typer.Exit(2)
 
 
+@app.command("show")
+def activity_show(
+    activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
+    as_json: Json = False,
+) -> None:
+    """Show what there is in an activity: its stages, facts and behaviours."""
+    from tangy_profiles.activity import load_activity
+    from tangy_profiles.declared.activity import DeclaredActivity
+    from tangy_tui.text.activities import activity_lines
+
+    loaded = load_activity(activity)
+    if as_json:
+        print_json(_activity_document(loaded.name, loaded))
+    elif isinstance(loaded, DeclaredActivity):
+        for line in activity_lines(loaded):
+            print(plain(line))
+    else:
+        from tangy_tui.ui.check_report import print_activities
+
+        print_activities([(loaded.name, loaded)])
+
+
+@app.command("try")
+def activity_try(
+    activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
+    users: Users = 4,
+    seed: Seed = 1,
+    as_json: Json = False,
+) -> None:
+    """Play one game by what the activity's file expects, and tell it step by step."""
+    from tangy_profiles.activity import load_activity
+    from tangy_tui.app.trying import tried_game
+    from tangy_tui.text.activities import TRIED, people_did, tried_lines
+
+    steps = []
+    for step in tried_game(load_activity(activity), users, seed or 1):
+        if as_json:
+            steps.append(asdict(step))
+            continue
+        lines = tried_lines(step.number, step.situation, step.behaviour, step.whom, step.said)
+        for line in (*lines, people_did(step.doing)):
+            if line:
+                print(plain(line))
+    print_json({"steps": steps, "finished": True}) if as_json else print(TRIED)
+
+
+@app.command("new")
+def activity_new(
+    folder: Annotated[Path, typer.Argument(help="Where the files go.")] = Path(),
+) -> None:
+    """Ask what an activity is about, and write a file for it that can be played as it is."""
+    from tangy_tui.text import activity_template as template
+
+    title = _asked(template.ASK_TITLE)
+    while not template.NewActivity(title, "", turns=False).name:
+        title = _asked(template.ASK_AGAIN)
+    item = _asked(template.ASK_ITEMS).strip()
+    turns = _asked(template.ASK_TURNS).strip().lower().startswith("y")
+    new = template.NewActivity(title, item, turns)
+    toml, table = folder / f"{new.name}.toml", folder / f"{new.name}.csv"
+    for path in (toml, table):
+        if path.exists():
+            raise TangyError(plain(f"{path} is there already: give it another title."))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        toml.write_text(template.activity_file(new), encoding="utf-8")
+        if item:
+            table.write_text(template.items_table(new), encoding="utf-8")
+    except OSError as error:
+        raise TangyError(plain(f"{toml}: cannot be written ({error.strerror}).")) from None
+    for line in template.written_lines(str(toml), str(table) if item else ""):
+        print(plain(line))
+
+
+def _asked(question: str) -> str:
+    """Ask for a line; what could not stand in a file's text is left out."""
+    try:
+        said = input(question)
+    except EOFError:
+        raise TangyError("Nothing was answered: nothing is written.") from None
+    return " ".join("".join(c for c in plain(said) if c not in '"\\{}').split())[:60]
+
+
 @app.command("phrases")
 def activity_phrases(
     activity: Annotated[
@@ -171,10 +255,13 @@ def _holds_faults(file: str) -> bool:
 
 def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
     from tangy_profiles.activity import load_activity
+    from tangy_profiles.declared.activity import DeclaredActivity
+    from tangy_profiles.declared.checking import findings
     from tangy_profiles.declared.source import MistakesError
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
     from tangy_tui.speech.activity_check import CheckedFile, check_activity
+    from tangy_tui.text.activities import finding_words
 
     try:
         activity = load_activity(name)
@@ -182,7 +269,11 @@ def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
         return CheckedFile(plain(Path(name).name), error.lines), None
     except ProfileError as error:
         return CheckedFile(plain(Path(name).name), (str(error),)), None
-    return check_activity(activity, robot, load_room().placed(load_people(SHOWN))), activity
+    checked = check_activity(activity, robot, load_room().placed(load_people(SHOWN)))
+    if isinstance(activity, DeclaredActivity):
+        found = [finding_words(activity.source, one) for one in findings(activity)]
+        checked = replace(checked, warnings=(*checked.warnings, *map(plain, found)))
+    return checked, activity
 
 
 def _activity_document(name: str, activity: Activity) -> dict[str, Any]:

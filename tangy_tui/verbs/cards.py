@@ -62,6 +62,7 @@ def cards_print(
     if paper not in PAPERS:
         raise TangyError(plain(f"--paper {paper[:40]!r} is not known; {nearest(paper, PAPERS)}"))
     loaded = load_activity(activity)
+    loaded.need_cards()
     cards = _cards(first, count)
     written: dict[str, Any] = {"cards": len(cards), "first": first, "deck_seed": deck_seed}
     try:
@@ -97,7 +98,9 @@ def cards_list(
     from tangy_profiles.activity import load_activity
     from tangy_profiles.card_face import rows_of, tag_ids
 
-    deck = load_activity(activity).deck
+    loaded = load_activity(activity)
+    loaded.need_cards()
+    deck = loaded.deck
     cards = _cards(first, count)
     if as_json:
         listed = [

@@ -43,6 +43,7 @@ def drill(
 
     name = teacher_name() if who is None else read_name(who, "--who: a name")
     with open_workspace(data, activity, users, write=not scores) as workspace:
+        workspace.activity.need_cards()
         if scores:
             from tangy_profiles.codec import written
             from tangy_tui.monitoring.drill_log import read_sheets

@@ -71,6 +71,7 @@ def read_card(
     if bool(files) == (bench is not None):
         raise TangyError("Give pictures of cards, or a folder of them with --bench DIR.")
     loaded = load_activity(activity)
+    loaded.need_cards()
     numbers = None if called is None else _called(called, loaded)
     if method not in METHODS:
         raise TangyError(

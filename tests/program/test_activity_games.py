@@ -29,3 +29,41 @@ def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
     assert (document["finished"], document["stopped"], document["asked"]) == (100, [], 0)
     assert document["faults"] == []
     assert all(row["success"] in (None, 1.0) for row in document["rows"])
+
+
+@pytest.mark.parametrize(
+    "answers", ["Poem circle\npoem\ny\n", "Finger rhymes\n\nn\n", "!\nJoke hour\njoke\nn\n"]
+)
+def test_a_new_activity_is_sound_and_can_be_played_as_it_is_written(
+    answers: str, tangy: Tangy, tmp_path: Path
+) -> None:
+    made = tangy("activity", "new", tmp_path / "mine", stdin=answers)
+    assert (made.returncode, made.stderr) == (0, "")
+    (file,) = (tmp_path / "mine").glob("*.toml")
+    checked = json.loads(tangy("activity", "check", "--json", file).stdout)
+    assert [(one["mistakes"], one["warnings"]) for one in checked["files"]] == [([], [])]
+    assert json.loads(tangy("activity", "try", "--json", file).stdout)["finished"]
+    options = ("--activity", file, "--data", tmp_path / "data")
+    tangy("teach", "--teacher", "scripted", "--guided", "--games", 1, *options)
+    tangy("learn", *options)
+    played = tangy("play", "--games", 20, "--headless", "--json", "--seed", 3, *options)
+    assert json.loads(played.stdout)["finished"] == 20
+
+
+def test_a_file_that_is_there_is_not_written_over(tangy: Tangy, tmp_path: Path) -> None:
+    (tmp_path / "poems.csv").write_text("mine", encoding="utf-8")
+    made = tangy("activity", "new", tmp_path, stdin="Poems\npoem\nn\n")
+    assert made.returncode == 2
+    assert (tmp_path / "poems.csv").read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize(
+    "words", [("live", "--bench", "--headless"), ("drill",), ("cards", "list")]
+)
+def test_what_needs_cards_says_so_of_an_activity_without(
+    words: tuple[str, ...], tangy: Tangy, tmp_path: Path
+) -> None:
+    data = () if words[0] == "cards" else ("--data", tmp_path)
+    done = tangy(*words, "--activity", "trivia", *data)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1

@@ -41,6 +41,16 @@ class DeclaredActivity(Activity):
         """The situations that the conditions of the stages do not rule out, in their order."""
         return tuple(situations(self.declaration))
 
+    def need_cards(self) -> None:
+        """Refuse what can only be done with an activity that is played with cards.
+
+        Raises:
+            ProfileError: always.
+        """
+        raise ProfileError(
+            f"{self.title} has no cards: so far it is taught and played in the simulated room only."
+        )
+
     @property
     def teams(self) -> tuple[str, ...]:
         """The teams that take turns, where people do not play each for themselves."""

@@ -1,0 +1,68 @@
+"""Parts of an activity's file that are read by themselves: strategies and user states."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from tangy_profiles.cards import CHECKERS, CardState
+from tangy_profiles.defaults import PRESSING_STRATEGIES
+from tangy_profiles.reading import Table
+
+
+def read_strategies(table: Table) -> dict[str, str]:
+    """Read the persuasive strategies, each with what it does."""
+    strategies = {key: table.text(key) for key in table}
+    if not strategies:
+        raise table.wrong("", "must name at least one persuasive strategy.")
+    return strategies
+
+
+def read_pressing(top: Table, strategies: dict[str, str]) -> tuple[str, ...]:
+    """Read which strategies press people, or take those that usually do."""
+    usual = tuple(name for name in PRESSING_STRATEGIES if name in strategies)
+    usual = usual if len(usual) < len(strategies) else ()
+    pressing = top.words("pressing_strategies", strategies, usual)
+    if set(pressing) == set(strategies):
+        raise top.wrong("pressing_strategies", "must leave a strategy for people who refuse.")
+    return pressing
+
+
+def read_user_states(top: Table) -> tuple[CardState, ...]:
+    """Read how a person can be doing, by what a card shows."""
+    states: list[CardState] = []
+    for entry in top.tables("user_states"):
+        name = entry.text("name")
+        states.append(
+            CardState(
+                name,
+                entry.text("label", name),
+                entry.choice("checker", CHECKERS),
+                entry.text("hint", ""),
+                entry.text("not_yet", ""),
+                read_sentence(entry, "now", entry.text("now", "")),
+            )
+        )
+        entry.close()
+    checkers = [s.checker for s in states]
+    if len({s.name for s in states}) < len(states):
+        raise top.wrong("user_states", "two of them have the same name.")
+    for needed in ("unread", "otherwise"):
+        if checkers.count(needed) != 1:
+            raise top.wrong("user_states", f"exactly one must have the checker {needed!r}.")
+    return tuple(sorted(states, key=lambda s: s.checker == "otherwise"))
+
+
+def read_sentence(table: Table, key: str, sentence: str) -> str:
+    """Check that nothing but {name} is to be filled into a sentence."""
+    if "{" in sentence.replace("{name}", "") or "}" in sentence.replace("{name}", ""):
+        raise table.wrong(key, "can have nothing filled in but {name}.")
+    return sentence
+
+
+def read_by_request(entry: Table, key: str) -> Mapping[str, str]:
+    """Read words by request: for ANR, and for AR."""
+    table = entry.table(key, optional=True)
+    words = {request: table.text(request) for request in ("ANR", "AR") if request in table}
+    table.close(also=("ANR", "AR"))
+    return MappingProxyType(words)

@@ -1,0 +1,171 @@
+"""A declared activity looked over by searching its games: what can never be, or never ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.search import Reach, explore
+from tangy_profiles.declared.shown_moves import UNDECIDED, Move, ShownMoves
+from tangy_profiles.declared.speech import empty_slots
+from tangy_profiles.state import EVERYBODY
+
+Flaw = Literal[
+    "stage never reached",
+    "situation never reached",
+    "fact never changes",
+    "fact never cleared",
+    "fact never looked at",
+    "behaviour never possible",
+    "text lacks a word",
+    "never ends",
+]
+PLAYERS = ("one", "other")
+MOST_TRIED = 12_000
+"""States that are searched with every behaviour that can be done."""
+
+
+@dataclass(frozen=True, slots=True)
+class ActivityFlaw:
+    """One flaw of an activity: of what, and (where it is a text) of which."""
+
+    flaw: Flaw
+    name: str
+    text: str = ""
+
+
+def findings(activity: DeclaredActivity) -> Iterator[ActivityFlaw]:
+    """Yield what is wrong with an activity that can be read, the worst first."""
+    slots: dict[tuple[str, str], bool] = {}
+    found = _tried(activity, slots)
+    if found.stuck is not None:
+        yield ActivityFlaw("never ends", activity.in_words(found.stuck))
+    if found.whole:
+        stages = {situation.stage for situation in found.reached}
+        for stage in activity.stages:
+            if stage not in stages:
+                yield ActivityFlaw("stage never reached", stage)
+        for situation in activity.situations:
+            if situation.stage in stages and situation not in found.reached:
+                yield ActivityFlaw("situation never reached", activity.in_words(situation))
+        for name in activity.behaviours:
+            if name not in found.played:
+                yield ActivityFlaw("behaviour never possible", name)
+    if activity.expected:
+        slots = _spoken_as_expected(activity)
+    for (behaviour, text), lacks in slots.items():
+        if lacks and behaviour in found.played:
+            yield ActivityFlaw("text lacks a word", behaviour, text)
+    yield from _unused_facts(activity)
+
+
+def _tried(activity: DeclaredActivity, slots: dict[tuple[str, str], bool]) -> Reach:
+    """Search with every behaviour, and note which texts lack a word whenever they are spoken."""
+    declaration = activity.declaration
+    players = (activity.teams or PLAYERS)[:2]
+    rounds = min(declaration.items.rounds, max(1, declaration.most_counted))
+    situations = ShownMoves(activity.behaviours)
+
+    def moves(game: DeclaredGame) -> list[Move]:
+        able: list[Move] = []
+        for name, one in declaration.behaviours.items():
+            people = [game.whom(selector) for selector in one.to]
+            for whom in dict.fromkeys(people) if one.to else (None,):
+                nobody = whom is None and one.to and "group" not in one.to
+                if game.allows(name, whom) and not nobody:
+                    able.append((name, whom))
+                    _note_slots(game, name, whom, slots, any_time=False)
+        return able
+
+    game = DeclaredGame(declaration, players, range(rounds))
+    return explore(game, moves, situations.situation, MOST_TRIED)
+
+
+def _spoken_as_expected(activity: DeclaredActivity) -> dict[tuple[str, str], bool]:
+    """Return which texts lack a word at some time in games that go as the file expects."""
+    slots: dict[tuple[str, str], bool] = {}
+    declaration = activity.declaration
+    shown = expected_moves(activity)
+
+    def moves(game: DeclaredGame) -> list[Move]:
+        move = shown.move(game)
+        if move is None or move[0] == UNDECIDED:
+            return []
+        _note_slots(game, *move, slots, any_time=True)
+        return [move]
+
+    game = DeclaredGame(declaration, (activity.teams or PLAYERS)[:2], range(1))
+    if declaration.items.rounds:
+        game = DeclaredGame(declaration, game.players, range(min(2, declaration.items.rounds)))
+    explore(game, moves, shown.situation, MOST_TRIED)
+    return slots
+
+
+def expected_moves(activity: DeclaredActivity) -> ShownMoves:
+    """Return what an activity's file expects of a facilitator, as if it had been shown."""
+    shown = ShownMoves(activity.behaviours)
+    for situation, behaviour in activity.expected.items():
+        shown.shown[situation] = behaviour
+        to = activity.behaviours[behaviour].to
+        selector = activity.whom_expected(situation) or (to[0] if to else None)
+        if selector is not None:
+            named = EVERYBODY if selector == "group" else selector
+            shown.whom[situation.stage, behaviour] = (named,)
+    return shown
+
+
+def _note_slots(
+    game: DeclaredGame,
+    name: str,
+    whom: str | None,
+    slots: dict[tuple[str, str], bool],
+    *,
+    any_time: bool,
+) -> None:
+    """Note which texts of a behaviour lack a word: at any time, or each time so far."""
+    declared = game.declaration.behaviours[name]
+    texts = [text for found in declared.says.values() for text in found] + [declared.image]
+    wanted = [text for text in texts if "{" in text]
+    if not wanted or all(slots.get((name, text)) is any_time for text in wanted):
+        return  # there is nothing to look at, or nothing that could change
+    after = game.copy()
+    after.execute(name, whom)
+    for text in wanted:
+        lacks = bool(empty_slots(after, text, whom))
+        before = slots.get((name, text), not any_time)
+        slots[name, text] = (lacks or before) if any_time else (lacks and before)
+
+
+def _unused_facts(activity: DeclaredActivity) -> Iterator[ActivityFlaw]:
+    declaration = activity.declaration
+    effects = [effect for one in declaration.behaviours.values() for effect in one.effects]
+    changed = {
+        effect.fact for effect in effects if effect.does in ("set", "add", "start", "invite")
+    }
+    cleared = {effect.fact for effect in effects if effect.does in ("set", "clear", "start")}
+    brought = {habit.fact for habit in declaration.habits}
+    final = {habit.fact for habit in declaration.habits if habit.last}
+    looked = {fact.name for fact, _ in declaration.looked_at}
+    spoken = {
+        slot
+        for one in declaration.behaviours.values()
+        for text in (*(text for texts in one.says.values() for text in texts), one.image)
+        for slot in looked ^ set(declaration.facts)
+        if f"{{{slot}}}" in text or f"{{{slot} of each}}" in text
+    }
+    for fact in declaration.facts.values():
+        if fact.built_in or fact.kind == "test":
+            continue
+        if fact.name not in changed | brought and not fact.sources:
+            yield ActivityFlaw("fact never changes", fact.name)
+        elif fact.name not in looked | spoken:
+            yield ActivityFlaw("fact never looked at", fact.name)
+        elif fact.kind != "count" and fact.name in brought - cleared - final:
+            values = {
+                value for h in declaration.habits if h.fact == fact.name for value, _ in h.weights
+            }
+            if fact.values[0] not in values:
+                yield ActivityFlaw("fact never cleared", fact.name)

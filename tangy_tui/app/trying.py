@@ -1,0 +1,61 @@
+"""Trying an activity: one simulated game by what its file expects, told step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.whom import first_addressee
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import load_people
+
+MOST_STEPS = 500
+
+
+@dataclass(frozen=True, slots=True)
+class TriedStep:
+    """One step of the game: the situation, the behaviour, for whom, what was said, who did what."""
+
+    number: int
+    situation: str
+    behaviour: str
+    whom: str
+    said: str
+    doing: dict[str, str]
+
+
+def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]:
+    """Play one game by what is expected.
+
+    Raises:
+        TangyError: nothing is expected in a situation, or the game does not end.
+    """
+    from tangy_sim.worlds.declared_world import DeclaredWorld
+
+    if not isinstance(activity, DeclaredActivity):
+        raise TangyError(f"{activity.title} has cards: see it with tangy demo.")
+    people = {one.id: one.name for one in load_people(users)}
+    names = dict.fromkeys(activity.teams, "") or people
+    names = {id: name or id for id, name in names.items()}
+    world = DeclaredWorld(activity, tuple(names), seed=seed)
+    for number in range(1, MOST_STEPS + 1):
+        state = world.observe()
+        expected = activity.expected.get(state.situation)
+        situation = activity.in_words(state.situation)
+        if expected is None:
+            raise TangyError(f"{activity.source}: nothing is expected here: {situation}.")
+        behaviour = activity.behaviours[expected]
+        selector = activity.whom_expected(state.situation)
+        whom = dict(state.whom).get(selector or "") or (
+            None if selector else first_addressee(behaviour, state)
+        )
+        action = activity.action(behaviour, whom, None)
+        outcome = world.execute(action)
+        said, _ = activity.words_of(action, outcome, lambda id: names.get(id, id))
+        did = {names[id]: what for id, what in world.scene().doing.items() if what != "watches"}
+        yield TriedStep(number, situation, expected, names.get(whom or "", ""), said, did)
+        if world.over:
+            return
+    raise TangyError(f"{activity.title}: the game did not end within {MOST_STEPS} steps.")

@@ -1,0 +1,108 @@
+"""Activities in words: what a search found wrong with one, and what there is in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.checking import ActivityFlaw
+from tangy_profiles.declared.model import Effect, Fact, FactCondition
+from tangy_profiles.declared.situations import seen_facts
+from tangy_profiles.state import ActivityState
+
+
+def finding_words(source: str, found: ActivityFlaw) -> str:
+    """Say what is wrong with an activity, in one line that names the place."""
+    name = repr(found.name)
+    match found.flaw:
+        case "stage never reached":
+            words = f"stages: no game comes to the stage {name}"
+        case "situation never reached":
+            words = f"stages: this never comes about: {found.name}"
+        case "fact never changes":
+            words = f"facts.{found.name}: nothing sets it, and nobody brings it about"
+        case "fact never cleared":
+            words = f"facts.{found.name}: once it has changed, no behaviour sets it back"
+        case "fact never looked at":
+            words = f"facts.{found.name}: no stage, condition or text looks at it"
+        case "behaviour never possible":
+            words = f"behaviours.{found.name}: it is never possible; look at 'needs' and 'to'"
+        case "text lacks a word":
+            words = f"behaviours.{found.name}: {found.text!r} lacks a word when it is said"
+        case "never ends":
+            words = f"stages: from here no game can end: {found.name}"
+    return f"{source}: {words}."
+
+
+def facts_words(state: ActivityState, name: Callable[[str], str]) -> list[str]:
+    """Say what is seen of a game of a declared activity, and whose turn it is."""
+    turn = dict(state.whom).get("whose turn")
+    sentences = [f"It is the turn of {name(turn)}."] if turn is not None else []
+    facts = seen_facts(state.situation)
+    if facts:
+        seen = ", ".join(f"{fact} is {value}" for fact, value in facts.items())
+        sentences.append(f"Seen: {seen}.")
+    return sentences
+
+
+def activity_lines(activity: DeclaredActivity) -> Iterator[str]:
+    """Tell what there is in an activity: stages, facts, behaviours, a line each."""
+    declaration = activity.declaration
+    yield f"{activity.title} ({activity.source})"
+    if declaration.items.rows:
+        items = declaration.items
+        yield f"  {len(items.rows)} items, {items.rounds} in a game: {', '.join(items.columns)}"
+    if activity.teams:
+        yield f"  teams: {', '.join(activity.teams)}"
+    yield "Stages, the first that fits:"
+    for stage in declaration.stages:
+        when = " and ".join(map(condition_words, stage.when)) or "otherwise"
+        about = "" if stage.about == "group" else f", about {stage.about}"
+        sees = f"; sees {', '.join(stage.sees)}" if stage.sees else ""
+        yield f"  {stage.name}: {when}{about}{sees}"
+    yield "Facts:"
+    for fact in declaration.facts.values():
+        if not fact.built_in:
+            yield f"  {fact.name}: {_fact_words(fact)}"
+    yield "Behaviours:"
+    for name, one in declaration.behaviours.items():
+        to = f", for {' or '.join(one.to)}" if one.to else ""
+        does = ", ".join(map(_effect_words, one.effects)) or "speaks only"
+        yield f"  {name}{to}: {does}"
+
+
+def condition_words(condition: FactCondition) -> str:
+    """Write a condition as it stands in a file."""
+    quantifier = f"{condition.quantifier} " if condition.quantifier else ""
+    return f"{quantifier}{condition.fact} {condition.comparison} {condition.value}"
+
+
+def _effect_words(effect: Effect) -> str:
+    words = " ".join(part for part in (effect.does, effect.fact, effect.value) if part)
+    conditions = " and ".join(map(condition_words, effect.conditions))
+    return f"{words} if {conditions}" if conditions else words
+
+
+def _fact_words(fact: Fact) -> str:
+    values = ", ".join(fact.values) or "a number"
+    whose = " of each player" if fact.per_player else ""
+    sources = f", from {', '.join(fact.sources)}" if fact.sources else ""
+    return f"{fact.kind}{whose} ({values}){sources}"
+
+
+TRIED = "The game has come to its end."
+NOTHING_EXPECTED = (
+    "The file does not say what is expected: add lines to 'expected', or teach it by tangy teach."
+)
+
+
+def tried_lines(number: int, situation: str, behaviour: str, whom: str, said: str) -> list[str]:
+    """Tell a step of a game that was tried, in one line or two."""
+    lines = [f"{number}. {situation} -> {behaviour}{f' ({whom})' if whom else ''}"]
+    return [*lines, f"   Tangy says: {said}"] if said else lines
+
+
+def people_did(doing: dict[str, str]) -> str:
+    """Tell what people did after a step ("": nothing)."""
+    did = "; ".join(f"{person}: {what}" for person, what in doing.items())
+    return f"   {did}" if did else ""

@@ -1,0 +1,110 @@
+"""The file of a new activity: what is asked of its author, and what is written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+ASK_TITLE = "What is the activity called? "
+ASK_ITEMS = "What does each round bring: a question, song, story ...? (Enter: nothing new) "
+ASK_TURNS = "Do people take turns? (y/n) "
+ASK_AGAIN = "Please give it a name with at least one letter. "
+
+
+@dataclass(frozen=True, slots=True)
+class NewActivity:
+    """What an author says of a new activity: its title, what a round brings, whether in turns."""
+
+    title: str
+    item: str
+    turns: bool
+
+    @property
+    def name(self) -> str:
+        """The name of the file: the title in small letters, its words joined by dashes."""
+        kept = "".join(c if c.isascii() and c.isalnum() else " " for c in self.title.lower())
+        return "-".join(kept.split())
+
+
+def items_table(new: NewActivity) -> str:
+    """Return the CSV file of the items, with two rows to write over."""
+    return f"text,more\nThe first {new.item},Something to add to it\nThe second {new.item},More\n"
+
+
+def activity_file(new: NewActivity) -> str:
+    """Return the activity's file: it can be played as it is, and says what can be changed."""
+    item = bool(new.item)
+    whose = 'to = "whose turn"\n' if new.turns else ""
+    name = "{name}, " if new.turns else ""
+    about = ', about = "whose turn"' if new.turns else ""
+    turn = ', "next turn"' if new.turns else ""
+    per = 'per = "player", ' if new.turns else ""
+    mine = ', "turn is yes"' if new.turns else ""
+    over = '["items is over"]' if item else '["round >= 3"]'
+    count = "" if item else 'round = { kind = "count" }          # how often something was put\n'
+    nxt = '"next item"' if item else '"add round"'
+    said = "{text}" if item else "What comes to your mind today?"
+    more = "{more}" if item else "Take a moment, and think of something nice."
+    table = f'items = {{ file = "{new.name}.csv" }}  # one row a round\n'
+    return f"""# {new.title}. Try it with: tangy activity try {new.name}.toml
+name = "{new.name}"
+title = "{new.title}"
+{table if item else ""}flags = ["opened", "waiting", "helped"]  # what is so or not, at first not
+
+# The first stage whose conditions hold is the present one. `sees` names the facts that Tangy
+# goes by there: it learns one answer for each of their values.
+stages = [
+  {{ name = "start", when = ["opened is no"] }},
+  {{ name = "reply", when = ["waiting is yes", "answer is given"]{about} }},
+  {{ name = "wait", when = ["waiting is yes"]{about}, sees = ["clock", "helped"] }},
+  {{ name = "close", when = {over} }},
+  {{ name = "next" }},
+]
+
+# What a good host does, for `tangy activity try` and the scripted teacher; Tangy never learns
+# from it, it learns from what you show.
+expected = [
+  ["start", "open the round"],
+  ["reply", "thank people"],
+  ["wait", "clock is <20", "give time"],
+  ["wait", "helped is no", "help on"],
+  ["wait", "thank people"],
+  ["close", "close the round"],
+  ["next", "begin the next"],
+]
+
+[facts]
+clock = {{ kind = "timer", bands = [20] }}      # s; below 20, or not
+{count}answer = {{ {per}values = ["none", "given"], from = ["staff", "button"] }}
+
+[people]                                      # for simulated games: when, and how probably
+answer = {{ while = ["waiting is yes", "answer is none"{mine}], chance = 0.4, given = 1 }}
+
+[behaviours."open the round"]
+does = ["set opened yes"]
+says = ["Welcome to {new.title}!"]
+[behaviours."begin the next"]
+{whose}does = [{nxt}, "set waiting yes", "set helped no", "clear answer", "start clock"]
+says = ["{name}{said}"]
+[behaviours."give time"]
+says = ["Take your time.", "No hurry."]
+[behaviours."help on"]
+{whose}does = ["set helped yes", "start clock"]
+says = ["{more}"]
+[behaviours."thank people"]
+{whose}does = ["set waiting no"{turn}]
+says = ["Thank you{", {name}" if new.turns else ""}!"]
+[behaviours."close the round"]
+does = ["finish"]
+says = ["That was {new.title}. Goodbye!"]
+"""
+
+
+def written_lines(toml: str, table: str) -> list[str]:
+    """Say which files were written, and how to go on."""
+    also = f" and {table}" if table else ""
+    return [
+        f"Written: {toml}{also}. Change what you like, then:",
+        f"  tangy activity check {toml}",
+        f"  tangy activity try {toml}",
+        f"  tangy teach --guided --activity {toml}",
+    ]

@@ -1,0 +1,60 @@
+"""A search of an activity's games finds what can never be, lacks a word, or never ends."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.activity import shipped_activities
+from tangy_profiles.declared.activity import read_declared
+from tangy_profiles.declared.checking import findings
+from tests.support.declared import DECLARED, declared
+
+SHIPPED = shipped_activities()["trivia"]
+
+
+def flaws(folder: Path, *changes: tuple[str, str]) -> set[tuple[str, str]]:
+    text = SHIPPED.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    shutil.copy(SHIPPED.with_suffix(".csv"), folder / "trivia.csv")
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return {(found.flaw, found.name) for found in findings(read_declared(path))}
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_what_ships_has_no_flaw(name: str) -> None:
+    assert list(findings(declared(name))) == []
+
+
+def test_a_stage_that_no_game_comes_to_and_a_flag_that_nothing_sets(tmp_path: Path) -> None:
+    never = '{ name = "never", when = ["lost is yes"] },\n  { name = "over"'
+    changes = (('{ name = "over"', never), ('flags = ["greeted"', 'flags = ["lost", "greeted"'))
+    assert flaws(tmp_path, *changes) == {
+        ("stage never reached", "never"),
+        ("fact never changes", "lost"),
+    }
+
+
+def test_a_game_that_cannot_end(tmp_path: Path) -> None:
+    stuck = flaws(tmp_path, ('does = ["finish"]', 'needs = ["greeted is no"]\ndoes = ["finish"]'))
+    assert any(flaw == "never ends" for flaw, _ in stuck)
+
+
+def test_a_text_that_lacks_a_word_when_it_is_said(tmp_path: Path) -> None:
+    early = flaws(tmp_path, ("Welcome to the quiz!", "Welcome! The first is: {ask}"))
+    assert early == {("text lacks a word", "welcome everyone")}
+
+
+def test_a_fact_that_is_never_set_back(tmp_path: Path) -> None:
+    assert ("fact never cleared", "answer") in flaws(tmp_path, ('"clear answer", ', ""))
+
+
+def test_a_behaviour_that_is_never_possible(tmp_path: Path) -> None:
+    needs = 'needs = ["open is yes", "open is no"]\n'
+    never = ('[behaviours."tell scores"]\n', f'[behaviours."tell scores"]\n{needs}')
+    assert ("behaviour never possible", "tell scores") in flaws(tmp_path, never)
