@@ -22,7 +22,7 @@ def main() -> None:
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal without UTF-8 still gets its line
     try:
-        status = _run()
+        status = run()
     except TangyError as error:
         print(f"tangy: {error}", file=sys.stderr)
         status = 2
@@ -35,7 +35,7 @@ def main() -> None:
     sys.exit(status if isinstance(status, int) else 0)
 
 
-def _run() -> object:
+def run() -> object:
     """Run what the words of the command line ask for.
 
     The option parser takes longer to load than most of the program needs to open, so that it is
@@ -44,15 +44,15 @@ def _run() -> object:
     if sys.argv[1:] == ["--version"]:
         print(f"tangy {__version__}")
         return 0
-    if (given := _program_options(sys.argv[1:])) is not None:
+    if (given := program_options(sys.argv[1:])) is not None:
         from tangy_tui.verbs.opening import full_screen, open_program
 
         if full_screen():
             return open_program(**given)
-    return _parsed()
+    return parsed()
 
 
-def _program_options(words: Sequence[str]) -> dict[str, Any] | None:
+def program_options(words: Sequence[str]) -> dict[str, Any] | None:
     """Return what `open_program` is given, or None where more than its plain options is said."""
     given: dict[str, Any] = {}
     rest = iter(words)
@@ -70,7 +70,7 @@ def _program_options(words: Sequence[str]) -> dict[str, Any] | None:
     return given
 
 
-def _parsed() -> object:
+def parsed() -> object:
     """Run the verb that is asked for."""
     import typer
 

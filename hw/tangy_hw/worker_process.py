@@ -98,7 +98,7 @@ class WorkerProcess:
         self._longest, self._forgiving, self._loop = longest, forgiving, loop
         self._lock = threading.Lock()
         self._number = FIRST
-        self._asked: dict[int, Future[Any]] = {}
+        self.asked: dict[int, Future[Any]] = {}
         self.first = self._expect(FIRST)
         """The answer of a child that says by itself when it is ready."""
         with ExitStack() as opened:
@@ -106,7 +106,7 @@ class WorkerProcess:
                 with suppress(OSError):
                     stderr = opened.enter_context(open_log(log)).fileno()
             try:
-                self._process = subprocess.Popen(  # noqa: S603 - it is our own program
+                self.process = subprocess.Popen(  # noqa: S603 - it is our own program
                     list(command),
                     stdin=subprocess.PIPE,
                     stdout=subprocess.PIPE,
@@ -115,18 +115,18 @@ class WorkerProcess:
                 )
             except OSError as error:
                 raise WorkerError(error.strerror or str(error)) from None
-        assert self._process.stdin is not None  # noqa: S101 - it was asked for
-        self._queue = WriteQueue(self._process.stdin)
-        self._threads = [
-            threading.Thread(target=work, daemon=True) for work in (self._queue.run, self._listen)
+        assert self.process.stdin is not None  # noqa: S101 - it was asked for
+        self.outbox = WriteQueue(self.process.stdin)
+        self.threads = [
+            threading.Thread(target=work, daemon=True) for work in (self.outbox.run, self._listen)
         ]
-        for thread in self._threads:
+        for thread in self.threads:
             thread.start()
 
     @property
     def pid(self) -> int | None:
         """The id of its process, which is that of its group; None where it has ended."""
-        return self._process.pid if self._process.poll() is None else None
+        return self.process.pid if self.process.poll() is None else None
 
     # ------------------------------------------------------------------------- what it is told
 
@@ -136,11 +136,11 @@ class WorkerProcess:
         Returns:
             None where it takes no more.
         """
-        return self._queue.put(what if isinstance(what, str) else json.dumps(what))
+        return self.outbox.put(what if isinstance(what, str) else json.dumps(what))
 
     def beat(self, what: Mapping[str, Any]) -> None:
         """Have a line written that is worth nothing later: it is left out where others wait."""
-        self._queue.beat(json.dumps(what))
+        self.outbox.beat(json.dumps(what))
 
     def expect(self) -> tuple[int, Future[Any]]:
         """Return an id for what is told next, and what is done when that is answered.
@@ -156,8 +156,8 @@ class WorkerProcess:
         return number, answer
 
     def _expect(self, number: int) -> Future[Any]:
-        answer = self._asked[number] = Future()
-        answer.add_done_callback(lambda _: self._asked.pop(number, None))
+        answer = self.asked[number] = Future()
+        answer.add_done_callback(lambda _: self.asked.pop(number, None))
         return answer
 
     def ask(self, what: Mapping[str, Any]) -> Future[Any]:
@@ -171,17 +171,17 @@ class WorkerProcess:
 
     def close(self) -> None:
         """Close its input when all is written, at which it ends by itself."""
-        self._queue.close()
+        self.outbox.close()
 
     def terminate(self) -> None:
         """Ask it to end by a signal."""
-        self._process.terminate()
+        self.process.terminate()
 
     def kill(self) -> None:
         """Kill it, and all in its group."""
-        if self._process.poll() is None:
+        if self.process.poll() is None:
             with suppress(ProcessLookupError):
-                os.killpg(self._process.pid, signal.SIGKILL)
+                os.killpg(self.process.pid, signal.SIGKILL)
 
     def stop(self, patience: float) -> None:
         """Let it end by itself, and kill it where it has not in so many s."""
@@ -192,7 +192,7 @@ class WorkerProcess:
             self.kill()
             with suppress(TooLate):
                 self.over.result(LAST_SECONDS)
-        for thread in self._threads:
+        for thread in self.threads:
             if thread is not threading.current_thread():
                 thread.join(LAST_SECONDS)
 
@@ -213,15 +213,15 @@ class WorkerProcess:
         with suppress(OSError, ValueError):
             self._read_lines()
         self.kill()
-        status = self._process.wait()
+        status = self.process.wait()
         with self._lock:
             self.how = f"signal {-status}" if status < 0 else f"status {status}"
         self._post(self._tell_end)
 
     def _read_lines(self) -> None:
         """Take what it says until it ends, closes its output, or says what cannot be read."""
-        assert self._process.stdout is not None  # noqa: S101 - it was asked for
-        with self._process.stdout as out:
+        assert self.process.stdout is not None  # noqa: S101 - it was asked for
+        with self.process.stdout as out:
             while line := out.readline(self._longest):
                 said = _object(line)
                 if said is None and not self._forgiving:
@@ -235,7 +235,7 @@ class WorkerProcess:
                     self.heard = time.monotonic()
                     self._post(self._take, said, after)
             with suppress(subprocess.TimeoutExpired):
-                self._process.wait(LINGERS_SECONDS)
+                self.process.wait(LINGERS_SECONDS)
 
     def _post(self, do: Callable[..., None], *what: Any) -> None:
         if self._loop is None:
@@ -246,7 +246,7 @@ class WorkerProcess:
 
     def _take(self, said: Said, after: bytes) -> None:
         number = said.get("id", FIRST)
-        answer = self._asked.get(number) if type(number) is int else None
+        answer = self.asked.get(number) if type(number) is int else None
         try:
             if self._hear(said, after) or answer is None:
                 return
@@ -261,8 +261,8 @@ class WorkerProcess:
                 answer.set_result(done)
 
     def _tell_end(self) -> None:
-        self._queue.close()
-        for answer in list(self._asked.values()):
+        self.outbox.close()
+        for answer in list(self.asked.values()):
             _fail(answer, self._lost(self.how))
         try:
             self._ended(self.how)

@@ -20,9 +20,9 @@ class WriteQueue:
     def __init__(self, pipe: IO[bytes]) -> None:
         """Take the pipe, which is closed at the end."""
         self._pipe = pipe
-        self._lines: deque[tuple[str, Future[None]]] = deque()
+        self.lines: deque[tuple[str, Future[None]]] = deque()
         self._changed = threading.Condition()
-        self._writing = self._over = False
+        self.writing = self._over = False
 
     def put(self, line: str) -> Future[None] | None:
         """Have a line written after all that wait.
@@ -38,7 +38,7 @@ class WriteQueue:
     def beat(self, line: str) -> None:
         """Have a line written that is worth nothing later: it is left out where others wait."""
         with self._changed:
-            if not (self._over or self._lines or self._writing):
+            if not (self._over or self.lines or self.writing):
                 self._append(line)
 
     def close(self) -> None:
@@ -59,21 +59,21 @@ class WriteQueue:
                 finally:
                     _done(written)
         self.close()
-        for _, never in self._lines:
+        for _, never in self.lines:
             _done(never)
 
     def _append(self, line: str) -> Future[None]:
         written: Future[None] = Future()
-        self._lines.append((line, written))
+        self.lines.append((line, written))
         self._changed.notify()
         return written
 
     def _next(self) -> tuple[str, Future[None]] | None:
         with self._changed:
-            self._writing = False
-            self._changed.wait_for(lambda: self._lines or self._over)
-            self._writing = bool(self._lines)
-            return self._lines.popleft() if self._lines else None
+            self.writing = False
+            self._changed.wait_for(lambda: self.lines or self._over)
+            self.writing = bool(self.lines)
+            return self.lines.popleft() if self.lines else None
 
 
 def _done(written: Future[None]) -> None:

@@ -71,7 +71,7 @@ class LogFile:
         if not self.folder.exists():
             self.folder.mkdir(parents=True)
             self.folder.chmod(0o700)  # whatever the umask
-        self._held, left = _hold(self.folder / "tangy.lock")
+        self._held, left = hold(self.folder / "tangy.lock")
         if self._sound(left):
             return self._take_up()
         sealed = seal.Seal(self.folder).read()
@@ -141,7 +141,7 @@ class LogFile:
         writer = LogFile(self.folder, True, self._now)
         writer.damaged = True  # until it is known better
         try:
-            writer._held, left = _hold(self.folder / "tangy.lock")
+            writer._held, left = hold(self.folder / "tangy.lock")
             if not writer._sound(left):
                 return 0  # the next writer sets it aside
             version = writer._version(writer._take_up())
@@ -216,7 +216,7 @@ class LogFile:
     def _connect(self) -> sqlite3.Connection:
         # mode=rw never creates a file; a URI holds whatever characters a folder may have.
         uri = self.path.as_uri() + "?mode=rw"
-        if not self.writable and not self._size("-wal") and _is_read_only(self.folder):
+        if not self.writable and not self._size("-wal") and is_read_only(self.folder):
             uri += "&immutable=1"  # else SQLite wants to make -shm, even to read
         return sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
 
@@ -329,7 +329,7 @@ class LogFile:
         return next(path for path in paths if not path.exists())
 
 
-def _hold(path: Path) -> tuple[FileIO, str]:
+def hold(path: Path) -> tuple[FileIO, str]:
     """Become the folder's one writer; return the lock file and what the last writer left in it.
 
     The kernel drops the lock with the process. Removing the file would race with the next one.
@@ -349,7 +349,7 @@ def _hold(path: Path) -> tuple[FileIO, str]:
     return file, left
 
 
-def _is_read_only(folder: Path) -> bool:
+def is_read_only(folder: Path) -> bool:
     """Say whether a folder lies on a disk that nobody can write to."""
     return bool(os.statvfs(folder).f_flag & os.ST_RDONLY)
 

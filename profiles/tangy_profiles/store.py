@@ -56,11 +56,13 @@ class Store:
         self.writable = writable
         self._now = now
         self._lock = RLock()
-        self._file = LogFile(folder, writable, now)
-        self.notices = self._file.notices
+        self.file = LogFile(folder, writable, now)
+        """What the log is kept in; for those who look at the file itself, and write nothing."""
+        self.notices = self.file.notices
         self.aside: dict[int, str] = {}
         """What was met in the log that is left out: a sentence for each such event, by seq."""
-        self._robot = ""
+        self.robot = ""
+        """The id of the robot whose log it is; "" for a reader."""
         self._seal = Seal(folder)
         self._newest = 0  # the newest event of the transaction that is going on
         self._closed = self._within = self._spoilt = False
@@ -81,12 +83,12 @@ class Store:
         """
         store = cls(folder.absolute(), write, now or (lambda: datetime.now(UTC)))
         try:
-            with store._file.in_words():
-                store._begin() if write else store._file.reading()
+            with store.file.in_words():
+                store._begin() if write else store.file.reading()
             with nullcontext() if write else suppress(StoreError):  # a reader's queries will say it
                 store.notices.extend(map(loss_words, store._unaccepted()))
         except BaseException:
-            store._file.damaged = True  # so that closing does not vouch for it
+            store.file.damaged = True  # so that closing does not vouch for it
             store.close()
             raise
         return store
@@ -121,7 +123,7 @@ class Store:
         at = self._now().astimezone(UTC).isoformat(timespec="microseconds")
         answer = None if complied is None else int(complied)  # whether `person` followed `strategy`
         with self.transaction():
-            row = (str(uuid.uuid4()), self._robot, at, kind, person, strategy, answer, text)
+            row = (str(uuid.uuid4()), self.robot, at, kind, person, strategy, answer, text)
             self._newest = self._write(ADD, row)
             return self._newest
 
@@ -144,7 +146,7 @@ class Store:
                 if outermost:
                     self._write("COMMIT")
                     if self._newest:
-                        self._seal.write(self._robot, self._newest)
+                        self._seal.write(self.robot, self._newest)
             except BaseException:
                 self._spoilt = True
                 raise
@@ -152,9 +154,9 @@ class Store:
                 if outermost:
                     self._within = self._spoilt = False
                     self._newest = 0
-                    if self._file.db is not None:
+                    if self.file.db is not None:
                         with suppress(sqlite3.Error):
-                            self._file.db.rollback()  # after a commit: nothing
+                            self.file.db.rollback()  # after a commit: nothing
 
     @overload
     def events(self, *kinds: str, after: int = 0) -> Iterator[Event[EventRecord]]: ...
@@ -299,20 +301,20 @@ class Store:
             if there or changed:
                 self.append(PersonForgotten(texts=changed), person=person)
         if eraser:
-            with self._lock, self._file.in_words():
-                self._file.compact()
+            with self._lock, self.file.in_words():
+                self.file.compact()
         return there, changed
 
     def _erase(self, eraser: NameEraser) -> int:
-        if self._file.db is None:
-            raise self._file.wrong("is closed")
-        with self._file.in_words():
-            return erase_from_log(self._file.db, eraser)
+        if self.file.db is None:
+            raise self.file.wrong("is closed")
+        with self.file.in_words():
+            return erase_from_log(self.file.db, eraser)
 
     def count_left(self, eraser: NameEraser) -> int:
         """Count the events in which a name still stands after it was erased from their words."""
-        with self._lock, self._file.in_words():
-            return count_left(self._file.db, eraser) if self._file.db else 0
+        with self._lock, self.file.in_words():
+            return count_left(self.file.db, eraser) if self.file.db else 0
 
     def check(self) -> list[str]:
         """Read the whole log and return what is wrong with it, a sentence each ([]: nothing)."""
@@ -332,7 +334,7 @@ class Store:
         with self._lock:
             self._closed = True
             self._seal.close()
-            self._file.close()
+            self.file.close()
 
     def __enter__(self) -> Self:
         return self
@@ -358,32 +360,32 @@ class Store:
 
     def _begin(self) -> None:
         """Become the writer, learn which robot's folder this is, and note what is lost of it."""
-        db = self._file.begin()
+        db = self.file.begin()
         sealed = self._seal.read()  # of a log whose very beginning is gone
         robot = sealed[0] if sealed else str(uuid.uuid4())
         db.execute("INSERT OR IGNORE INTO meta VALUES ('robot', ?)", (robot,))
-        self._robot = self._rows("SELECT value FROM meta WHERE key = 'robot'")[0][0]
-        for loss in (*self._file.lost, *unnoticed(self._rows, sealed, self._noted())):
+        self.robot = self._rows("SELECT value FROM meta WHERE key = 'robot'")[0][0]
+        for loss in (*self.file.lost, *unnoticed(self._rows, sealed, self._noted())):
             self.append(loss)
         db.execute(SEALED)
-        self._seal.write(self._robot, newest(self._rows))
+        self._seal.write(self.robot, newest(self._rows))
 
     def _rows(self, sql: str, *values: object) -> list[Any]:
         """Return all rows of a query; none where there is no log yet."""
-        with self._lock, self._file.in_words():
+        with self._lock, self.file.in_words():
             if self._closed:
-                raise self._file.wrong("is closed")
-            db = self._file.db if self.writable else self._file.reading()
+                raise self.file.wrong("is closed")
+            db = self.file.db if self.writable else self.file.reading()
             return [] if db is None else fetch(db, sql, values)
 
     def _write(self, sql: str, values: tuple[object, ...] = ()) -> int:
         """Run one statement of the writer and return the seq it made."""
-        db = self._file.db
+        db = self.file.db
         if db is None or not self.writable:
-            raise self._file.wrong("is closed" if self._closed else "is open for reading only")
+            raise self.file.wrong("is closed" if self._closed else "is open for reading only")
         if self._spoilt:  # SQLite may have rolled back already, and would commit this one alone
-            raise self._file.wrong("a part of this could not be kept, so none of it was")
-        with self._file.in_words():
+            raise self.file.wrong("a part of this could not be kept, so none of it was")
+        with self.file.in_words():
             return db.execute(sql, values).lastrowid or 0
 
     def _events(self, rows: Iterable[Sequence[Any]]) -> Iterator[Event[EventRecord]]:

@@ -68,7 +68,7 @@ def _connected(distributed: Any, address: str) -> Any:
         ) from None
 
 
-def _theirs(client: Any) -> dict[str, str]:
+def versions_there(client: Any) -> dict[str, str]:
     """Return the digest of the code that each worker has."""
     found: dict[str, str] = client.run(code_digest)
     return found
@@ -77,7 +77,7 @@ def _theirs(client: Any) -> dict[str, str]:
 def _check_workers(client: Any, address: str) -> None:
     """See that there are workers, and that they would do the work as it would be done here."""
     try:
-        theirs = set(_theirs(client).values())
+        theirs = set(versions_there(client).values())
     except Exception:  # a worker without this package raises whatever its unpickling raises
         theirs = {"none"}
     if not theirs:

@@ -56,7 +56,7 @@ def with_mistakes(settings: Settings, case: Case) -> dict[str, Any]:
         if len(clean) >= int(SCENARIO_ONE["demonstrations"]) and covered(activity, clean):
             break
     rng = Random(f"{seed}/{place}/{rate}")
-    wrong = _places(activity, clean, rate, place, rng)
+    wrong = places(activity, clean, rate, place, rng)
     shown = [_spoilt(activity, demonstration, wrong, rng) for demonstration in clean]
     answers: dict[Situation, set[str]] = defaultdict(set)
     for step in (step for one in shown for step in one.steps):
@@ -83,7 +83,7 @@ def with_mistakes(settings: Settings, case: Case) -> dict[str, Any]:
     }
 
 
-def _places(
+def places(
     activity: Activity, shown: Sequence[Demonstration], rate: float, place: str, rng: Random
 ) -> set[int]:
     """Choose the steps (ids) that are to be wrong.

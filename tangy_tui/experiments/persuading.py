@@ -94,10 +94,11 @@ def play(settings: Settings, case: Case) -> list[dict[str, Any]]:
         0, and `suboptimal`, how many others came before convergence (None: it never came).
     """
     first, groups = case
-    return [_group(settings, seed) for seed in range(first, first + groups)]
+    return [group(settings, seed) for seed in range(first, first + groups)]
 
 
-def _group(settings: Settings, seed: int) -> dict[str, Any]:
+def group(settings: Settings, seed: int) -> dict[str, Any]:
+    """Play the games of one group, and return what came of each method."""
     activity = activity_of(settings["activity"])
     people = tuple(person.id for person in load_people(settings["users"]))
     preferences = preferences_in_turn(people, tuple(activity.strategies), load_users())

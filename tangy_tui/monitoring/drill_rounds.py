@@ -195,7 +195,7 @@ class Tabletop:
         """
         for one in self._instead(kind, rng):
             for _ in range(MOST_TRIES):
-                found = self._try(number, one, rng.randrange(1_000_000_000))
+                found = self.try_once(number, one, rng.randrange(1_000_000_000))
                 if found is not None:
                     return found
         raise TangyError(f"No fault of {self.activity.title} could be brought about.")
@@ -239,7 +239,7 @@ class Tabletop:
         table[situation] = replace(table[situation], seen=0, right=())
         return replace(self._policy, table=table)
 
-    def _try(self, number: int, kind: RoundKind, seed: int) -> Round | None:
+    def try_once(self, number: int, kind: RoundKind, seed: int) -> Round | None:
         """Play one game; None if something else happened in it, or nothing."""
         rng = Random(f"{seed}/round")
         sets_in, wanted = rng.randrange(*SETS_IN), rng.choice(QUIET_KINDS)
@@ -260,7 +260,7 @@ class Tabletop:
                 if found:
                     if [fault.code for fault in found] != [kind.code] or game.over:
                         return None  # something else, or too late to do anything about it
-                    return self._fault_round(number, kind, game, found[0], acted, rng)
+                    return self.fault_round(number, kind, game, found[0], acted, rng)
                 if game.over:
                     return None
                 if kind == QUIET and step >= sets_in and acted is not None:
@@ -269,7 +269,7 @@ class Tabletop:
                         return self._quiet_round(number, game, wanted, noticed, acted, rng)
         return None
 
-    def _fault_round(
+    def fault_round(
         self,
         number: int,
         kind: RoundKind,
@@ -278,6 +278,7 @@ class Tabletop:
         acted: Acted | None,
         rng: Random,
     ) -> Round:
+        """Make a round of a fault that has come about in a game."""
         rule, world = self.book.rule(fault.code), game.world
         shown = Round(
             number,

@@ -75,7 +75,7 @@ class Recovery:
         self._detector = detector
         self._robot = robot
         self._store = store
-        self._name = name
+        self.name_of = name
         self.begin()
 
     def begin(self) -> None:
@@ -131,7 +131,7 @@ class Recovery:
             behaviour=acted.action.behaviour.name if acted is not None else "",
             person=person,
             why=why,
-            called=self._name(person) if person is not None else SOMEBODY,
+            called=self.name_of(person) if person is not None else SOMEBODY,
             texts=rule_texts(rule, self._game.world.activity.object, why),
             evidence=diagnosis.evidence,
             mismatches=diagnosis.mismatches,

@@ -80,11 +80,11 @@ class Supervision:
         self._idle = 0
         self._to_come = tuple(to_come)
         self._store = store
-        self._effects_of = effects_of
-        self._detector = Detector(game.world.activity, robot, effects_of(game.policy))
-        game.contradicts = self._detector.contradicts
-        self._recovery = Recovery(game, self._detector, robot, store, name)
-        self._watch = FaultWatch(game, book, self._detector, self._recovery)
+        self.effects_of = effects_of
+        self.detector = Detector(game.world.activity, robot, effects_of(game.policy))
+        game.contradicts = self.detector.contradicts
+        self.recovery = Recovery(game, self.detector, robot, store, name)
+        self.watch = FaultWatch(game, book, self.detector, self.recovery)
         self._clearings: Counter[str] = Counter()
         self._stops = 0
         self.calls: Calls | None = None
@@ -93,22 +93,22 @@ class Supervision:
     @property
     def book(self) -> FaultBook:
         """The fault rules."""
-        return self._watch.book
+        return self.watch.book
 
     @property
     def faults(self) -> list[Fault]:
         """The faults of the present game, in the order in which they were diagnosed."""
-        return self._recovery.faults
+        return self.recovery.faults
 
     @property
     def halted(self) -> Fault | None:
         """The fault because of which the robot stands still."""
-        return self._recovery.halted
+        return self.recovery.halted
 
     @property
     def seconds(self) -> float:
         """The time in the present game, in s."""
-        return self._recovery.seconds
+        return self.recovery.seconds
 
     # ------------------------------------------------------------- what it stands in for
 
@@ -160,8 +160,8 @@ class Supervision:
             NotResumable: the world cannot come to where the past game was.
         """
         told = list[Event](self.game.begin() if past is None else self.game.resume(past, by))
-        self._recovery.begin()
-        self._watch.begin()
+        self.recovery.begin()
+        self.watch.begin()
         self._clearings.clear()
         self._idle = 0
         if self._to_come:
@@ -184,19 +184,19 @@ class Supervision:
             self._idle += 1
             if self._idle > MOST_MOVES:
                 return told + self._stop(f"{MOST_MOVES} moves against faults led nowhere.")
-            told += self._recovery.go_further(fault)
-            told += self._watch.refused(fault)
+            told += self.recovery.go_further(fault)
+            told += self.watch.refused(fault)
             return told + self._end_if_hopeless()
         self._idle = 0
         if self.steps >= MOST_STEPS:
             return told + self._stop(f"The game did not end within {MOST_STEPS} steps.")
         if not self.game.asks:
-            told += self._watch.foresee()
-        if spared := self._watch.spare():
+            told += self.watch.foresee()
+        if spared := self.watch.spare():
             return told + spared
         stops = self._stops
         events = self.game.step()
-        told += self._watch.after(events, ordered=self._stops != stops)
+        told += self.watch.after(events, ordered=self._stops != stops)
         return told + self._end_if_hopeless()
 
     def stopped_by_staff(self) -> None:
@@ -208,7 +208,7 @@ class Supervision:
 
         It may be called as often as one likes, also while the robot is halted or asks.
         """
-        return self._watch.look() + self._end_if_hopeless()
+        return self.watch.look() + self._end_if_hopeless()
 
     @property
     def status(self) -> tuple[str, str]:
@@ -218,22 +218,22 @@ class Supervision:
         """
         if self.halted is not None:
             return "HALTED", self.halted.name
-        there = [] if self.over else self._recovery.there
+        there = [] if self.over else self.recovery.there
         if self.question is not None:
             return "ASKS", there[0].name if there else ""
         if there:
             return "WARN", there[0].name
-        return self._detector.worst(self.world.health())
+        return self.detector.worst(self.world.health())
 
     @property
     def devices(self) -> Evidence:
         """What the devices give as evidence now."""
-        return self._watch.devices
+        return self.watch.devices
 
     @property
     def waiting(self) -> list[Fault]:
         """The faults that are still to be dealt with, the most urgent first."""
-        return self._recovery.waiting
+        return self.recovery.waiting
 
     # ------------------------------------------------------------------- what people do
 
@@ -242,7 +242,7 @@ class Supervision:
         fault = fault or self.halted
         if fault is None or fault.acknowledged:
             return []
-        return self._recovery.move(fault, RecoveryEvent("acknowledged", self.seconds, by=by))
+        return self.recovery.move(fault, RecoveryEvent("acknowledged", self.seconds, by=by))
 
     def call_expert(self, by: str) -> list[Event]:
         """Note that staff turn to the expert about what halts the robot, and do what Tangy can."""
@@ -250,10 +250,10 @@ class Supervision:
         if fault is None:
             return []
         told = self.acknowledge(by)
-        told += self._recovery.move(fault, RecoveryEvent("expert called", self.seconds, by=by))
+        told += self.recovery.move(fault, RecoveryEvent("expert called", self.seconds, by=by))
         if self.calls is not None:
             self.calls.call(EXPERT, fault, FIRST_SECONDS)
-        self._recovery.remedy(fault, "call expert")
+        self.recovery.remedy(fault, "call expert")
         return told + self.look()
 
     def reached(self, by: str) -> bool:
@@ -264,7 +264,7 @@ class Supervision:
     def call_by(self, calls: Calls) -> None:
         """Have people called when the robot halts, and when staff turn to the expert."""
         self.calls = calls
-        self._recovery.on_halt = calls.begin
+        self.recovery.on_halt = calls.begin
 
     def clear(self, by: str) -> list[Event]:
         """Let the robot move again, if what halted it was seen and is gone.
@@ -275,17 +275,17 @@ class Supervision:
         if fault is None or not fault.acknowledged:
             return []
         told = self.look()
-        self._recovery.remedy(fault, "look again")
-        if not self._recovery.solved(fault):
-            return told + self._recovery.move(
+        self.recovery.remedy(fault, "look again")
+        if not self.recovery.solved(fault):
+            return told + self.recovery.move(
                 fault, RecoveryEvent("still there", self.seconds, by=by)
             )
-        told += self._watch.look_after(fault)
-        told += self._recovery.move(fault, RecoveryEvent("cleared", self.seconds, by=by))
-        self._recovery.remedy(fault, "resume")
-        self._recovery.halted = None
+        told += self.watch.look_after(fault)
+        told += self.recovery.move(fault, RecoveryEvent("cleared", self.seconds, by=by))
+        self.recovery.remedy(fault, "resume")
+        self.recovery.halted = None
         self._clearings[fault.code] += 1
-        told += self._recovery.halt_if_critical()
+        told += self.recovery.halt_if_critical()
         return told + self._end_if_hopeless()
 
     def note(self, what: str, by: str, taken_back: int = 0) -> None:
@@ -316,9 +316,9 @@ class Supervision:
             told += self._answered(question, RecoveryEvent("taught", self.seconds, by=teacher))
         ordered = otherwise or self._stops != stops
         # by what was expected before the answer was learnt
-        found = self._watch.after(events, ordered=ordered)
+        found = self.watch.after(events, ordered=ordered)
         if taught:
-            self._detector.effects = self._effects_of(self.policy)
+            self.detector.effects = self.effects_of(self.policy)
         return found + told + self._end_if_hopeless()
 
     def accept(self, by: str) -> list[Event]:
@@ -328,11 +328,11 @@ class Supervision:
         if question is None or fault is None or not self.acceptable:
             return told
         with self._store.transaction():
-            acted = self._watch.acted[fault.id]
+            acted = self.watch.acted[fault.id]
             accepted.accept(self._store, self.world.activity, fault, acted, by)
             told += self._answered(question, RecoveryEvent("accepted", self.seconds, by=by))
         self.game.withdraw()
-        self._detector.effects = self._effects_of(self.policy)
+        self.detector.effects = self.effects_of(self.policy)
         return told
 
     @property
@@ -340,7 +340,7 @@ class Supervision:
         """Whether what Tangy asks about can be said to be all right: no rule has a cause for it."""
         fault = self._asked_about(self.question)
         unexplained = fault is not None and fault.code == self.book.fallback.code
-        return unexplained and fault is not None and fault.id in self._watch.acted
+        return unexplained and fault is not None and fault.id in self.watch.acted
 
     def give_up(self) -> list[Event]:
         """End a game in which Tangy asks or is halted, and nobody helps."""
@@ -350,28 +350,28 @@ class Supervision:
         told: list[Event] = []
         fault = halted or self._asked_about(question)
         if fault is not None:
-            told += self._recovery.move(fault, RecoveryEvent("given up", self.seconds))
+            told += self.recovery.move(fault, RecoveryEvent("given up", self.seconds))
         if halted is not None:
             return told + self._stop(f"Tangy was halted. {halted.unnamed}")
         if fault is not None and question is not None and question.fault:
             return told + self._stop(f"{fault.unnamed} {question.remedy}")
-        return told + self._recovery.leave_open() + list(self.game.give_up())
+        return told + self.recovery.leave_open() + list(self.game.give_up())
 
     def leave(self) -> list[Event]:
         """End a game that is going on because whoever watches it leaves."""
         if self.over:
             return []
-        return self._recovery.leave_open() + list(self.game.leave())
+        return self.recovery.leave_open() + list(self.game.leave())
 
     def _stop(self, reason: str) -> list[Event]:
-        return self._recovery.leave_open() + list(self.game.stop(reason))
+        return self.recovery.leave_open() + list(self.game.stop(reason))
 
     def _end_if_hopeless(self) -> list[Event]:
         """End a game that is halted by what was cleared again and again."""
         fault = self.halted
         if fault is None or self.over or self._clearings[fault.code] < MOST_CLEARINGS:
             return []
-        told = self._recovery.move(fault, RecoveryEvent("given up", self.seconds))
+        told = self.recovery.move(fault, RecoveryEvent("given up", self.seconds))
         times = f"It was cleared {MOST_CLEARINGS} times and came back."
         return told + self._stop(f"Tangy was halted. {fault.unnamed} {times}")
 
@@ -383,11 +383,11 @@ class Supervision:
             return None
         asked = [
             fault
-            for fault in self._recovery.there
+            for fault in self.recovery.there
             if fault.status == OPEN and any(move.kind == "teacher asked" for move in fault.moves)
         ]
         return next((fault for fault in asked if question.fault in ("", fault.id)), None)
 
     def _answered(self, question: Unsure, move: RecoveryEvent) -> list[Event]:
         fault = self._asked_about(question)
-        return self._recovery.move(fault, move) if fault is not None else []
+        return self.recovery.move(fault, move) if fault is not None else []

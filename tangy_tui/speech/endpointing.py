@@ -25,7 +25,7 @@ class Endpoints:
         )
         self._rest = b""
         self._window = window
-        self._recent = bytearray()  # the end of what was taken: the utterance, or before one
+        self.recent = bytearray()  # the end of what was taken: the utterance, or before one
         self.taken = 0
         """How many bytes of the stream it has looked at."""
 
@@ -59,9 +59,9 @@ class Endpoints:
             frame = stream[place : place + size]
             speech = self._endpointer.process(frame)
             self.taken += size
-            self._recent += frame
+            self.recent += frame
             if not spoke and not speech:
-                del self._recent[: -2 * round((self._window + MARGIN) * RATE)]
+                del self.recent[: -2 * round((self._window + MARGIN) * RATE)]
             if speech:
                 fresh = frame if spoke else self._since(self.begin - LEAD)
                 yield not spoke, fresh, not self._endpointer.in_speech
@@ -72,7 +72,7 @@ class Endpoints:
         self._endpointer.end_stream(self._rest or b"\0\0")
         rest, self._rest = self._rest, b""
         self.taken += len(rest)
-        self._recent += rest
+        self.recent += rest
         return rest if speaking else b""
 
     def utterance(self) -> bytes:
@@ -85,7 +85,7 @@ class Endpoints:
     def _since(self, seconds: float) -> bytes:
         """Return what was taken from a time on, in s from the start of the stream."""
         begin = 2 * round(max(0.0, seconds) * RATE)
-        return bytes(self._recent[max(0, begin - (self.taken - len(self._recent))) :])
+        return bytes(self.recent[max(0, begin - (self.taken - len(self.recent))) :])
 
 
 class Pauses:

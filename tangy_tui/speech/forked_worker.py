@@ -29,7 +29,7 @@ class ForkedWorker(Generic[Asked, Answer]):
         self._process: multiprocessing.process.BaseProcess | None = None
         self._asked: list[Asked] = []
         self._number = 0
-        if len(_processors()) > 1 and "fork" in multiprocessing.get_all_start_methods():
+        if len(processors()) > 1 and "fork" in multiprocessing.get_all_start_methods():
             self._fork()
 
     def ask(self, asked: Asked) -> None:
@@ -90,6 +90,7 @@ class ForkedWorker(Generic[Asked, Answer]):
             os._exit(0)
 
 
-def _processors() -> range:
+def processors() -> range:
+    """Return a number for each processor that this program may use."""
     usable = getattr(os, "sched_getaffinity", None)
     return range(len(usable(0)) if usable is not None else os.cpu_count() or 1)

@@ -91,7 +91,7 @@ class SpeechInput:
         self._log = folder / "speech.log" if folder is not None and folder.is_dir() else None
         self._heard: AsyncGenerator[Heard, None] | None = None
         self._recogniser: Recogniser | None = None
-        self._utterance: Utterance | None = None  # the one that is listened for
+        self.utterance: Utterance | None = None  # the one that is listened for
         self._talks = asyncio.Event()  # it has begun, or none will
         self._free = asyncio.Event()
         self._free.set()
@@ -101,7 +101,7 @@ class SpeechInput:
         self._noticed: set[str] = set()
         if recorder is not None:
             recorder.tell = self._told
-        self._ended = False  # the source has no more
+        self.ended = False  # the source has no more
         self._closed = False
         self._over = asyncio.Event()  # all that was started has ended
         self._deaf = 0  # bytes that are not heard: the room still rings
@@ -131,14 +131,14 @@ class SpeechInput:
         """Push to talk: begin to listen, or end what is being said."""
         if not self.live or self.hands_free or not self._free.is_set():
             return
-        if self._utterance is not None and not self._utterance.over:
+        if self.utterance is not None and not self.utterance.over:
             self._end()
         elif self._state in WAITS:
             self._told(f"{WAITS[self._state]} Push again in a moment.")
         elif self._state == "off":
             self.meter.begin()
-            self._utterance = Utterance(found=False)
-            asyncio.get_running_loop().call_later(MOST_TALK, self._late, self._utterance)
+            self.utterance = Utterance(found=False)
+            asyncio.get_running_loop().call_later(MOST_TALK, self._late, self.utterance)
             self._talks.set()
             self._now("listening")
 
@@ -298,7 +298,7 @@ class SpeechInput:
                 self._told(f"{error} Please say that again.")
                 evidence, left = None, b""
             finally:
-                self._utterance = None
+                self.utterance = None
                 self._talks.clear()
                 self._partial("")
             if self.hands_free and not utterance.dropped:
@@ -315,30 +315,30 @@ class SpeechInput:
     async def _next(self, recogniser: Recogniser) -> Utterance | None:
         """Wait for the next utterance to listen to; None if the source is over."""
         while True:
-            if self.hands_free and (self._utterance is None or self._utterance.dropped):
-                self._utterance = None if self._ended else Utterance(found=True)
+            if self.hands_free and (self.utterance is None or self.utterance.dropped):
+                self.utterance = None if self.ended else Utterance(found=True)
             if self._renew:
-                if self.hands_free or self._utterance is None:
+                if self.hands_free or self.utterance is None:
                     self._now("starting")
                 await self._listen_for(recogniser)
                 continue
             if self.hands_free:
-                if self._utterance is not None:
+                if self.utterance is not None:
                     self._now("listening")
-                return self._utterance
-            if self._utterance is not None or self._ended:
-                return self._utterance
+                return self.utterance
+            if self.utterance is not None or self.ended:
+                return self.utterance
             self._now("off")
             await self._talks.wait()
-            if self._utterance is None:
+            if self.utterance is None:
                 self._talks.clear()
 
     def _go_on(self, begun: bytes) -> None:
         """Listen on to a stream from where an utterance ended: somebody may have spoken on."""
-        if begun or not self._ended:
-            self._utterance = Utterance(found=True, begun=begun)
-            if self._ended:
-                self._utterance.end()
+        if begun or not self.ended:
+            self.utterance = Utterance(found=True, begun=begun)
+            if self.ended:
+                self.utterance.end()
 
     async def _pump(self) -> None:
         """Take the sound as it comes, and keep what is to be heard."""
@@ -349,27 +349,27 @@ class SpeechInput:
                     continue
                 dropped = min(self._deaf, len(chunk))
                 self._deaf -= dropped
-                if self._utterance is not None:
-                    self._utterance.add(chunk[dropped:], asyncio.get_running_loop().time())
+                if self.utterance is not None:
+                    self.utterance.add(chunk[dropped:], asyncio.get_running_loop().time())
                     self._thinks()
         finally:
-            self._ended = True
+            self.ended = True
             self._end()
             self._talks.set()
 
     def _late(self, utterance: Utterance) -> None:
         """End what was begun and has no end, for no more sound comes."""
-        if self._utterance is utterance:
+        if self.utterance is utterance:
             self._end()
 
     def _end(self, *, dropped: bool = False) -> None:
         """Let the present utterance end; if it is dropped, it counts for nothing."""
-        if self._utterance is not None:
-            self._utterance.end(dropped=dropped)
+        if self.utterance is not None:
+            self.utterance.end(dropped=dropped)
             self._thinks()
 
     def _thinks(self) -> None:
-        if self._utterance is not None and self._utterance.over:
+        if self.utterance is not None and self.utterance.over:
             self._now("thinking")
 
     def _understand(self, evidence: AcousticEvidence) -> Heard | None:
@@ -387,7 +387,7 @@ class SpeechInput:
             self.changed()
 
     def _spoke(self) -> None:
-        if self._utterance is not None and not self._utterance.over:
+        if self.utterance is not None and not self.utterance.over:
             self._now("speaking")
 
     def _now(self, state: State) -> None:

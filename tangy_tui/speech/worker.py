@@ -55,7 +55,7 @@ class Worker:
 
     def __init__(self, write: Callable[[dict[str, Any]], None]) -> None:
         self._write = write
-        self._decoder: Any = None
+        self.decoder: Any = None
         self._id: Any = None
         self._expecting: Expecting = "commands"
         self._pcm = bytearray()
@@ -66,7 +66,7 @@ class Worker:
         )
         self._shown = ""
         self._stood = 0  # bytes since the words so far have changed
-        self._urgent: frozenset[str] = frozenset()
+        self.urgent: frozenset[str] = frozenset()
 
     def take(self, request: Any) -> None:
         """Take one request; what is wrong with it becomes the answer's error."""
@@ -113,18 +113,18 @@ class Worker:
 
         try:
             read = codec.read(Wanted, wanted)
-            if self._decoder is not None:
-                self._decoder.close()
-            self._decoder = make_decoder(read)
+            if self.decoder is not None:
+                self.decoder.close()
+            self.decoder = make_decoder(read)
         except Unspeakable as reason:
             raise RequestRefused(str(reason)) from None
         except Unreadable as why:
             raise RequestRefused(f"What is wanted cannot be read: it {why}.") from None
-        self._urgent = frozenset(read.urgent)
-        return list(self._decoder.left_out)
+        self.urgent = frozenset(read.urgent)
+        return list(self.decoder.left_out)
 
     def _begin(self, id: Any, expecting: Any, *, endpoint: bool) -> None:
-        if self._decoder is None:
+        if self.decoder is None:
             raise RequestRefused("The phrases must come before the sound.")
         self._id, self._expecting, self._shown, self._stood = id, expecting, "", 0
         self._pcm.clear()
@@ -132,7 +132,7 @@ class Worker:
         self._pauses = Pauses()
         self._foreseen = None
         if not endpoint:
-            self._decoder.begin(expecting)
+            self.decoder.begin(expecting)
 
     def _hear(self, sound: bytes) -> None:
         if self._id is None:
@@ -142,7 +142,7 @@ class Worker:
             return
         for began, speech, over in self._endpoints.feed(sound):
             if began:
-                self._decoder.begin(self._expecting)
+                self.decoder.begin(self._expecting)
                 self._write({"id": self._id, "speaking": True})
             self._follow(speech)
             if self._id is not None and (over or len(self._pcm) >= 2 * RATE * LONGEST):
@@ -168,7 +168,7 @@ class Worker:
             return
         self._pcm += sound
         if shows and self._foreseen is None:
-            words = self._decoder.partial(sound)
+            words = self.decoder.partial(sound)
             self._stood += len(sound)
             if words != self._shown:
                 self._shown, self._stood = words, 0
@@ -182,7 +182,7 @@ class Worker:
         return not waits or self._stood >= 2 * RATE * STANDS
 
     def _is_urgent(self, words: str) -> bool:
-        return words in self._urgent or (bool(self._urgent) and stops(words))
+        return words in self.urgent or (bool(self.urgent) and stops(words))
 
     def _so_far(self) -> AcousticEvidence:
         """Return the words so far as they are: what is urgent does not wait for a second look."""
@@ -196,13 +196,13 @@ class Worker:
                 self._end()
         elif self._foreseen is not None and spoke:
             self._foreseen = None
-            self._decoder.begin(self._expecting)
-            self._decoder.partial(bytes(self._pcm))
+            self.decoder.begin(self._expecting)
+            self.decoder.partial(bytes(self._pcm))
 
     def _decode(self, pcm: bytes) -> AcousticEvidence:
         if not _sounds(pcm):
             return AcousticEvidence(seconds=len(pcm) / 2 / RATE)
-        evidence: AcousticEvidence = self._decoder.decode(pcm, self._expecting)
+        evidence: AcousticEvidence = self.decoder.decode(pcm, self._expecting)
         return evidence
 
     def _said(self) -> bytes:

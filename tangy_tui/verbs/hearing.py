@@ -93,7 +93,7 @@ class Listening:
             settings=settings_for(
                 workspace.store, self.mic, self.mode or workspace.activity.listening
             ),
-            recorder=_recorder(workspace, who) if self.record else None,
+            recorder=recorder_for(workspace, who) if self.record else None,
             hands_free=self.hands_free,
             answers=self.answers,
             spoken=spoken,
@@ -102,7 +102,7 @@ class Listening:
         )
 
 
-def _recorder(workspace: Workspace, teacher: str) -> Recorder | None:
+def recorder_for(workspace: Workspace, teacher: str) -> Recorder | None:
     """Record a teacher who agrees; nothing is recorded without a yes."""
     from tangy_tui.speech.recordings import Recorder, consent, consent_question, consented
 

@@ -96,7 +96,7 @@ def _listen(
             print_line(plain(f"{row['file']}: {row['heard']!r} -> {_meaning(row, names)}"))
 
     if as_json:
-        with _progress() as progress:
+        with told_progress() as progress:
             heard = hear(files, phrasebook, settings, lambda done, _: progress(done, len(files)))
         print_json(heard)
     else:
@@ -165,7 +165,7 @@ def _bench(folder: Path, phrasebook: Phrasebook, settings: EvidenceSettings, as_
         finally:
             await recogniser.close()
 
-    with _progress() as tell:
+    with told_progress() as tell:
         practice = asyncio.run(run(tell))
     if not practice.rows:
         of = len(found.recordings)
@@ -180,7 +180,7 @@ def _bench(folder: Path, phrasebook: Phrasebook, settings: EvidenceSettings, as_
 
 
 @contextmanager
-def _progress() -> Iterator[Callable[[int, int], None]]:
+def told_progress() -> Iterator[Callable[[int, int], None]]:
     """Show a bar on stderr, where somebody can see it."""
     if not sys.stderr.isatty():
         yield lambda done, of: None

@@ -122,13 +122,13 @@ async def _run(workspace: Workspace, source: Source, as_json: bool) -> CheckResu
             asked,
             tell,
             lexicon.heard(),
-            patience=_patience(source.name),
+            patience=patience(source.name),
         ).run()
     finally:
         await recogniser.close()
 
 
-def _patience(mic: str) -> float:
+def patience(mic: str) -> float:
     """Return how many seconds somebody has to plug in a microphone, or to begin to send."""
     from tangy_tui.speech.microphone_check import PATIENCE
 

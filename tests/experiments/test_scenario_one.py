@@ -71,9 +71,9 @@ def test_wrong_answers_are_put_where_they_are_said_to_be() -> None:
     steps = {step.id: step for one in shown for step in one.steps}
     often = Counter(step.state.situation for step in steps.values())
     ((commonest, _),) = often.most_common(1)
-    chosen = mistakes._places(activity, shown, 0.03, "commonest", Random(1))
+    chosen = mistakes.places(activity, shown, 0.03, "commonest", Random(1))
     assert {steps[id].state.situation for id in chosen} == {commonest}
-    chosen = mistakes._places(activity, shown, 0.03, "rarest", Random(1))
+    chosen = mistakes.places(activity, shown, 0.03, "rarest", Random(1))
     assert len(chosen) == round(0.03 * len(steps))
     spoilt = Counter(steps[id].state.situation for id in chosen)
     assert all(count < often[situation] for situation, count in spoilt.items())

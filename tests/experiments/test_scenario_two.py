@@ -60,7 +60,7 @@ def test_where_nothing_persuades_it_is_said_before_any_game(
     mine = tmp_path / "mine.toml"
     text = LANTERNS.read_text(encoding="utf-8").replace("persuades = true", "persuades = false")
     mine.write_text(text, encoding="utf-8")
-    monkeypatch.setattr(persuading, "_group", None)
+    monkeypatch.setattr(persuading, "group", None)
     with pytest.raises(TangyError, match="nothing that is expected persuades anybody"):
         persuading.run(str(mine), 2, 1, SEED, Where(jobs=1))
     persuading.check(str(LANTERNS))

@@ -93,4 +93,4 @@ def test_a_cell_is_the_same_whichever_way_it_is_turned() -> None:
 def test_some_numbers_of_a_card_agree_by_chance_but_not_many(
     activity: Activity, own: int, legible: int, agree: bool
 ) -> None:
-    assert CardReader(activity.deck)._agree(own, legible) is agree
+    assert CardReader(activity.deck).agree(own, legible) is agree

@@ -172,7 +172,7 @@ class TestReading:
     async def test_a_page_that_hangs_is_stale_though_it_is_connected(
         self, screen: WebChestScreen
     ) -> None:
-        screen._stale_after = 0.9
+        screen.stale_after = 0.9
         (page,) = await opened(screen, "one")
         await until(lambda: page.alive > 2 and screen.reading().state == "OK")
         page.answers = False

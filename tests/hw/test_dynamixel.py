@@ -159,7 +159,7 @@ class TestArms:
             await until(lambda: bus.servos[2].goal == round(60 * 4096 / 360))
             bus.servos[2].position = 1500  # on its way
             bus.servos[7].there = False
-            await until(lambda: arms._unsure)
+            await until(lambda: arms.unsure)
             await arms.hold()
             with pytest.raises(DeviceError, match="hold"):
                 await soon(posing)
@@ -181,7 +181,7 @@ class TestArms:
             bus.servos[2].position = 1500
             with monkeypatch.context() as gone:
                 gone.setattr(Bus, "look", lambda *_, **__: raised(BusError("gone")))
-                await until(lambda: arms._bus is None)
+                await until(lambda: arms.bus is None)
             await arms.hold()
             with pytest.raises(DeviceError):
                 await soon(posing)

@@ -73,19 +73,19 @@ class TestHandDrive:
             laser = one.parts.laser
             laser.scan = Stamped(scan(), 0.0, 1)
             await one.take(do="drive", forward=9.0, turn=0.0)
-            one.robot._tick()
+            one.robot.tick()
             laser.scan = Stamped(scan(front=0.5), 0.0, 2)
-            one.robot._tick()
+            one.robot.tick()
             assert one.state().held == "stands"
             laser.scan, laser.age = Stamped(scan(), 0.0, 3), 5.0
-            one.robot._tick()
-            assert one.robot._wheels.driven == STILL
+            one.robot.tick()
+            assert one.robot.wheels.driven == STILL
             assert "laser scanner says nothing" in one.state().hazard
             laser.age = 0.0
             await asyncio.sleep(0)  # the command to stand is handed over
             await one.take(do="drive", forward=9.0, turn=0.0)
-            one.robot._tick()
-            assert one.robot._wheels.driven == Twist(one.robot.robot.speed, 0.0)
+            one.robot.tick()
+            assert one.robot.wheels.driven == Twist(one.robot.robot.speed, 0.0)
 
 
 NUMBERS = st.floats() | st.sampled_from([5.0, -5.0, 0.51, 1e308, math.nan, math.inf, -math.inf])
@@ -117,8 +117,8 @@ class TestClamp:
         parts = ToldBody()
         wheels = Wheels(parts.base, LIMITS)
         wheels.send(twist)
-        if wheels._sent is not None:
-            await soon(wheels._sent)
+        if wheels.sent is not None:
+            await soon(wheels.sent)
         assert len(parts.told) == 1
         may_drive(parts.told, LIMITS.speed)
         may_drive([wheels.driven], LIMITS.speed)
@@ -137,7 +137,7 @@ class TestClamp:
                 await process.process.take(line.encode())
             elif way in ("hand", "both"):
                 robot.drive_by_hand(one)
-            robot._tick()
-        if robot._wheels._sent is not None:
-            await soon(robot._wheels._sent)
+            robot.tick()
+        if robot.wheels.sent is not None:
+            await soon(robot.wheels.sent)
         may_drive(told, load_robot().speed)

@@ -83,7 +83,7 @@ class TestStop:
         async with living() as (robot, parts):
             assert robot.hazard == ""
             robot.drive_by_hand(Twist(0.3, 0.0))
-            robot._tick()
+            robot.tick()
             await robot.stop("enough")
             assert parts.told[0] == "stop"
             await until(lambda: parts.told.count("stop") == 2)  # once more, at the next tick

@@ -75,7 +75,7 @@ async def test_what_is_called_off_before_it_has_begun_is_answered() -> None:
 async def test_what_is_called_off_later_is_answered_once() -> None:
     async with spoken() as one:
         await one.take(id=1, do="wait", seconds=60)
-        await until(lambda: one.robot.passing._waiting)
+        await until(lambda: one.robot.passing.waiting)
         await one.take(id=2, do="cancel", why="something is wrong")
         await until(lambda: len(one.said) == 2)
         assert sorted(said["id"] for said in one.said) == [1, 2]

@@ -70,7 +70,7 @@ class TestOutbox:
     def test_nobody_waits_for_a_reader_and_what_is_worth_nothing_later_is_left_out(self) -> None:
         pipe = Pipe()
         pipe.outbox.put("x" * 2 * PIPE)
-        assert holds(lambda: pipe.outbox._writing)
+        assert holds(lambda: pipe.outbox.writing)
         began = time.monotonic()
         for number in range(1000):
             pipe.outbox.beat(f"beat {number}")
@@ -81,7 +81,7 @@ class TestOutbox:
     def test_a_beat_is_written_where_nothing_waits(self) -> None:
         pipe = Pipe()
         pipe.outbox.beat("beat")
-        assert holds(lambda: not pipe.outbox._lines)
+        assert holds(lambda: not pipe.outbox.lines)
         assert pipe.read() == ["beat"]
 
     def test_without_a_reader_it_ends(self) -> None:
@@ -101,23 +101,23 @@ class TestHungProcess:
         monkeypatch.setattr(client, "BEAT_SECONDS", 0.005)
         link = linked(monkeypatch, "time.sleep(60)")
         try:
-            outbox = cast(Any, link._worker)._queue
+            outbox = cast(Any, link.worker).outbox
             assert holds(lambda: link.silent)
             beaten: list[str] = []
             monkeypatch.setattr(outbox, "beat", beaten.append)
             link.tell("perform", text="x" * 2 * PIPE)  # its pipe is full
-            assert holds(lambda: outbox._writing)
+            assert holds(lambda: outbox.writing)
             began = time.monotonic()
             link.stop("enough")
             assert time.monotonic() - began < AT_ONCE
-            assert [json.loads(line)["do"] for line, _ in outbox._lines] == ["stop"]
+            assert [json.loads(line)["do"] for line, _ in outbox.lines] == ["stop"]
             time.sleep(0.1)
             assert len(beaten) <= 1  # which may have been on its way
         finally:
             began = time.monotonic()
             link.close()
         assert time.monotonic() - began < AT_ONCE
-        assert link.pid is None and not link._beating.is_alive()
+        assert link.pid is None and not link.beating.is_alive()
 
 
 class TestEnd:
@@ -199,7 +199,7 @@ class TestCalledOff:
         monkeypatch.setattr(client, "CALLED_OFF_SECONDS", 0.2)
         link, cancellation, done = self.opening(monkeypatch, does + "time.sleep(60)")
         assert holds(lambda: link.pid is not None)
-        worker = link._worker
+        worker = link.worker
         assert worker is not None
         cancellation.cancel()
         with pytest.raises(Cancelled):

@@ -150,7 +150,7 @@ class TestBase:
         async with linked(ros=2) as (server, bridge, _):
             base, heard = RosBase(bridge, stamped=True), list[Any]()
             await base.start()
-            await until(lambda: not bridge._queue)
+            await until(lambda: not bridge.waiting)
             server.on_message("/cmd_vel", heard.append)
             await base.drive(Twist(0.3))
             await until(lambda: heard)

@@ -171,6 +171,6 @@ class TestOddMessages:
         whole = Fragments()
         for number in range(1_000):
             whole.take({"id": number, "num": 0, "total": 2, "data": "x"})
-        assert len(whole._open) <= 17
+        assert len(whole.open_parts) <= 17
         with pytest.raises(ValueError, match="fragment"):
             whole.take({"id": "b", "num": 5, "total": 2, "data": "x"})

@@ -80,9 +80,9 @@ def test_messages_that_are_spoilt_anywhere_are_passed_over(messages: list[tuple[
         for device in devices:
             await device.start()
         for topic, message in messages:
-            bridge._hear(json.dumps({"op": "publish", "topic": topic, "msg": message}))
+            bridge.hear(json.dumps({"op": "publish", "topic": topic, "msg": message}))
         for topic, message in GOOD.items():
-            bridge._hear(json.dumps({"op": "publish", "topic": topic, "msg": message}))
+            bridge.hear(json.dumps({"op": "publish", "topic": topic, "msg": message}))
         for reading in (device.reading() for device in devices):
             assert reading.state in STATES
             assert reading.age >= 0
@@ -103,7 +103,7 @@ def test_messages_that_are_spoilt_anywhere_are_passed_over(messages: list[tuple[
 @given(st.one_of(JSON, st.dictionaries(st.sampled_from(("op", "id", "values", "data")), JSON)))
 def test_what_is_no_message_at_all_is_passed_over(message: Any) -> None:
     bridge = Rosbridge("ws://127.0.0.1:9")
-    bridge._hear(json.dumps(message))
+    bridge.hear(json.dumps(message))
     for op in ("fragment", "service_response", "action_result", "publish", "status"):
         if isinstance(message, dict):
-            bridge._hear(json.dumps({**message, "op": op}))
+            bridge.hear(json.dumps({**message, "op": op}))

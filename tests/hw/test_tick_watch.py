@@ -100,7 +100,7 @@ class TestFrozen:
 
     async def test_on_a_bench_in_a_hurry_time_stands_still_and_nothing_is_frozen(self) -> None:
         async with spoken() as one:
-            one.robot._stepped = True
+            one.robot.stepped = True
             clock = Asleep()
             one.robot.watch = TickWatch(clock)
             one.robot.watch_ticks()

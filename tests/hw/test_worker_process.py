@@ -71,7 +71,7 @@ def echo() -> Iterator[Callable[..., WorkerProcess]]:
     for worker in made:
         worker.stop(0)
         assert worker.pid is None
-        assert not any(thread.is_alive() for thread in worker._threads)
+        assert not any(thread.is_alive() for thread in worker.threads)
 
 
 def answer_of(asked: Future[Any]) -> Any:
@@ -101,7 +101,7 @@ class TestSupervisor:
         with pytest.raises(TooLate):
             asked.result(0.05)
         asked.cancel()
-        assert worker._asked.keys() == {0}
+        assert worker.asked.keys() == {0}
         worker.tell({"id": 1, "late": True})
         assert answer_of(worker.ask({"next": 1}))["next"] == 1
 
@@ -259,9 +259,9 @@ class TestChildren:
 
         try:
             for before in (True, False):
-                assert worker._process.stdin is not None
+                assert worker.process.stdin is not None
                 for bad in GARBAGE:
-                    os.write(worker._process.stdin.fileno(), bad + b"\n")
+                    os.write(worker.process.stdin.fileno(), bad + b"\n")
                     assert heard("failed", "error").get("id") is None
                 worker.tell("x" * (2 * LONGEST_LINE))
                 assert "too long" in str(heard("failed", "error"))

@@ -20,7 +20,7 @@ def _who(asked: int) -> tuple[int, int]:
 
 @pytest.fixture(autouse=True)
 def two_processors(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setattr(room, "_processors", lambda: range(2))
+    monkeypatch.setattr(room, "processors", lambda: range(2))
     yield
 
 
@@ -36,7 +36,7 @@ def test_another_process_answers_one_question_after_the_other() -> None:
 
 
 def test_with_one_processor_the_answer_is_worked_out_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(room, "_processors", lambda: range(1))
+    monkeypatch.setattr(room, "processors", lambda: range(1))
     beside = ForkedWorker(_who)
     beside.ask(4)
     assert beside.answer() == (8, os.getpid())
@@ -82,7 +82,7 @@ def test_closing_ends_it() -> None:
 ENDS = """
 import os, signal, sys
 from tangy_tui.speech import forked_worker
-forked_worker._processors = lambda: range(2)
+forked_worker.processors = lambda: range(2)
 one = forked_worker.ForkedWorker(lambda asked: os.getpid())
 one.ask(0)
 print(one.answer(), flush=True)

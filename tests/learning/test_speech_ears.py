@@ -507,7 +507,7 @@ class TestHandsFree:
         await here.source.feed(sound("x", 0.2) + (b"" if end else sound(" ")))
         if end:
             here.source.end()
-            await soon(lambda: here.ears._ended)
+            await soon(lambda: here.ears.ended)
         here.decoder.decoding.set()
         await soon(lambda: len(here.heard) == 3)
         assert [pcm for pcm, _ in here.decoder.heard][:3] == [sound(letter) for letter in "cjx"]
@@ -554,7 +554,7 @@ class TestHandsFree:
         await here.source.feed(sound("c") + sound(" "))
         for _ in range(3 * MOST_WAITING):
             await here.source.feed(sound("x", 1))
-        utterance = here.ears._utterance
+        utterance = here.ears.utterance
         assert utterance is not None
         assert utterance.chunks.held <= 2 * RATE * MOST_WAITING
 

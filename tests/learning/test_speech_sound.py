@@ -90,7 +90,7 @@ class TestEndpoints:
         for seed in range(40):
             assert list(endpoints.feed(pcm(hiss(1.0, 0.0005, seed)))) == []
         assert endpoints.taken == pytest.approx(40 * 2 * RATE, abs=960)
-        assert len(endpoints._recent) <= 2 * RATE * (WINDOW + MARGIN) + 2
+        assert len(endpoints.recent) <= 2 * RATE * (WINDOW + MARGIN) + 2
 
     def test_the_end_of_the_stream_ends_an_utterance(self) -> None:
         stream = among_quiet(1.0)[: 2 * RATE * 2 + 100]

@@ -367,12 +367,12 @@ def ask(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[dict[str, Any]]]:
     answers: list[dict[str, Any]] = []
     monkeypatch.setattr(room, "SILENCE", -1)  # a letter is as flat as silence
     worker = Worker(answers.append)
-    worker._decoder = LetterDecoder()
-    worker._urgent = frozenset("s")
+    worker.decoder = LetterDecoder()
+    worker.urgent = frozenset("s")
 
     def send(*requests: object, broken: str = "") -> list[dict[str, Any]]:
         answers.clear()
-        worker._decoder.broken = broken
+        worker.decoder.broken = broken
         for request in requests:
             worker.take(request)
         return list(answers)

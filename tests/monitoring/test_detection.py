@@ -133,7 +133,7 @@ def test_what_nobody_has_demonstrated_at_all_cannot_be_unexpected(
     workspace: Workspace, learnt: Policy, supervise: Supervise
 ) -> None:
     game = supervise(seed=2)
-    game._detector.effects = Effects({})
+    game.detector.effects = Effects({})
     assert not codes(play(game))
 
 

@@ -137,13 +137,13 @@ def test_no_round_is_at_the_end_of_its_game(
     table: Tabletop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     chosen: list[bool] = []
-    real = Tabletop._fault_round
+    real = Tabletop.fault_round
 
     def look(self: Tabletop, number: int, kind: RoundKind, game: Supervision, *rest: Any) -> Round:
         chosen.append(game.over)
         return real(self, number, kind, game, *rest)
 
-    monkeypatch.setattr(Tabletop, "_fault_round", look)
+    monkeypatch.setattr(Tabletop, "fault_round", look)
     monkeypatch.setattr(drill_rounds, "SETS_IN", (40, 70))  # where most games end
     late = next(kind for kind in KINDS if kind.name == "request-withdrawn")
     for seed in range(8):
@@ -203,16 +203,16 @@ def test_what_cannot_come_about_is_replaced_by_something_of_its_class(
     table: Tabletop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wanted = next(kind for kind in KINDS if BOOK.rule(kind.code).recovery[0] == "user")
-    real = Tabletop._try
+    real = Tabletop.try_once
 
     def hardly(self: Tabletop, number: int, kind: RoundKind, seed: int) -> Round | None:
         return None if kind == wanted else real(self, number, kind, seed)
 
-    monkeypatch.setattr(Tabletop, "_try", hardly)
+    monkeypatch.setattr(Tabletop, "try_once", hardly)
     shown = table.play(1, wanted, Random(1))
     assert shown.kind != wanted
     assert shown.recovery == "user"
-    monkeypatch.setattr(Tabletop, "_try", lambda *_: None)
+    monkeypatch.setattr(Tabletop, "try_once", lambda *_: None)
     with pytest.raises(TangyError, match="No fault of Bingo could be brought about"):
         table.play(1, wanted, Random(1))
 

@@ -60,7 +60,7 @@ def test_what_a_person_did_not_do_after_an_answer_is_no_effect_to_be_expected(
         e for e in go_on_by_script(scripted_controller(game), expert=True) if isinstance(e, Acted)
     )
     assert acted.outcome.response is not None and not acted.outcome.response.followed
-    known = game._effects_of(game.policy).values[acted.action.behaviour.name]
+    known = game.effects_of(game.policy).values[acted.action.behaviour.name]
     assert known["what was asked about"] == {"settled"}
 
 
@@ -84,7 +84,7 @@ def test_what_follows_an_answer_is_expected_only_where_nothing_was_shown(
         _ = game.begin() if game.over else game.game.step()  # nobody looks
     game.game.ask("Something is wrong here.", "Say what to do.", "")
     go_on_by_script(scripted_controller(game), expert=True)
-    known = game._effects_of(game.policy).values
+    known = game.effects_of(game.policy).values
     assert not any("open with nothing left" in one.get("request", ()) for one in known.values())
 
 

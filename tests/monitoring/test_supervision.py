@@ -33,7 +33,7 @@ def test_no_name_of_a_person_gets_into_the_log(
         workspace.rename(person, f"Zoe{person.id[-1]}")
     kinds = ("never-complies", "card-out-of-sight", "request-stuck", "path-blocked", "no-effect")
     game = supervise(*kinds, seed=2, asks=False)
-    game._recovery._name = lambda person: f"Zoe{person[-1]}"
+    game.recovery.name_of = lambda person: f"Zoe{person[-1]}"
     told: list[str] = []
     for expert in (True, False):
         play(game, expert=expert)
@@ -128,7 +128,7 @@ def test_an_unexplained_error_cannot_be_cleared_while_it_lasts(
     rules = load_faults(load_robot())
     left = tuple(rule for rule in rules.rules if rule.device != "camera")
     game = supervise(seed=3, asks=False)
-    game._watch.book = replace(rules, rules=left)
+    game.watch.book = replace(rules, rules=left)
     game.begin()
     odd = tuple(r._replace(state="ERROR") if r.device == "camera" else r for r in WELL)
     monkeypatch.setattr(world_of(game), "health", lambda: odd)

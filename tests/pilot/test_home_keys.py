@@ -102,7 +102,7 @@ async def test_v_needs_something_that_was_learnt(run: Run, workspace: Workspace)
 async def test_home_says_what_is_left_out_of_the_log(run: Run, workspace: Workspace) -> None:
     store = workspace.store
     append_body(store, "policy learnt", {**POLICY_BODY, "name": "lost"})
-    db = store._file.db
+    db = store.file.db
     assert db is not None
     db.executescript("DROP TRIGGER unchanged; UPDATE event SET body = '{'")
     store.notices.append("tangy.db: events 5 to 9 had been kept and are gone.")

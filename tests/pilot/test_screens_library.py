@@ -54,8 +54,7 @@ def workspace(
 ) -> Iterator[Workspace]:
     """A workspace in which Ada and Bea disagree about wrong marks, and Cem did not finish."""
     monkeypatch.setenv("USER", "ann")
-    opened = Workspace(tmp_path / "data")
-    monkeypatch.setattr(opened.store, "_now", SlowClock())
+    opened = Workspace(tmp_path / "data", now=SlowClock())
     games = (demonstrate("bingo", seed, 4) for seed in range(1, 40))
     wanted = (g for g in games if any(s.state.situation.user_state == WRONG for s in g.steps))
     first, second, third = (next(wanted) for _ in range(3))

@@ -88,9 +88,9 @@ def test_a_tail_that_was_deleted_is_noted_and_said_until_staff_accept_it(
 ) -> None:
     Store.open(tmp_path / "first").close()
     append_body(store, "joke", {})
-    store._file.reading()
-    assert store._file.db is not None
-    store._file.db.execute("PRAGMA wal_checkpoint").fetchall()
+    store.file.reading()
+    assert store.file.db is not None
+    store.file.db.execute("PRAGMA wal_checkpoint").fetchall()
     for _ in range(3):
         append_body(store, "joke", {})
     folder = killed(store, tmp_path / "killed", but="tangy.db-wal")
@@ -166,8 +166,8 @@ def test_a_count_that_lags_gives_no_alarm(store: Store) -> None:
 
 def test_a_log_that_never_had_a_count_is_believed(store: Store) -> None:
     append_body(store, "joke", {})
-    assert store._file.db is not None
-    store._file.db.execute("DELETE FROM meta WHERE key = 'sealed'")
+    assert store.file.db is not None
+    store.file.db.execute("DELETE FROM meta WHERE key = 'sealed'")
     store.close()
     (store.folder / "tangy.seal").unlink()
     assert said(store.folder) == []
@@ -236,5 +236,5 @@ def test_the_count_never_leads(tmp_path: Path) -> None:
         seal = Seal(tmp_path)
         with store.transaction():
             append_body(store, "joke", {})
-            assert seal.read() == (store._robot, 0)
-        assert seal.read() == (store._robot, 1)
+            assert seal.read() == (store.robot, 0)
+        assert seal.read() == (store.robot, 1)

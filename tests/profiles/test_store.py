@@ -555,7 +555,8 @@ def fill_first_version(folder: Path) -> None:
         patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
         with Store.open(folder) as store:
             append_body(store, "greeting", {})
-            store._write("INSERT INTO name VALUES ('user1', 'Rosalind')")
+            assert store.file.db is not None
+            store.file.db.execute("INSERT INTO name VALUES ('user1', 'Rosalind')")
 
 
 def test_a_copy_of_an_older_log_names_nobody(tmp_path: Path) -> None:
@@ -574,7 +575,7 @@ def test_a_copy_of_an_older_log_names_nobody(tmp_path: Path) -> None:
 
 def test_an_older_log_that_another_process_writes_is_read_as_it_is(tmp_path: Path) -> None:
     fill_first_version(tmp_path)
-    held, _ = log_file._hold(tmp_path / "tangy.lock")
+    held, _ = log_file.hold(tmp_path / "tangy.lock")
     before = log_of(tmp_path).read_bytes()
     with Store.open(tmp_path, write=False) as console:
         assert console.names() == {"user1": "Rosalind"}
@@ -594,8 +595,8 @@ def test_an_older_log_that_cannot_be_written_is_read_as_it_is(
     def refused(path: Path) -> None:
         raise OSError(30, "Read-only file system")
 
-    monkeypatch.setattr(log_file, "_hold", refused)
-    monkeypatch.setattr(log_file, "_is_read_only", lambda folder: True)
+    monkeypatch.setattr(log_file, "hold", refused)
+    monkeypatch.setattr(log_file, "is_read_only", lambda folder: True)
     there = set(tmp_path.iterdir())
     with Store.open(tmp_path, write=False) as console:
         assert console.names() == {"user1": "Rosalind"}

@@ -4,7 +4,6 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 import pytest
 
@@ -36,7 +35,7 @@ def otherwise_built(monkeypatch: pytest.MonkeyPatch, deaf: str = "") -> None:
 
 def asked(store: Store, setting: str) -> Any:
     """Ask the store's own connection how a setting stands."""
-    db = store._file.db
+    db = store.file.db
     assert db is not None
     return db.execute(f"PRAGMA {setting}").fetchone()[0]
 
@@ -70,11 +69,11 @@ def test_a_log_that_sqlite_will_not_keep_as_promised_is_refused(
 def test_a_disk_that_cannot_hold_a_tail_beside_the_log_is_refused_in_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def on_a_simple_disk(file: log_file.LogFile) -> sqlite3.Connection:
-        uri = f"file:{quote(str(file.path))}?mode=rw&vfs=unix-dotfile"  # no shared memory there
-        return connect(uri, uri=True, isolation_level=None, check_same_thread=False)
+    def on_a_simple_disk(file: str, **how: Any) -> sqlite3.Connection:
+        made: sqlite3.Connection = connect(f"{file}&vfs=unix-dotfile", **how)  # no shared memory
+        return made
 
-    monkeypatch.setattr(log_file.LogFile, "_connect", on_a_simple_disk)
+    monkeypatch.setattr(sqlite3, "connect", on_a_simple_disk)
     with pytest.raises(StoreError, match="journal_mode at delete, not WAL; choose a folder"):
         Store.open(tmp_path)
 
@@ -84,7 +83,7 @@ def test_the_connection_of_a_console_itself_takes_no_change(tmp_path: Path) -> N
         store.rename("user1", "Rosa")
         with Store.open(tmp_path, write=False) as console:
             assert console.names() == {"user1": "Rosa"}
-            db = console._file.db
+            db = console.file.db
             assert db is not None
             for change in ("DELETE FROM name", "INSERT INTO meta VALUES ('a', 'b')"):
                 with pytest.raises(sqlite3.OperationalError, match="readonly"):

@@ -107,7 +107,7 @@ def test_a_log_of_an_older_tangy_is_ok(tmp_path: Path, monkeypatch: pytest.Monke
     with monkeypatch.context() as patch:
         patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
         Store.open(tmp_path).close()
-    held, _ = log_file._hold(tmp_path / "tangy.lock")
+    held, _ = log_file.hold(tmp_path / "tangy.lock")
     assert data_folder(tmp_path) == Finding("data folder", True, f"{tmp_path} is sound.")
     held.close()
     assert data_folder(tmp_path) == Finding("data folder", True, f"{tmp_path} is sound.")

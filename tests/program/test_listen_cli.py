@@ -165,7 +165,7 @@ def test_progress_is_shown_beside_a_document_where_somebody_can_see_it(
         return []
 
     monkeypatch.setattr(transcription, "listen", hear)
-    monkeypatch.setattr("tangy_tui.verbs.listen._progress", progress)
+    monkeypatch.setattr("tangy_tui.verbs.listen.told_progress", progress)
     done = tangy("listen", "a.wav", "b.wav", "--json", "--data", tmp_path / "data")
     assert json.loads(done.stdout) == []
     assert seen == [(1, 2), (2, 2)]
@@ -216,7 +216,7 @@ def test_who_is_asked_for_consent_is_told_how_to_delete_what_is_kept_there(
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     for folder in (tmp_path / "two words", data_folder(None)):
         workspace = Workspace(folder)
-        assert hearing._recorder(workspace, "rosa") is None
+        assert hearing.recorder_for(workspace, "rosa") is None
         workspace.close()
     assert f"`tangy listen --forget-recordings --data '{tmp_path / 'two words'}'`" in asked[0]
     assert "`tangy listen --forget-recordings`" in asked[1]
@@ -291,7 +291,7 @@ class TestCheckingAMicrophone:
         self, mic: str, terminal: bool, seconds: float, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
-        assert mic_check._patience(mic) == seconds
+        assert mic_check.patience(mic) == seconds
         assert NO_SOUND_SECONDS < ALONE < PATIENCE, "it is said before it is given up"
 
     @pytest.mark.parametrize(("understood", "status"), [(6, 0), (2, 1)])

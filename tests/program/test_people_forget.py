@@ -16,7 +16,6 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from tangy_profiles.errors import StoreError
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.verification import Reply, Say
@@ -90,8 +89,9 @@ def test_after_forgetting_no_byte_of_the_data_folder_has_the_name(tangy: Tangy, 
         assert store.check() == [] and store.notices == []
         heard = [e.body["heard"] for e in store.events("demonstration step")]
         assert heard == ["greet everyone", "go to user2", "go to xanthippe rose"]
-        with pytest.raises(StoreError, match="append only"):
-            store._write("UPDATE event SET body = '{}'")
+        assert store.file.db is not None
+        with pytest.raises(sqlite3.IntegrityError, match="append only"):
+            store.file.db.execute("UPDATE event SET body = '{}'")
 
 
 def test_files_that_tangy_did_not_write_stay_and_are_named(tangy: Tangy, data: Path) -> None:

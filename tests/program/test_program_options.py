@@ -42,8 +42,8 @@ def test_both_ways_open_the_same_program(
     words: list[str], opened: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys, "argv", ["tangy", *words])
-    assert cli._run() == 0
-    assert cli._parsed() == 0
+    assert cli.run() == 0
+    assert cli.parsed() == 0
     assert len(opened) == 2 and opened[0] == opened[1]
 
 
@@ -51,4 +51,4 @@ def test_both_ways_open_the_same_program(
     "words", [["--data"], ["--data", "--ascii"], ["--dat", "x"], ["teach"], ["--help"], ["--data="]]
 )
 def test_the_rest_is_left_to_the_option_parser(words: list[str]) -> None:
-    assert cli._program_options(words) is None
+    assert cli.program_options(words) is None

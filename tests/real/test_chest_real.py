@@ -225,9 +225,9 @@ async def test_a_tablet_is_paired_once_and_stays_so(browser: Browser, tmp_path: 
     await again.show(Picture("", "O-75"))
     await until(lambda: again.reading().state == "OK", PATIENCE)
     await tab.until("document.getElementById('number').innerText === '75'")
-    before = set(again._pages)
+    before = set(again.windows)
     await tab.ask("Page.reload")
-    await until(lambda: bool(set(again._pages) - before) and again.why == "", PATIENCE)
+    await until(lambda: bool(set(again.windows) - before) and again.why == "", PATIENCE)
     await again.close()
 
 

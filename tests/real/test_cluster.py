@@ -114,7 +114,7 @@ def test_the_command_line_works_there(two_workers: Cluster, tmp_path: Path) -> N
 def test_workers_with_other_code_are_not_used(
     two_workers: Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster, "_theirs", lambda client: {"a worker": "other"})
+    monkeypatch.setattr(cluster, "versions_there", lambda client: {"a worker": "other"})
     with pytest.raises(TangyError, match="do not have this version"):
         sweep().run(Where(cluster=two_workers.address))
 

@@ -98,7 +98,7 @@ async def test_they_are_open_as_long_as_anybody_is_in_it_and_leave_nothing() -> 
             async with sensors:
                 await sensors.settled(PATIENCE)
             assert sensors.sight("camera").state == "OK"
-            child = sensors._cameras["camera"].pid
+            child = sensors.streams["camera"].pid
             assert child is not None
         with pytest.raises(ProcessLookupError):
             os.kill(child, 0)

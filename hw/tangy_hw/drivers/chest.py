@@ -78,11 +78,11 @@ class WebChestScreen:
         self.pairing = Pairing() if pairing is None else pairing
         self._names = tuple(names)
         self._clock = clock
-        self._stale_after = stale_after
+        self.stale_after = stale_after
         self._task: asyncio.Task[None] | None = None
         self._worker: WorkerProcess | None = None
         self._begun = asyncio.Event()
-        self._pages: dict[str, _Page] = {}
+        self.windows: dict[str, _Page] = {}
         self._number = 0
         self._picture = Picture("")
         self._heard = -math.inf
@@ -109,7 +109,7 @@ class WebChestScreen:
     def pages(self) -> int:
         """How many pages are open on paired tablets, and answer."""
         since = self._clock() - GONE_SECONDS
-        return sum(page.heard > since for page in self._pages.values())
+        return sum(page.heard > since for page in self.windows.values())
 
     @property
     def why(self) -> str:
@@ -152,7 +152,7 @@ class WebChestScreen:
             return
         try:
             async with asyncio.timeout(SHOW_SECONDS):
-                while not any(page.seen >= mine for page in self._pages.values()):
+                while not any(page.seen >= mine for page in self.windows.values()):
                     self._taken.clear()
                     await self._taken.wait()
         except TimeoutError:
@@ -169,7 +169,7 @@ class WebChestScreen:
             return Reading(self.name, age, ERROR)
         if self._heard == -math.inf:
             return Reading(self.name, age, WARN)
-        return Reading(self.name, age, OK if age <= self._stale_after else STALE, rate=rate)
+        return Reading(self.name, age, OK if age <= self.stale_after else STALE, rate=rate)
 
     # ------------------------------------------------------------------------- its process
 
@@ -186,7 +186,7 @@ class WebChestScreen:
                     self._error = f"{self.name}: the process of its page has ended ({worker.how})."
                 finally:
                     self._worker = None
-                    self._pages.clear()
+                    self.windows.clear()
                     await worker.stopped(END_SECONDS)
             self._begun.set()
             await asyncio.sleep(AGAIN_SECONDS)
@@ -211,13 +211,13 @@ class WebChestScreen:
                 self._error = f"{place} ({plain(why)})."
                 self._begun.set()
             case {"page": str(name), "seen": int(number)}:
-                page = self._pages.setdefault(name, _Page())
+                page = self.windows.setdefault(name, _Page())
                 page.heard = self._heard = self._clock()
                 page.seen = max(page.seen, min(number, self._number))
                 self._arrivals.count(self._heard)
                 self._taken.set()
             case {"gone": str(name)}:
-                self._pages.pop(name, None)
+                self.windows.pop(name, None)
 
     def _send_picture(self) -> None:
         if self._worker is not None:  # else it is told when it runs

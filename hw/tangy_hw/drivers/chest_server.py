@@ -92,9 +92,9 @@ class ChestServer:
         self._names = {host.lower(), "localhost", own, f"{own.partition('.')[0]}.local", *names}
         self._server: asyncio.Server | None = None
         self._connections: dict[_Connection, None] = {}  # the oldest first
-        self._pages: dict[str, _Page] = {}
+        self.windows: dict[str, _Page] = {}
         self._number = -1
-        self._shown = b""
+        self.newest = b""
 
     async def start(self) -> None:
         """Begin to listen.
@@ -121,8 +121,8 @@ class ChestServer:
     def show(self, number: int, picture: Mapping[str, Any]) -> None:
         """Show a picture on all pages; whoever comes later is shown it, too."""
         self._number = number
-        self._shown = event("show", json.dumps({"n": number, **picture}))
-        for page in self._pages.values():
+        self.newest = event("show", json.dumps({"n": number, **picture}))
+        for page in self.windows.values():
             page.changed.set()
 
     @property
@@ -221,7 +221,7 @@ class ChestServer:
         name, number = request.query.get("page", ""), request.query.get("number", "")
         if not asker.paired:
             return response(403)
-        page = self._pages.get(name)
+        page = self.windows.get(name)
         if page is None or not (number.isascii() and number.isdecimal() and len(number) < 10):
             return response(404)
         page.heard = time.monotonic()
@@ -234,16 +234,16 @@ class ChestServer:
         """Say whether there is room for a page; one that answers no more makes room."""
         if not (0 < len(name) <= 40):
             return False
-        if len(self._pages) < MOST_PAGES or name in self._pages:
+        if len(self.windows) < MOST_PAGES or name in self.windows:
             return True
-        quiet = min(self._pages, key=lambda name: self._pages[name].heard)
-        if self._pages[quiet].heard > time.monotonic() - GONE_SECONDS:
+        quiet = min(self.windows, key=lambda name: self.windows[name].heard)
+        if self.windows[quiet].heard > time.monotonic() - GONE_SECONDS:
             return False
         self._end(quiet)
         return True
 
     def _end(self, name: str) -> None:
-        page = self._pages.pop(name)
+        page = self.windows.pop(name)
         page.over = True
         page.changed.set()
 
@@ -254,23 +254,23 @@ class ChestServer:
             writer.write(response(503, b"There are too many pages open.\n"))
             return
         page = _Page(time.monotonic())
-        if (before := self._pages.get(name)) is not None:  # the same page, after a lost link
+        if (before := self.windows.get(name)) is not None:  # the same page, after a lost link
             page.heard = before.heard
             self._end(name)
-        self._pages[name] = page
+        self.windows[name] = page
         writer.write(stream_head())
         try:
             await self._events(page, writer)
         finally:
-            if self._pages.get(name) is page:
-                del self._pages[name]
+            if self.windows.get(name) is page:
+                del self.windows[name]
                 self._tell({"gone": name})
 
     async def _events(self, page: _Page, writer: asyncio.StreamWriter) -> None:
         sent = -2
         while not page.over:
             page.changed.clear()
-            writer.write(self._shown if sent != self._number else event("alive", str(sent)))
+            writer.write(self.newest if sent != self._number else event("alive", str(sent)))
             sent = self._number
             async with asyncio.timeout(SEND_SECONDS):
                 await writer.drain()

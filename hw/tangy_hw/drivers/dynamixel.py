@@ -110,9 +110,9 @@ class DynamixelArms:
         self._newest: Newest[None] = Newest(clock)
         self._moves = JointMoves(name, math.radians(tolerance), clock)
         self._errors: dict[int, str] = {}
-        self._bus: Bus | None = None
+        self.bus: Bus | None = None
         self._hangs = True  # as it is meant to: it has had no torque yet, or was let go
-        self._unsure = False  # a servo may have lost its torque, which is given again then
+        self.unsure = False  # a servo may have lost its torque, which is given again then
         self._stands = False  # it was told to hold while the port was gone
         self._thread: ThreadPoolExecutor | None = None
         self._task: asyncio.Task[None] | None = None
@@ -158,7 +158,7 @@ class DynamixelArms:
         if self._errors:
             number, what = next(iter(self._errors.items()))
             return plain(f"{self.name}: the servo of {self._by_id[number]} reports {what}.")
-        return "" if self._bus is not None else plain(f"{self.name}: {self._port} is not there.")
+        return "" if self.bus is not None else plain(f"{self.name}: {self._port} is not there.")
 
     async def pose(self, angles: Mapping[str, Sequence[float]], seconds: float) -> None:
         """Move limbs to joint angles (degrees, by limb) within so many s, and wait for it.
@@ -183,16 +183,16 @@ class DynamixelArms:
             if not 0 <= angle < 360:
                 wrong = f"{self._by_id[number]} cannot turn to {angle:.0f} degrees of its servo."
                 raise DeviceError(plain(f"{self.name}: {wrong}"))
-        if self._bus is None or self._errors:
+        if self.bus is None or self._errors:
             raise DeviceError(self.why)
-        was, limp = (self._hangs, self._unsure), self._hangs or self._unsure
-        self._hangs = self._unsure = self._stands = False
+        was, limp = (self._hangs, self.unsure), self._hangs or self.unsure
+        self._hangs = self.unsure = self._stands = False
         arriving = asyncio.create_task(self._moves.arrive(goals, seconds, self._well))
         try:
             await self._do(lambda: self._move(wanted, seconds, limp))
             await arriving
         except BusError as error:
-            self._hangs, self._unsure = self._hangs or was[0], self._unsure or was[1]
+            self._hangs, self.unsure = self._hangs or was[0], self.unsure or was[1]
             with suppress(BusError):  # a servo with an error is why
                 await self._do(partial(self._look, errors=True))
                 self._take()
@@ -200,7 +200,7 @@ class DynamixelArms:
                 self.why if self._errors else plain(f"{self.name}: {error}")
             ) from None
         except DeviceError:
-            if self._errors or self._bus is None:
+            if self._errors or self.bus is None:
                 raise DeviceError(self.why) from None
             raise
         finally:
@@ -221,7 +221,7 @@ class DynamixelArms:
             await self._do(self._let_go)
 
     def _well(self) -> bool:
-        return self._bus is not None and not self._errors
+        return self.bus is not None and not self._errors
 
     async def _do(self, work: Callable[[], object]) -> None:
         """Do something in the thread of the bus, where one thing is done at a time."""
@@ -238,12 +238,12 @@ class DynamixelArms:
                 await asyncio.sleep(POLL_SECONDS)
             except BusError:
                 await self._do(self._hang_up)
-                self._unsure = True
+                self.unsure = True
                 await asyncio.sleep(AGAIN_SECONDS)
 
     def _take(self) -> None:
         """Take what the thread has found."""
-        bus = self._bus
+        bus = self.bus
         if bus is None:
             return
         self._errors = {number: meaning(bits) for number, bits in bus.errors.items() if bits}
@@ -257,35 +257,35 @@ class DynamixelArms:
         if len(found) == len(self._by_id):
             self._newest.take(None)
         else:
-            self._unsure = True  # one that was without power has forgotten its torque
+            self.unsure = True  # one that was without power has forgotten its torque
 
     # ---------------------------------------------------------------- in the thread of the bus
 
     def _look(self, *, errors: bool) -> None:
-        if self._bus is None:
-            self._bus = Bus(self._port, self._baud, tuple(self._by_id))
+        if self.bus is None:
+            self.bus = Bus(self._port, self._baud, tuple(self._by_id))
             if self._stands:
                 self._stand()
-        self._bus.look(errors=errors)
+        self.bus.look(errors=errors)
 
     def _move(self, wanted: Mapping[int, float], seconds: float, limp: bool) -> None:
-        if self._bus is None:
+        if self.bus is None:
             raise BusError(f"{self._port} is not there.")
         if limp:
-            self._bus.hold()
-        self._bus.move(wanted, seconds)
+            self.bus.hold()
+        self.bus.move(wanted, seconds)
 
     def _stand(self) -> None:
         self._stands = True
-        if self._bus is not None:
-            self._bus.stand()
+        if self.bus is not None:
+            self.bus.stand()
             self._stands = False
 
     def _let_go(self) -> None:
-        if self._bus is not None:
-            self._bus.torque(on=False)
+        if self.bus is not None:
+            self.bus.torque(on=False)
 
     def _hang_up(self) -> None:
-        bus, self._bus = self._bus, None
+        bus, self.bus = self.bus, None
         if bus is not None:
             bus.close()

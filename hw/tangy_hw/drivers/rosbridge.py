@@ -87,7 +87,7 @@ class Rosbridge:
         self._hello: dict[str, str] = {}
         self._on_connect: list[Callable[[], None]] = []
         self._urgent: dict[str, str] = {}
-        self._queue: deque[str] = deque()
+        self.waiting: deque[str] = deque()
         self._wake = asyncio.Event()
         self._idle = asyncio.Event()
         self._waiting = Waiting()
@@ -267,7 +267,7 @@ class Rosbridge:
 
     async def _talk(self, socket: ClientConnection) -> None:
         self._urgent.clear()  # what was meant before a loss is not meant after it
-        self._queue.clear()
+        self.waiting.clear()
         self._fragments = Fragments()
         self._connected.set()
         for does in self._on_connect:
@@ -275,7 +275,7 @@ class Rosbridge:
         writing = asyncio.create_task(self._write(socket, tuple(self._hello.values())))
         try:
             async for text in socket:
-                self._hear(text)
+                self.hear(text)
         finally:
             writing.cancel()
             await asyncio.gather(writing, return_exceptions=True)
@@ -285,11 +285,11 @@ class Rosbridge:
             for text in greetings:
                 await socket.send(text)
             while True:
-                while self._urgent or self._queue:
+                while self._urgent or self.waiting:
                     if self._urgent:
                         text = self._urgent.pop(next(iter(self._urgent)))
                     else:
-                        text = self._queue.popleft()
+                        text = self.waiting.popleft()
                     await socket.send(text)
                     await asyncio.sleep(0)  # much that waits delays nobody else
                 self._idle.set()
@@ -326,12 +326,13 @@ class Rosbridge:
     def _send(self, wire: Message) -> None:
         """Queue something; without a connection it is forgotten."""
         if self.connected:
-            if len(self._queue) >= QUEUED:
-                self._queue.popleft()
-            self._queue.append(_encoded(wire))
+            if len(self.waiting) >= QUEUED:
+                self.waiting.popleft()
+            self.waiting.append(_encoded(wire))
             self._stir()
 
-    def _hear(self, text: str | bytes) -> None:
+    def hear(self, text: str | bytes) -> None:
+        """Take one message of the server as it came; what is none is passed over."""
         try:
             message = json.loads(text)
             if not isinstance(message, dict):
@@ -343,7 +344,7 @@ class Rosbridge:
         self._heard = self.clock()
         self._arrivals.count(self._heard)
         if whole is not None:
-            self._hear(whole)
+            self.hear(whole)
             return
         op = message.get("op")
         if op == "publish":

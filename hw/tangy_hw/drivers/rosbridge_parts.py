@@ -15,7 +15,7 @@ class Fragments:
 
     def __init__(self) -> None:
         """Begin without any."""
-        self._open: dict[str, dict[int, str]] = {}
+        self.open_parts: dict[str, dict[int, str]] = {}
 
     def take(self, fragment: Mapping[str, Any]) -> str | None:
         """Take one fragment; return the whole text when it was the last that was missing.
@@ -29,14 +29,14 @@ class Fragments:
             raise TypeError("a fragment's num and total are whole numbers, its data is a text")
         if not 0 <= number < total <= PIECES:
             raise ValueError(f"fragment {number} of {total}")
-        pieces = self._open.setdefault(key, {})
+        pieces = self.open_parts.setdefault(key, {})
         pieces[number] = data
         if sum(map(len, pieces.values())) > LARGEST:
-            del self._open[key]
+            del self.open_parts[key]
             raise ValueError("a message in fragments is too large")
         if len(pieces) >= total:
-            del self._open[key]
+            del self.open_parts[key]
             return "".join(pieces[place] for place in sorted(pieces))
-        while len(self._open) > OPEN:
-            del self._open[next(iter(self._open))]
+        while len(self.open_parts) > OPEN:
+            del self.open_parts[next(iter(self.open_parts))]
         return None

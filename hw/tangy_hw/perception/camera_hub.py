@@ -139,10 +139,10 @@ class CameraHub:
             log: where messages of the drivers go; nowhere if not given.
         """
         self.robot = robot
-        self._cameras = {
+        self.streams = {
             name: Camera(source, device=name, log=log) for name, source in sources.items()
         }
-        looking = (n for n in self._cameras if robot.devices[n].looks_at == CARDS)
+        looking = (n for n in self.streams if robot.devices[n].looks_at == CARDS)
         self.card_device = next(looking, "") if deck is not None else ""
         """The device that looks at cards, "" if none does."""
         self._deck = deck
@@ -176,25 +176,25 @@ class CameraHub:
     @property
     def cameras(self) -> tuple[str, ...]:
         """The devices that are cameras with a source, in the order of the profile."""
-        return tuple(self._cameras)
+        return tuple(self.streams)
 
     def source(self, device: str) -> str:
         """Return where the pictures of a camera come from, as it was named."""
-        return self._cameras[device].name
+        return self.streams[device].name
 
     def sight(self, device: str) -> Sight:
         """Return the state of a camera and the evidence for it."""
-        return self._cameras[device].sight
+        return self.streams[device].sight
 
     def health(self) -> Health:
         """Return the newest reading of each camera."""
-        return tuple(camera.reading() for camera in self._cameras.values())
+        return tuple(camera.reading() for camera in self.streams.values())
 
     async def settled(self, seconds: float) -> None:
         """Wait until each camera has given its first picture, or cannot; at most so many s."""
         with suppress(TimeoutError):
             async with asyncio.timeout(seconds):
-                while any(c.sight.state == "OPENING" for c in self._cameras.values()):  # noqa: ASYNC110
+                while any(c.sight.state == "OPENING" for c in self.streams.values()):  # noqa: ASYNC110
                     await asyncio.sleep(0.05)
 
     async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Frame | None:
@@ -206,7 +206,7 @@ class CameraHub:
             after: of a higher number than this, if it comes within a second.
         """
         with suppress(CameraError):  # its state says so
-            return await self._cameras[device].frame(after=after, wait=FRAME_SECONDS, fit=fit)
+            return await self.streams[device].frame(after=after, wait=FRAME_SECONDS, fit=fit)
         return None
 
     async def frame(self, device: str, *, after: int = -1) -> Frame | None:
@@ -217,7 +217,7 @@ class CameraHub:
         Raises:
             CameraError: none will come any more.
         """
-        return await self._cameras[device].frame(after=after, wait=FRAME_SECONDS)
+        return await self.streams[device].frame(after=after, wait=FRAME_SECONDS)
 
     @contextmanager
     def reading_cards(self) -> Iterator[None]:
@@ -238,7 +238,7 @@ class CameraHub:
 
     async def _start(self) -> None:
         self._cards = CardSight()
-        for camera in self._cameras.values():
+        for camera in self.streams.values():
             await camera.start()
         if self.card_device:
             self._task = asyncio.create_task(self._read())
@@ -249,11 +249,11 @@ class CameraHub:
         if task is not None:
             task.cancel()
             await asyncio.wait([task])
-        await asyncio.gather(*(camera.close() for camera in self._cameras.values()))
+        await asyncio.gather(*(camera.close() for camera in self.streams.values()))
 
     async def _read(self) -> None:
         """Read the card in the newest picture, again and again, on a thread."""
-        camera, seq = self._cameras[self.card_device], -1
+        camera, seq = self.streams[self.card_device], -1
         loop = asyncio.get_running_loop()
         reader: CardReader | None = None
         with ThreadPoolExecutor(1, "cards") as thread:  # leaving waits for the reading in work

@@ -87,12 +87,12 @@ class RobotLink:
         self._cancellation = cancellation or Cancellation()
         self._starting = threading.Lock()
         self._over = False  # it is closed for good
-        self._worker: WorkerProcess | None = None
+        self.worker: WorkerProcess | None = None
         self._told = _Told()
         self._said = threading.Condition()
         self._closing = threading.Event()
         self._alive: float | None = None  # when a screen last said that it lives
-        self._beating = threading.Thread()
+        self.beating = threading.Thread()
 
     # ------------------------------------------------------------------------- its process
 
@@ -122,7 +122,7 @@ class RobotLink:
         self._closing.clear()
         self._told = _Told()
         try:
-            worker = self._worker = WorkerProcess(
+            worker = self.worker = WorkerProcess(
                 [*CHILD, str(os.getpid())],
                 hear=self._hear,
                 read=_answer,
@@ -133,8 +133,8 @@ class RobotLink:
         except WorkerError as error:
             raise DeviceError(f"The robot process cannot be started ({error}).") from None
         worker.tell(self.setup.to_json())
-        self._beating = threading.Thread(target=self._beat, args=(worker,), daemon=True)
-        self._beating.start()
+        self.beating = threading.Thread(target=self._beat, args=(worker,), daemon=True)
+        self.beating.start()
         return worker
 
     def restart(self) -> None:
@@ -154,15 +154,15 @@ class RobotLink:
 
     def _end(self) -> None:
         self._closing.set()
-        worker = self._worker
+        worker = self.worker
         if worker is None:
             return
         called_off = self._cancellation.cancelled
         if self.silent and not called_off:  # it would not end by itself, and may not even read
             worker.kill()
         worker.stop(CALLED_OFF_SECONDS if called_off else END_SECONDS)
-        if self._beating is not threading.current_thread():
-            self._beating.join()
+        if self.beating is not threading.current_thread():
+            self.beating.join()
 
     # ------------------------------------------------------------------------- what it says
 
@@ -186,7 +186,7 @@ class RobotLink:
     @property
     def pid(self) -> int | None:
         """The id of the process, None where there is none."""
-        return None if self._worker is None else self._worker.pid
+        return None if self.worker is None else self.worker.pid
 
     @property
     def time(self) -> float:
@@ -210,12 +210,12 @@ class RobotLink:
     @property
     def _how(self) -> str:
         """How the process ended, "" where it has not."""
-        return "" if self._worker is None else self._worker.how
+        return "" if self.worker is None else self.worker.how
 
     @property
     def _heard(self) -> float:
         """When it said something last (monotonic, s); 0 where it never has."""
-        return 0.0 if self._worker is None else self._worker.heard
+        return 0.0 if self.worker is None else self.worker.heard
 
     def health(self) -> Health:
         """Return the newest reading of each device; all are stale where the process is silent.
@@ -236,7 +236,7 @@ class RobotLink:
 
     def ask(self, do: Request, **what: Any) -> Future[dict[str, Any]]:
         """Ask the robot for something; the answer comes, or DeviceError, or BrokenOff."""
-        worker = self._worker
+        worker = self.worker
         if worker is None:
             gone: Future[dict[str, Any]] = Future()
             gone.set_exception(Preempted(self.silent))
@@ -278,8 +278,8 @@ class RobotLink:
     def tell(self, do: Request, **what: Any) -> None:
         """Tell the robot something, and wait for no answer."""
         line = {**self._command(do), **what}
-        if self._worker is not None:
-            self._worker.tell(line)
+        if self.worker is not None:
+            self.worker.tell(line)
 
     @staticmethod
     def _command(do: Request) -> dict[str, str]:

@@ -39,7 +39,7 @@ class ControlLoop:
         self._stepped = stepped
         self.still = asyncio.Lock()
         """Whoever holds it sees no half of a step on a bench in a hurry."""
-        self._waiting = 0
+        self.waiting = 0
         self._failed: BaseException | None = None
         self._wanted = asyncio.Event()
         self._next: asyncio.Future[None] | None = None
@@ -58,7 +58,7 @@ class ControlLoop:
     async def _run(self) -> None:
         step = TICK
         while True:
-            if self._stepped and not self._waiting:
+            if self._stepped and not self.waiting:
                 self._wanted.clear()
                 await self._wanted.wait()
             async with self.still if self._stepped else nullcontext():
@@ -80,7 +80,7 @@ class ControlLoop:
         if self._failed is not None:
             raise DeviceError(f"The robot's time stands still ({self._failed!r}).")
         deadline = self.clock.now() + seconds
-        self._waiting += 1
+        self.waiting += 1
         self._wanted.set()
         try:
             while not condition():
@@ -91,7 +91,7 @@ class ControlLoop:
                 await asyncio.shield(self._next)
             return True
         finally:
-            self._waiting -= 1
+            self.waiting -= 1
 
     async def sleep(self, seconds: float) -> None:
         """Let so many s pass."""

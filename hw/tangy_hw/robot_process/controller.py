@@ -80,12 +80,12 @@ class LiveRobot:
         """Is called with why when all that is under way is to be given up."""
         self.going = ""
         """Where it is driving to."""
-        self.passing = ControlLoop(clock, self._tick, stepped=stepped)
-        self._body, self._clock, self._stepped = body, clock, stepped
+        self.passing = ControlLoop(clock, self.tick, stepped=stepped)
+        self._body, self._clock, self.stepped = body, clock, stepped
         limits = MotionLimits(speed=robot.speed)
         self.hand = HandDrive(limits)
         self.watch = TickWatch(late=robot.liveness.fault_after)
-        self._wheels = Wheels(body.base, limits)
+        self.wheels = Wheels(body.base, limits)
         self._stops = StopLatch()
         self._alone_since: float | None = None
         self._left_alone = False
@@ -121,7 +121,7 @@ class LiveRobot:
         if self.requests is not None:
             await self.requests.start()
         self._tasks = [asyncio.create_task(self.passing.run())]
-        if not self._stepped:
+        if not self.stepped:
             self._tasks.append(asyncio.create_task(self._watch()))
         for task in self._tasks:
             task.add_done_callback(self._ended)
@@ -135,7 +135,7 @@ class LiveRobot:
     async def close(self) -> None:
         """Stop it, and switch its devices off."""
         with suppress(Exception):
-            await self._wheels.stop()
+            await self.wheels.stop()
         self.navigator.cancel()
         for task in self._tasks:
             task.cancel()
@@ -275,7 +275,7 @@ class LiveRobot:
     async def _halt(self) -> None:
         self.hand.end()
         try:
-            await self._wheels.stop()
+            await self.wheels.stop()
         finally:
             self.navigator.cancel()
             await self._performer.be_still()
@@ -289,7 +289,7 @@ class LiveRobot:
 
     def watch_ticks(self) -> None:
         """Watch from now on that no tick comes much too late, unless time stands still between."""
-        if not self._stepped:
+        if not self.stepped:
             self.watch.begin()
             self.pauses.begin()
 
@@ -332,12 +332,12 @@ class LiveRobot:
         self._evidence.keep()
         if not arrived:
             navigator.cancel()
-            await self._wheels.stop()
+            await self.wheels.stop()
         if hazard and not arrived:
             raise Preempted(hazard)
         return arrived
 
-    def _tick(self) -> bool:
+    def tick(self) -> bool:
         """Look, decide, and tell the base; say whether it drives, or is about to."""
         base, laser = self._body.base, self._body.laser
         now = self._clock.now()
@@ -357,8 +357,8 @@ class LiveRobot:
         if self.hazard or (self.navigator.lets and self.navigator.drives):
             command = STILL
             self._stand()
-        elif command != STILL or not self._wheels.stand:
-            self._wheels.send(self.pauses.limited(command))
+        elif command != STILL or not self.wheels.stand:
+            self.wheels.send(self.pauses.limited(command))
         return command != STILL or self.going != ""
 
     def _was_frozen(self) -> None:
@@ -375,14 +375,14 @@ class LiveRobot:
             if self.watch.overdue and self.watch.tick():  # that explains what else is amiss
                 self._was_frozen()
             self._mind()
-            if (self._wheels.driven != STILL or self.navigator.drives) and self.hazard:
+            if (self.wheels.driven != STILL or self.navigator.drives) and self.hazard:
                 self._stand()
 
     def _stand(self) -> None:
         """Have the base stand, and whatever drives it past us call that off, until it has."""
         self.navigator.held()
-        if not self._wheels.stand or self.navigator.drives:
-            self._wheels.send(STILL)
+        if not self.wheels.stand or self.navigator.drives:
+            self.wheels.send(STILL)
 
     def _mind(self) -> None:
         """Wait for late data; hold the arms and be quiet, once, when left alone for a while."""

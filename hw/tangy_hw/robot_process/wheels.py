@@ -22,7 +22,7 @@ class Wheels:
         self.driven = STILL
         """What it was told last."""
         self._base, self._limits = base, limits
-        self._sent: asyncio.Task[None] | None = None
+        self.sent: asyncio.Task[None] | None = None
         self._again = False
 
     @property
@@ -40,14 +40,14 @@ class Wheels:
         halting = command == STILL and self.driven != STILL
         if halting:
             self._call_off()
-        elif self._sent is not None and not self._sent.done():
+        elif self.sent is not None and not self.sent.done():
             return
         self.driven = command
         if command == STILL:
             self._again = False
         base = self._base
         work = base.stop if command == STILL else partial(base.drive, command)
-        self._sent = asyncio.create_task(_quietly(work))
+        self.sent = asyncio.create_task(_quietly(work))
 
     async def stop(self) -> None:
         """Have the base stand now; what was to be driven and was not handed over never is."""
@@ -56,8 +56,8 @@ class Wheels:
         await self._base.stop()
 
     def _call_off(self) -> None:
-        if self._sent is not None:
-            self._sent.cancel()
+        if self.sent is not None:
+            self.sent.cancel()
 
 
 async def _quietly(work: Callable[[], Awaitable[None]]) -> None:

@@ -169,7 +169,7 @@ class CardReader:
         read = measured.read
         legible = read[:, :2].max(1) >= LEGIBLE
         own = int((legible & (read[:, 0] >= read[:, 1])).sum())
-        if not self._agree(own, int(legible.sum())):
+        if not self.agree(own, int(legible.sum())):
             few = int(legible.sum()) < FEWEST_AGREE
             return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
         across = len(self.deck.columns)
@@ -185,7 +185,7 @@ class CardReader:
         corners = project(flat.plane, np.array(ends))
         return self.told(seen.card, parts, tuple((float(x), float(y)) for x, y in corners))
 
-    def _agree(self, own: int, legible: int) -> bool:
+    def agree(self, own: int, legible: int) -> bool:
         """Say whether so many of the legible numbers make it this deck's card."""
         if own < FEWEST_AGREE:
             return False
