@@ -61,8 +61,7 @@ class Store:
         self.notices = self.file.notices
         self.aside: dict[int, str] = {}
         """What was met in the log that is left out: a sentence for each such event, by seq."""
-        self.robot = ""
-        """The id of the robot whose log it is; "" for a reader."""
+        self.robot = ""  # the id of the robot whose log it is; a reader does not ask
         self._seal = Seal(folder)
         self._newest = 0  # the newest event of the transaction that is going on
         self._closed = self._within = self._spoilt = False

@@ -89,7 +89,7 @@ class GamePicture:
                     self.grounds.clear()
                     self.lesson = ""
                     self._stage, self._game, self._step = state.stage, number, None
-                    self._show_scene(0, drive=False, pace=pace)
+                    self.show_scene(0, drive=False, pace=pace)
                 case Acted():
                     self._show_step(event, taught.teacher if taught else "", pace)
                 case BeliefUpdated(response, belief):
@@ -108,7 +108,7 @@ class GamePicture:
                     self._screen.notify(once, markup=False)
                 case Diagnosed() | Moved():
                     write_fault(self._screen, event)
-                    self._show_scene(0, drive=False, pace=pace)
+                    self.show_scene(0, drive=False, pace=pace)
                 case GameEnded(_, steps, None):
                     log.write(over_words(steps), "good")
                 case GameEnded(_, steps, str(reason)):
@@ -163,7 +163,7 @@ class GamePicture:
         if event.choice is not None:
             self._show_beliefs((event.choice.person, event.choice.strategy))
         self._stage, self._step = event.after.stage, event.number
-        self._show_scene(
+        self.show_scene(
             event.outcome.seconds, drive=event.state.place != event.after.place, pace=pace
         )
 
@@ -189,7 +189,8 @@ class GamePicture:
         rows = policy_rows(self._workspace.activity, self._policy)
         self._screen.query_one(PolicyTable).show(rows, highlight)
 
-    def _show_scene(self, seconds: float, *, drive: bool, pace: float) -> None:
+    def show_scene(self, seconds: float, *, drive: bool, pace: float) -> None:
+        """Show the room after a step of so many s, at a pace (0: at once)."""
         room = self._screen.query_one(RoomView)
         scene = self._supervision.world.scene()
         if drive and pace:

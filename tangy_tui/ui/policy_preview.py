@@ -24,7 +24,7 @@ async def show_why(
     app: Any = screen.app
     app.say(THINKING)
     worker: Worker[Why] = screen.run_worker(
-        lambda: _grounds(workspace, present, situation),
+        lambda: grounds(workspace, present, situation),
         thread=True,
         exit_on_error=False,
         group="why",
@@ -45,7 +45,8 @@ async def show_why(
         app.push_screen(WhyDialog(workspace, why))
 
 
-def _grounds(workspace: Workspace, present: Demonstration, situation: Situation) -> Why:
+def grounds(workspace: Workspace, present: Demonstration, situation: Situation) -> Why:
+    """Return why Tangy would do what it does in a situation, as far as it was taught."""
     from tangy_tui.learning.explanation import explain, foresee
     from tangy_tui.learning.library import read_library
 

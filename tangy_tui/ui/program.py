@@ -220,7 +220,7 @@ class Program(SoundingApp):
             await self.open_policy(policy)
 
     async def _show_policy(self) -> None:
-        policy = await self._load_policy()
+        policy = await self.load_policy()
         if policy is not None:
             await self.open_policy(policy)
 
@@ -248,7 +248,7 @@ class Program(SoundingApp):
         """
         from tangy_tui.ui.screens.play import PlayScreen
 
-        policy = await self._load_policy(wanted)
+        policy = await self.load_policy(wanted)
         chosen = await ask_about_interrupted(self, SIMULATED) if past is None else GameToPlay(past)
         if policy is None or chosen is None:
             return
@@ -269,7 +269,7 @@ class Program(SoundingApp):
 
     async def live(self) -> None:
         """Play a live game: with the robot whose drivers are named, else on the bench."""
-        policy = await self._load_policy()
+        policy = await self.load_policy()
         if policy is not None:
             await play_from_home(self, policy)
 
@@ -330,7 +330,7 @@ class Program(SoundingApp):
         from tangy_tui.ui.screens.compare import choose_policy
 
         chosen = await choose_policy(self, self.workspace)
-        policy = None if chosen is None else await self._load_policy(chosen)
+        policy = None if chosen is None else await self.load_policy(chosen)
         if policy is not None:
             await self.open_policy(policy)
 
@@ -343,7 +343,7 @@ class Program(SoundingApp):
         screen = PolicyScreen(workspace, policy, effects, leave_after)
         await self.push_screen_wait(screen)
 
-    async def _load_policy(self, wanted: str = "") -> Policy | None:
+    async def load_policy(self, wanted: str = "") -> Policy | None:
         """Learn the kept policy again; what must be said of it is said before it is used."""
         workspace = self.workspace
         loaded = await self.in_thread(

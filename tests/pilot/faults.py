@@ -52,7 +52,7 @@ async def halted(pilot: TangyPilot) -> CriticalDialog:
     await until_shown(pilot, lambda: isinstance(pilot.app.screen, CriticalDialog))
     dialog = pilot.app.screen
     assert isinstance(dialog, CriticalDialog)
-    await until_shown(pilot, lambda: dialog._keys._from is not None)
+    await until_shown(pilot, lambda: dialog.fresh_keys.seen)
     return dialog
 
 

@@ -78,7 +78,7 @@ async def questioned(pilot: TangyPilot) -> None:
     """Wait until the question that verifies an answer takes keys."""
     while not isinstance(pilot.app.screen, QuestionDialog):
         await pilot.pause(0.02)
-    while pilot.app.screen._keys._from is None:
+    while not pilot.app.screen.painted:
         await pilot.pause(0.02)
 
 
@@ -118,7 +118,7 @@ async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
         words = workspace.activity.in_words(gap(workspace))
         row = next(r for r in screen.query_one(PolicyTable).rows if r.situation == words)
         assert (row.behaviour, row.seen) == ("call number", 1)
-        assert screen._tally.answers == 1
+        assert screen.tally.answers == 1
     made = read_library(workspace.store, workspace.activity.name).finished[-1]
     assert (made.origin, made.teacher) == ("asked", "ann")
 
@@ -129,7 +129,7 @@ async def test_what_was_learnt_is_said_in_a_message(
     async with run(app=playing(workspace, gappy, speed=1), notifications=True) as pilot:
         await pilot.press("e")
         screen = await asked(pilot)
-        screen._skipping = False
+        screen.skipping = False
         await answer(pilot)
         while "gone through" not in screen_text(pilot.app):
             await pilot.pause(0.02)

@@ -147,7 +147,7 @@ async def test_an_earlier_policy_can_be_looked_at(run: Run, workspace: Workspace
         while not isinstance(pilot.app.screen, PolicyScreen) or pilot.app.screen is last:
             await pilot.pause(0.02)
         screen: Any = pilot.app.screen
-        assert len(screen._policy.demonstrations) < len(last._policy.demonstrations)
+        assert len(screen.policy.demonstrations) < len(last.policy.demonstrations)
 
 
 def spoil(workspace: Workspace) -> None:
@@ -168,7 +168,7 @@ async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("o", "enter")
         dialog = await shown(pilot, DifferenceDialog)
-        while dialog._keys._from is None:
+        while not dialog.fresh_keys.seen:
             await pilot.pause(0.02)
         text = " ".join(screen_text(pilot.app).split())
         assert "does not come out as it was kept" in text

@@ -71,7 +71,7 @@ def make(
 
 def drill_of(screen: DrillScreen) -> Drill:
     """Return the drill of a screen."""
-    return screen._drill
+    return screen.drill
 
 
 def on_top(pilot: TangyPilot, screen: DrillScreen) -> bool:

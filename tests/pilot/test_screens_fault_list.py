@@ -69,9 +69,9 @@ async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
             await pilot.pause()
         said = "Something covers my eyes. Could somebody please take it away?"
         assert said in screen.query_one(LogView).sentences
-        assert screen.query_one(RoomView)._speech == said
+        assert screen.query_one(RoomView).speech == said
         number = screen.query_one(Transcript).count
-        assert number == len(screen._picture.grounds) == game.steps
+        assert number == len(screen.picture.grounds) == game.steps
 
 
 @pytest.mark.parametrize("size", [TINY, SMALL, MIDDLE], ids=["tiny", "small", "middle"])
@@ -118,10 +118,10 @@ async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
         assert "Request sensor" in pilot.text()
         await pilot.press("slash", *"sensor p")
         await pilot.pause()
-        assert faults._keys == []
+        assert faults.shown_keys == []
         await pilot.press("backspace", "backspace", "enter")
         await pilot.pause()
-        assert [f.id for f in game.faults if f.code == "requests-silent"] == faults._keys
+        assert [f.id for f in game.faults if f.code == "requests-silent"] == faults.shown_keys
         await pilot.press("enter")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
         assert "Tangy cannot see who asks" in seen(pilot)
@@ -130,7 +130,7 @@ async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
         await pilot.press("escape")
         await pilot.pause()
         assert pilot.app.screen is screen
-        assert len(faults._keys) == 2
+        assert len(faults.shown_keys) == 2
 
 
 async def test_the_list_can_fill_the_screen(run: Run, workspace: Workspace, policy: Policy) -> None:
@@ -233,9 +233,9 @@ async def test_all_kinds_can_be_chosen(run: Run) -> None:
     async with run(size=SMALL) as pilot:
         pilot.app.push_screen(dialog)
         await pilot.pause()
-        assert [kind.name for kind in dialog._kinds] == list(KINDS)
+        assert [kind.name for kind in dialog.kinds] == list(KINDS)
         pilot.type(*"covered")  # what the console calls the fault, which the kind's name is not
-        await until_shown(pilot, lambda: [k.name for k in dialog._kinds] == ["camera-occluded"])
+        await until_shown(pilot, lambda: [k.name for k in dialog.kinds] == ["camera-occluded"])
 
 
 async def test_no_fault_can_be_brought_about_in_the_demo(

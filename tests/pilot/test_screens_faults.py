@@ -15,6 +15,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE, Diagnosed
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import SMALL, Run
 from tests.pilot.faults import (
@@ -60,11 +61,15 @@ async def test_nothing_is_written_while_nothing_changes(
     async with run(app=playing(workspace, policy)) as pilot:
         screen = game_of(pilot)[0]
         await pilot.press("p")
-        told: list[Any] = []
-        monkeypatch.setattr(screen._faults, "_tell", lambda *told_now: told.append(told_now))
-        ticks = screen._faults.ticks
-        await until_shown(pilot, lambda: screen._faults.ticks > ticks + 2)
-        assert not told
+        await pilot.pause()
+        looked: list[list[Event]] = []
+        look = screen.control.look
+        monkeypatch.setattr(screen.control, "look", lambda: looked.append(look()) or looked[-1])
+        kept, told = list(workspace.store.events()), list(screen.query_one(LogView).sentences)
+        await until_shown(pilot, lambda: len(looked) > 2)
+        assert list(workspace.store.events()) == kept
+        assert list(screen.query_one(LogView).sentences) == told
+        assert not any(looked)
 
 
 async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tried_again(

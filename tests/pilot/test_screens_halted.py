@@ -332,10 +332,10 @@ async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
         await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert (room.place_of_robot, room.going) == (caught, going)
-        assert room._timer is None
+        assert room.motion is None
         await pilot.press("p")
         await pilot.pause()
-        assert room._timer is not None
+        assert room.motion is not None
 
 
 async def test_a_step_that_could_not_be_carried_out_is_marked(
@@ -345,8 +345,8 @@ async def test_a_step_that_could_not_be_carried_out_is_marked(
         screen, game, _ = game_of(pilot)
         await pilot.press("e")
         await halted(pilot)
-        steps = list(screen.query_one(Transcript)._steps)
-        done = [ground.acted.outcome.completed for ground in screen._picture.grounds]
+        steps = list(screen.query_one(Transcript).steps)
+        done = [ground.acted.outcome.completed for ground in screen.picture.grounds]
         assert not all(done)
         assert ["not done: " not in step for step in steps] == done
         assert len(steps) == game.steps

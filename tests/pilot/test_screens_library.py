@@ -369,7 +369,7 @@ async def test_a_step_of_an_answer_opens_in_its_demonstration(
         await press(pilot, "i", "enter", "D", "tab", "enter")
         screen = pilot.app.screen
         assert isinstance(screen, DemonstrationScreen)
-        step = screen._shown.steps[(screen.query_one(Transcript).chosen or 0) - 1]
+        step = screen.shown.steps[(screen.query_one(Transcript).chosen or 0) - 1]
         assert step.state.situation.user_state == WRONG
         await press(pilot, "escape")
         assert isinstance(pilot.app.screen, ConflictsScreen)

@@ -70,7 +70,7 @@ async def test_staff_see_where_the_robot_is_and_where_it_goes(
             path=((3.0, 2.5), (2.5, 3.2), (2.0, 4.3)),
             obstacles=((6.0, 3.0),),
         )
-        live(pilot)._track()
+        live(pilot).track()
         await pilot.pause()
         shown = screen_text(pilot.app)
         assert "◂[• •]" in shown and "*" in shown
@@ -202,7 +202,7 @@ async def test_staff_can_ask_for_help_for_somebody(
 async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that_is_over(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
-    world._knows_faces = True
+    world.knows_faces = True
     link.cards["user2"] = LaidCard(7)
     link.faces["user2"] = "user4"
     other = "User 4 sits at User 2's place: Tangy speaks to User 4."
@@ -223,7 +223,7 @@ async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that
 async def test_between_two_calls_staff_can_step_in_and_who_asks_does_not_wait(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
-    world._pace = 30.0
+    world.pace = 30.0
     async with run(app=program) as pilot:
         await until_shown(pilot, lambda: len(world.called) == 1)
         await until_shown(pilot, lambda: "next call in 30 s" in screen_text(pilot.app))
@@ -286,7 +286,7 @@ async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
     async with run(app=program, size=(120, 40)) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("o")
-        await until_shown(pilot, lambda: any(one._open for one in live(pilot).query(AskingPanel)))
+        await until_shown(pilot, lambda: any(one.is_open for one in live(pilot).query(AskingPanel)))
         await pilot.press("escape")  # out of the line
         await until_shown(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
         steps = live(pilot).control.supervision.steps
@@ -361,7 +361,7 @@ async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
     async with run(app=program, size=(120, 40)) as pilot:
         await paused_after(pilot, link, 2)
         live(pilot).control.supervision.leave()
-        assert live(pilot)._at_rest
+        assert live(pilot).at_rest
         link.state = replace(link.state, frozen=5.0)
         link.released.clear()
         await pilot.press("p")
@@ -429,12 +429,12 @@ async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
             path=((4.7, 2.6), (4.5, 3.2), (4.2, 3.8), (4.0, 4.3)),
             obstacles=((6.2, 3.0), (6.4, 3.1)),
         )
-        live(pilot)._world.observe()
-        live(pilot)._picture._show_scene(0, drive=False, pace=0)
+        live(pilot).world.observe()
+        live(pilot).picture.show_scene(0, drive=False, pace=0)
         drawn = ""
         for _ in range(600):  # the game goes on beside the screen until it is held
-            live(pilot)._track()
-            live(pilot)._show_status()
+            live(pilot).track()
+            live(pilot).show_status()
             await pilot.pause(0.05)
             drawn = draw(pilot.app)
             if kept.is_file() and kept.read_text(encoding="utf-8") == drawn:

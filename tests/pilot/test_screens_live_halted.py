@@ -61,7 +61,7 @@ async def halting(
     await until_shown(pilot, lambda: isinstance(pilot.app.screen, CriticalDialog))
     dialog = pilot.app.screen
     assert isinstance(dialog, CriticalDialog)
-    await until_shown(pilot, lambda: dialog._keys.seen)
+    await until_shown(pilot, lambda: dialog.fresh_keys.seen)
     await pilot.pause()
 
 

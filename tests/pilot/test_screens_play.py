@@ -89,8 +89,8 @@ async def test_the_policy_row_in_use_is_marked(
             await pilot.press("full_stop")
             await pilot.pause()
         table = screen.query_one(PolicyTable)
-        assert table._now is not None
-        assert table.rows[table._now].behaviour == "call number"
+        assert table.marked is not None
+        assert table.rows[table.marked].behaviour == "call number"
 
 
 async def test_skipping_plays_the_game_to_its_end(
@@ -306,16 +306,16 @@ async def test_why_is_told_of_the_last_step_and_of_the_chosen_one(
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
         screen = await pause_at_once(pilot)
-        while not any(ground.acted.choice for ground in screen._picture.grounds):
+        while not any(ground.acted.choice for ground in screen.picture.grounds):
             await pilot.press("full_stop")
             await pilot.pause()
-        ground = screen._picture.grounds[-1]
+        ground = screen.picture.grounds[-1]
         assert ground.acted.choice is not None
         await pilot.press("w")
         await pilot.pause()
         text = screen_text(pilot.app)
         assert isinstance(pilot.app.screen, WhyDialog)
-        assert f"Step {len(screen._picture.grounds)}: why this?" in text
+        assert f"Step {len(screen.picture.grounds)}: why this?" in text
         for number in ground.acted.choice.draws.values():
             assert f"{number:.3f}" in text
         await pilot.press("escape", "2", "home", "enter")

@@ -166,7 +166,7 @@ async def test_what_waits_for_the_answer_says_so_in_the_panel(
         await pilot.pause()
         assert "Tangy asks first" in " ".join(pilot.text().split())
         assert not told(pilot)
-        assert screen._games == 1
+        assert screen.games == 1
 
 
 async def test_after_a_stop_the_keys_say_what_goes_on_and_what_does_not(

@@ -112,7 +112,7 @@ async def later(pilot: TangyPilot) -> None:
     """Wait until the devices were looked at again."""
     screen = pilot.app.screen
     assert isinstance(screen, SensorsScreen)
-    screen._look()
+    screen.look()
     await pilot.pause()
 
 
@@ -187,7 +187,7 @@ async def test_how_often_data_comes_stands_beside_how_old_it_is(
         assert "new data at 10 Hz" in pilot.text()
         rows = {
             name: "".join(part for part, _ in device_row(told, 80))
-            for name, told in screen._told.items()
+            for name, told in screen.told.items()
         }
         assert "0.1 s  10 Hz" in rows["laser"]
         assert "9.0 s  0.0 Hz  Its data" in rows["base"]
@@ -327,7 +327,7 @@ async def test_a_real_camera_counts_in_a_game_and_7_shows_it(
     async def loaded(program: Program, wanted: str = "") -> Policy:
         return policy
 
-    monkeypatch.setattr(Program, "_load_policy", loaded)
+    monkeypatch.setattr(Program, "load_policy", loaded)
     given: Any = sensors
     clock = StillClock()
     app = Program(

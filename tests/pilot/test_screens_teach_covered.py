@@ -133,13 +133,13 @@ async def test_escape_while_tangy_thinks_stops_that_and_no_more(
     run: Run, workspace: Workspace, typed: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     let_go = Event()
-    grounds = policy_preview._grounds
+    grounds = policy_preview.grounds
 
     def slow(workspace: Workspace, present: Demonstration, situation: Situation) -> Why:
         let_go.wait(20)
         return grounds(workspace, present, situation)
 
-    monkeypatch.setattr(policy_preview, "_grounds", slow)
+    monkeypatch.setattr(policy_preview, "grounds", slow)
     ended: list[bool | None] = []
     why = [*"why", "enter"] if typed else ["f4"]
     async with run(app=program(workspace, ended), notifications=True) as pilot:

@@ -379,12 +379,12 @@ async def test_the_line_shows_level_words_and_what_is_wrong(run: Run, workspace:
     async with run(app=teaching(workspace, ears)) as pilot:
         line = pilot.app.screen.query_one(MicrophoneLine)
         ears.be("speaking", "call a", 0.5)
-        line._tick()
+        line.tick()
         assert "■■■■■■······" in line.text
         assert line.text.endswith("call a")
         ears.be("listening", "", 0.0, "No sound for 2 s: is the microphone plugged in?")
-        line._ticks = 0
-        line._tick()
+        line.ticks = 0
+        line.tick()
         assert "! No sound for 2 s" in line.text
         ears.be("shut")
         assert line.text.strip("○ ") == "shut while Tangy speaks"
@@ -398,16 +398,16 @@ async def test_the_line_is_drawn_only_when_it_shows_something_else(
         line = pilot.app.screen.query_one(MicrophoneLine)
         drawn: list[int] = []
         monkeypatch.setattr(line, "refresh", lambda *regions, **more: drawn.append(1))
-        assert line._timer is not None
-        assert not line._timer._active.is_set()  # no work while it is off
+        assert line.timer is not None
+        assert not line.timer._active.is_set()  # no work while it is off
         ears.be("speaking", "call", 0.5)
-        assert line._timer._active.is_set()
+        assert line.timer._active.is_set()
         assert len(drawn) == 1
         for words in ("call a", "call a num", "call a number"):
             ears.be("speaking", words, 0.5)
         assert len(drawn) == 1  # until the next tenth of a second
         for _ in range(10):
-            line._tick()
+            line.tick()
         assert len(drawn) == 2
 
 
@@ -515,8 +515,8 @@ async def test_how_hearing_looks(
                     "go to user two please" if shows == "others" else UNSURE, sure=shows == "others"
                 )
             )
-        line._ticks = 0
-        line._tick()
+        line.ticks = 0
+        line.tick()
         await pilot.pause()
         if shows == "no answer":
             ears.tell("I heard something, but no yes, no or stop.")

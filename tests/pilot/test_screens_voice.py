@@ -214,12 +214,12 @@ async def test_in_lifes_pace_the_next_step_waits_until_the_line_was_heard(
         assert len(voices[0].prepared) > len(workspace.activity.deck.numbers)
         steps = screen.query_one(Transcript)
         await until_shown(pilot, lambda: steps.count == 1)
-        screen._nudge.set()  # the time of the step has passed
+        screen.nudge.set()  # the time of the step has passed
         for _ in range(5):
             await pilot.pause(0.01)
         assert steps.count == 1
         voices[0].heard()
-        screen._nudge.set()
+        screen.nudge.set()
         await until_shown(pilot, lambda: steps.count == 2)
         assert len(voices[0].lines) == 2
         await pilot.press("ctrl+x")

@@ -54,13 +54,15 @@ def a_choice(workspace: Workspace) -> StrategyChoice:
     )
 
 
-def showing(workspace: Workspace, why: Why, choice: StrategyChoice | None = None) -> Program:
+def showing(
+    workspace: Workspace, why: Why, choice: StrategyChoice | None = None, *, ascii: bool = False
+) -> Program:
     """Make the program with the dialog open."""
 
     async def start(program: Program) -> None:
         await program.push_screen(WhyDialog(workspace, why, choice))
 
-    return Program(workspace, start, clock=StillClock())
+    return Program(workspace, start, clock=StillClock(), kind=TerminalKind(ascii=ascii))
 
 
 def persuading(workspace: Workspace) -> str:
@@ -137,8 +139,8 @@ async def test_how_it_looks(
 
 
 async def test_it_can_be_read_in_plain_letters(run: Run, workspace: Workspace) -> None:
-    app = showing(workspace, why_of(workspace, persuading(workspace)), a_choice(workspace))
-    ascii_app = Program(workspace, app._start, clock=StillClock(), kind=TerminalKind(ascii=True))
+    why = why_of(workspace, persuading(workspace))
+    ascii_app = showing(workspace, why, a_choice(workspace), ascii=True)
     async with run(app=ascii_app) as pilot:
         await pilot.pause()
         assert pilot.text().isascii()

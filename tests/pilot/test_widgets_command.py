@@ -81,7 +81,7 @@ async def test_it_opens_by_itself_when_nobody_says_anything(run: Run) -> None:
     async with run(Bar()) as pilot:
         pilot.type(*"call number", "enter")
         await pilot.pause()
-        timer = bar_of(pilot)._reopen
+        timer = bar_of(pilot).reopening
         assert timer is not None
         bar_of(pilot).ready()  # what the timer calls
         await pilot.press("g")

@@ -43,10 +43,10 @@ async def test_every_state_is_said_in_words_and_fits(run: Run) -> None:
         for width in (60, 80, 120):
             await pilot.resize_terminal(width, 24)
             for ears in HEARD:
-                screen.line._ears = ears
-                screen.line._ticks = 0
+                screen.line.ears = ears
+                screen.line.ticks = 0
                 screen.line.look()
-                screen.line._tick()
+                screen.line.tick()
                 await pilot.pause()
                 text = screen.line.text
                 assert cell_len(text) <= width - 2
@@ -67,7 +67,7 @@ async def test_the_bar_is_as_long_as_it_is_loud(run: Run) -> None:
     async with run(screen):
         for level, full in ((0.0, 0), (0.5, 6), (1.0, 12), (7.0, 12), (-1.0, 0)):
             ears.level = level
-            screen.line._tick()
+            screen.line.tick()
             assert screen.line.text.count("■") == full
             assert screen.line.text.count("·") == BAR - full
 
@@ -100,5 +100,5 @@ async def test_a_recording_has_no_level(run: Run) -> None:
     screen = Line(SampleEars("listening", level=0.5, live=False))
     async with run(screen):
         assert "■" not in screen.line.text
-        assert screen.line._timer is not None
-        assert not screen.line._timer._active.is_set()
+        assert screen.line.timer is not None
+        assert not screen.line.timer._active.is_set()

@@ -85,8 +85,8 @@ class LiveWorld:
         self._robot = robot
         self._room = room
         self._names = dict(names or {})
-        self._pace = pace
-        self._knows_faces = knows_faces
+        self.pace = pace
+        self.knows_faces = knows_faces
         self._order = Random(f"{seed}/calls")
         self._paused = (0, 0.0)  # the pauses before this game
         self._begin()
@@ -201,9 +201,9 @@ class LiveWorld:
         match behaviour.effect:
             case "draw":
                 self.calls.called.extend(numbers)
-                self._due = self.link.time + self._pace
+                self._due = self.link.time + self.pace
                 with suppress(Preempted):  # it was called, whatever comes now
-                    self.commands.wait(min(self._pace, LOOK_SECONDS), asks=True)
+                    self.commands.wait(min(self.pace, LOOK_SECONDS), asks=True)
             case "go to user":
                 target = action.target or (tracker.queue[0] if tracker.queue else None)
                 return None, target is None or self._go(target)
@@ -281,7 +281,7 @@ class LiveWorld:
             return False
         self.tracker.arrive(place)
         self.cards.leave()
-        if place != FRONT and self._knows_faces:
+        if place != FRONT and self.knows_faces:
             self._see_who(place)
         if place in self.tracker.queue:
             self.read_card(place)

@@ -112,7 +112,7 @@ class CriticalDialog(Dialog[None]):
         self._fault = fault
         self._robot = robot
         self._clock = clock
-        self._keys = FreshKeys()
+        self.fresh_keys = FreshKeys()
         self._status = Status()
         self._now = ""
         self._doing = ""
@@ -148,7 +148,7 @@ class CriticalDialog(Dialog[None]):
         """Let the arrows scroll, and take note of the moment from which keys count."""
         for page in self.query(Page):  # it may come up while the program is being left
             page.focus()
-        self._keys.watch(self, self._clock)
+        self.fresh_keys.watch(self, self._clock)
 
     def show(self, status: Status) -> None:
         """Show what has changed, in the status line and of the fault."""
@@ -206,7 +206,7 @@ class CriticalDialog(Dialog[None]):
     async def on_key(self, event: events.Key) -> None:
         """Do what a key says, if the fault was on the screen by then."""
         key = keymap_of(self.app).action(event.key)
-        if key not in ACTIONS or not self._keys.take(event):
+        if key not in ACTIONS or not self.fresh_keys.take(event):
             return
         if self._doing:
             self.say(halts.wait_words(self._doing))

@@ -56,7 +56,7 @@ class DifferenceDialog(Dialog[Use]):
         self._notice = notice
         self._changes = tuple(changes)
         self._clock = clock
-        self._keys = FreshKeys()
+        self.fresh_keys = FreshKeys()
 
     def compose(self) -> ComposeResult:
         """Lay out the notice, the rows, and the keys."""
@@ -68,12 +68,12 @@ class DifferenceDialog(Dialog[Use]):
     def on_mount(self) -> None:
         """Let the arrows scroll, and take note of the moment from which keys count."""
         self.query_one(Page).focus()
-        self._keys.watch(self, self._clock)
+        self.fresh_keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
         """Answer by y, 1, n or esc; the arrows scroll."""
         answer = ANSWERS.get(event.key.lower())
-        if answer is not None and self._keys.take(event):
+        if answer is not None and self.fresh_keys.take(event):
             self.answer(answer)
 
     def action_nothing(self) -> None:

@@ -59,7 +59,7 @@ class InjectDialog(Dialog[str | None]):
             for kind in KINDS.values()
         }
         self._typed = ""
-        self._kinds: tuple[Kind, ...] = ()
+        self.kinds: tuple[Kind, ...] = ()
 
     def compose(self) -> ComposeResult:
         """Lay out the kinds."""
@@ -75,22 +75,22 @@ class InjectDialog(Dialog[str | None]):
     def _show(self) -> None:
         words = self._typed.lower().split()
         order = sorted(KINDS.values(), key=lambda kind: not self._lifts(kind))
-        self._kinds = tuple(
+        self.kinds = tuple(
             kind for kind in order if all(w in self._found_by[kind.name] for w in words)
         )
         kinds = self.query_one(ChoiceList)
-        kinds.styles.height = max(1, len(self._kinds))
+        kinds.styles.height = max(1, len(self.kinds))
         kinds.show(lambda width, height: self._lines(width))
         keys = "type to search   1-9 or enter takes   esc goes back"
         searched = Content(f"{clean(self._typed)}_   enter takes   esc shows all")
         self.query_one("#inject").border_subtitle = searched if self._typed else keys
 
     def _lines(self, width: int) -> list[ChoiceLine]:
-        if not self._kinds:
+        if not self.kinds:
             return [ChoiceLine(((NONE_FOUND, "dim"),))]
         label = max(cell_len(kind.name) for kind in KINDS.values())
         lines: list[ChoiceLine] = []
-        for number, kind in enumerate(self._kinds, 1):
+        for number, kind in enumerate(self.kinds, 1):
             note = THERE if kind.name in self._there else TO_COME
             note = f"  ({note})" if self._lifts(kind) else ""
             room = width - label - 5 - cell_len(note)
@@ -117,7 +117,7 @@ class InjectDialog(Dialog[str | None]):
         if event.key != "question_mark":
             event.stop()
             event.prevent_default()
-        if event.key == "enter" and self._kinds:
+        if event.key == "enter" and self.kinds:
             self.answer(str(self.query_one(ChoiceList).chosen))
         elif event.key == "escape":
             if not self._typed:
@@ -125,8 +125,8 @@ class InjectDialog(Dialog[str | None]):
             self._typed = ""
         elif event.key == "backspace":
             self._typed = self._typed[:-1]
-        elif event.key in "123456789" and int(event.key) <= len(self._kinds):
-            self.answer(self._kinds[int(event.key) - 1].name)
+        elif event.key in "123456789" and int(event.key) <= len(self.kinds):
+            self.answer(self.kinds[int(event.key) - 1].name)
         elif event.character and (event.character.isalpha() or event.character in " -'"):
             self._typed = (self._typed + event.character)[:LONGEST]
         else:

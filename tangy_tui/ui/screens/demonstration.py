@@ -74,15 +74,16 @@ class DemonstrationScreen(TangyScreen[None]):
         self._library: Library = read_library(workspace.store, workspace.activity.name)
         self._entry = self._library.find(id)
         self._number = number
-        self._heard = heard_words(workspace.store, self._shown)
+        self._heard = heard_words(workspace.store, self.shown)
 
     @property
-    def _shown(self) -> Demonstration:
+    def shown(self) -> Demonstration:
+        """The demonstration."""
         return self._entry.demonstration
 
     def compose(self) -> ComposeResult:
         """Lay out what is known of the whole, its steps, and the chosen step."""
-        name = self._library.name(self._shown.id)
+        name = self._library.name(self.shown.id)
         yield StatusLine(Status(mode=name, note=state_of(self._entry)))
         yield Static(self._summary(), id="summary", markup=False)
         yield panel(Transcript(empty=NO_STEPS, id="transcript"))
@@ -96,36 +97,36 @@ class DemonstrationScreen(TangyScreen[None]):
         """Show the steps and point at the one that is wanted."""
         steps = self.query_one(Transcript)
         workspace = self._workspace
-        steps.fill([step_words(workspace.activity, s, workspace.name) for s in self._shown.steps])
+        steps.fill([step_words(workspace.activity, s, workspace.name) for s in self.shown.steps])
         self.call_after_refresh(steps.point, self._number)
-        self._tell(min(max(1, self._number), len(self._shown.steps)))
+        self._tell(min(max(1, self._number), len(self.shown.steps)))
 
     def on_transcript_moved(self, event: Transcript.Moved) -> None:
         """Tell of the step that the cursor is on."""
-        self._tell(event.number or len(self._shown.steps))
+        self._tell(event.number or len(self.shown.steps))
 
     def action_again(self) -> None:
         """Show it again from the chosen step, if the teacher means it."""
         self.app.run_worker(self._again(self._number))
 
     async def _again(self, number: int) -> None:
-        await show_again(self.app, self._library, self._shown.id, number)
+        await show_again(self.app, self._library, self.shown.id, number)
 
     def action_leave(self) -> None:
         """Go back."""
         close(self, None)
 
     def _summary(self) -> str:
-        entry, shown = self._entry, self._shown
+        entry, shown = self._entry, self.shown
         notes = quality_notes(self._workspace.activity, entry, self._library)
         parts = [f"by {shown.teacher}", local_time(entry.at), counted(len(shown.steps), "step")]
         return clean(", ".join([*parts, *notes]))
 
     def _tell(self, number: int) -> None:
         self._number = max(1, number)
-        if 1 <= number <= len(self._shown.steps):
+        if 1 <= number <= len(self.shown.steps):
             told = self.query_one("#told", Static)
-            told.update(self._step_content(number, self._shown.steps[number - 1]))
+            told.update(self._step_content(number, self.shown.steps[number - 1]))
 
     def _step_content(self, number: int, step: Step) -> Content:
         activity, name = self._workspace.activity, self._workspace.name
@@ -134,7 +135,7 @@ class DemonstrationScreen(TangyScreen[None]):
             f", for {name(step.target)}" if step.target else ""
         )
         lines = [
-            ("Step", f"{number} of {len(self._shown.steps)}"),
+            ("Step", f"{number} of {len(self.shown.steps)}"),
             ("Situation", f"{activity.in_words(step.state.situation)}; Tangy is {place}"),
             ("Heard", self._heard.get(number, "")),
             ("Done", done + ("" if step.completed else " (could not be carried out)")),

@@ -71,7 +71,7 @@ class DrillScreen(TangyScreen[None]):
     def __init__(self, drill: Drill) -> None:
         """Make the screen of a drill that has not begun."""
         super().__init__()
-        self._drill = drill
+        self.drill = drill
         self._from: float | None = None
         self._at_end = False
 
@@ -86,7 +86,7 @@ class DrillScreen(TangyScreen[None]):
         """Say what it is, and wait for a key."""
         page = self.query_one(Page)
         page.border_title = "Rehearse"
-        told = [self._drill.note, WELCOME, NO_HURRY]
+        told = [self.drill.note, WELCOME, NO_HURRY]
         page.show(lambda width: [
             line for part in told if part for line in [*paragraph(part, width), PageLine()]
         ])  # fmt: skip
@@ -94,11 +94,11 @@ class DrillScreen(TangyScreen[None]):
 
     def on_unmount(self) -> None:
         """Keep what was answered, however the screen is left."""
-        self._drill.leave()
+        self.drill.leave()
 
     def on_key(self, event: events.Key) -> None:
         """Answer, or go on; keys that were typed ahead do neither."""
-        question = self._drill.question
+        question = self.drill.question
         keys = ON if question is None else question.keys
         if event.key not in (*keys, *ON):
             return
@@ -108,18 +108,18 @@ class DrillScreen(TangyScreen[None]):
         if question is None:
             self._go_on()
             return
-        answered, shown = self._drill.answer(event.key), self._drill.round
+        answered, shown = self.drill.answer(event.key), self.drill.round
         if answered is None or shown is None:
             self._show_question()
             return
-        self._show_told(shown, told_lines(self._drill.tabletop, shown, answered))
+        self._show_told(shown, told_lines(self.drill.tabletop, shown, answered))
 
     def action_nothing(self) -> None:
         """Do nothing: `on_key` has the keys, so that each can be looked at."""
 
     def action_leave(self) -> None:
         """Leave; ask first if something was answered, and something is left."""
-        if self._at_end or not self._drill.sheet.answered or self._drill.over:
+        if self._at_end or not self.drill.sheet.answered or self.drill.over:
             close(self, None)
             return
         self.app.push_screen(
@@ -134,31 +134,31 @@ class DrillScreen(TangyScreen[None]):
 
     def _left(self, leaves: bool | None) -> None:
         if leaves:
-            self._drill.leave()  # kept before home looks at it
+            self.drill.leave()  # kept before home looks at it
             self.call_later(close, self, None)
 
     def _go_on(self) -> None:
         if self._at_end:
             close(self, None)
-        elif self._drill.over:
+        elif self.drill.over:
             self._show_sheet()
         else:
             self._show_round()
 
     def _show_round(self) -> None:
-        shown = self._drill.next()
+        shown = self.drill.next()
         if shown is None:
             return
-        self._status(f"{shown.number} of {self._drill.rounds}")
+        self._status(f"{shown.number} of {self.drill.rounds}")
         page = self.query_one(Page)
         page.border_title = SEE_NOW
-        page.show(lambda width: _seen(self._drill, shown, width))
+        page.show(lambda width: _seen(self.drill, shown, width))
         page.scroll_home(animate=False)
         self._show_question()
-        self.call_after_refresh(self._drill.shown)
+        self.call_after_refresh(self.drill.shown)
 
     def _show_question(self) -> None:
-        question, shown = self._drill.question, self._drill.round
+        question, shown = self.drill.question, self.drill.round
         if question is None or shown is None:
             return
         choices = tuple((choice.key, choice.words) for choice in question.choices)
@@ -171,23 +171,23 @@ class DrillScreen(TangyScreen[None]):
             lambda width: [
                 *(line for ink, words in told for line in paragraph(clean(words), width, ink)),
                 *heading(SAW),
-                *_seen(self._drill, shown, width),
+                *_seen(self.drill, shown, width),
             ]
         )
         page.scroll_home(animate=False)
-        what = "your score" if self._drill.over else "the next round"
-        self._ask(so_far_words(self._drill.sheet), (("enter", what),))
+        what = "your score" if self.drill.over else "the next round"
+        self._ask(so_far_words(self.drill.sheet), (("enter", what),))
 
     def _show_sheet(self) -> None:
         self._at_end = True
-        sheet = self._drill.sheet
+        sheet = self.drill.sheet
         self._status("score")
         page = self.query_one(Page)
         page.border_title = "Score sheet"
         page.show(
             lambda width: [
                 line
-                for ink, words in sheet_lines(sheet, width, self._drill.before)
+                for ink, words in sheet_lines(sheet, width, self.drill.before)
                 for line in ([PageLine(((words, ink),))] if len(words) <= width else
                              paragraph(words, width, ink))
             ]

@@ -96,7 +96,7 @@ class LiveScreen(PlayScreen):
             robot=world,
             past=past,
         )
-        self._world = world
+        self.world = world
         self._faults.beside = self._attend_beside
         self.working = 0  # how many things are being done, or wait for their turn
         self._seen_doing = ""
@@ -106,12 +106,12 @@ class LiveScreen(PlayScreen):
 
     def on_mount(self) -> None:
         """Show what is known of the robot, and follow it; the playing screen begins the game."""
-        self._show_status()
-        if self._world.link.tablet:
-            self._write(self._world.link.tablet, "text")
+        self.show_status()
+        if self.world.link.tablet:
+            self._write(self.world.link.tablet, "text")
             # the log has no room in a small window, and the tablet may have to be opened again
-            self.query_one(RoomView).border_subtitle = Content(self._world.link.tablet_page)
-        self.set_interval(TRACK_SECONDS, self._track)
+            self.query_one(RoomView).border_subtitle = Content(self.world.link.tablet_page)
+        self.set_interval(TRACK_SECONDS, self.track)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave out what cannot be done among people."""
@@ -120,20 +120,20 @@ class LiveScreen(PlayScreen):
     # ---------------------------------------------------------------------------------- game
 
     @property
-    def _at_rest(self) -> bool:
+    def at_rest(self) -> bool:
         """Whether no game goes on, nor begins: for that the robot may drive."""
         return self._supervision.over and not self.working
 
     async def _begin_game(self) -> list[Event]:
         await self._until_going()
-        if self._world.lost:
+        if self.world.lost:
             self._write(LOOKS_ROUND, "warn")
         return await super()._begin_game()
 
     async def _beside(self, work: Callable[[], T]) -> T:
         """Do something that takes its time, while the screen lives."""
         self.working += 1
-        self._show_status()
+        self.show_status()
         try:
             return await asyncio.to_thread(work)
         finally:
@@ -171,7 +171,7 @@ class LiveScreen(PlayScreen):
             self._let_move()
 
     def _let_move(self) -> None:
-        if self._at_rest and self.control.robot.frozen:  # in a game that is a fault
+        if self.at_rest and self.control.robot.frozen:  # in a game that is a fault
             self._do(GoOn())
             self._tell_now(MAY_MOVE, "dim")
         else:
@@ -203,7 +203,7 @@ class LiveScreen(PlayScreen):
 
     async def _drive(self) -> None:
         with self.control.driving():
-            await self.app.push_screen_wait(DrivingDialog(self._world.link))
+            await self.app.push_screen_wait(DrivingDialog(self.world.link))
 
     def action_call_again(self) -> None:
         """Say the last number once more."""
@@ -216,19 +216,19 @@ class LiveScreen(PlayScreen):
         """Take the last call back."""
         if self.working:
             self._tell_now(BUSY, "dim")
-        elif not self._world.called:
+        elif not self.world.called:
             self._do(TakeBackCall())
         else:
             self.run_worker(self._void_call(), name="void", group="call", exclusive=True)
 
     async def _void_call(self) -> None:
-        label = self._workspace.activity.deck.label(self._world.called[-1])
+        label = self._workspace.activity.deck.label(self.world.called[-1])
         dialog = ConfirmDialog(
             void_call_words(label), VOID_DETAIL, yes="take it back", no="leave it"
         )
         if await self.app.push_screen_wait(dialog):
             await self._do_beside(TakeBackCall(label))
-            self.query_one(RoomView).show(self._world.scene())
+            self.query_one(RoomView).show(self.world.scene())
 
     def action_ask_for(self) -> None:
         """Ask for help for somebody."""
@@ -263,9 +263,9 @@ class LiveScreen(PlayScreen):
 
         workspace, where = (
             self._workspace,
-            "on the bench" if isinstance(self._world, BenchedWorld) else "",
+            "on the bench" if isinstance(self.world, BenchedWorld) else "",
         )
-        sensors = LinkedSensors(self._world.link, workspace.robot, workspace.activity.deck)
+        sensors = LinkedSensors(self.world.link, workspace.robot, workspace.activity.deck)
         return SensorsScreen(
             workspace, sensors, health=sensors.health, shown=shown, live=True, where=where
         )
@@ -273,21 +273,22 @@ class LiveScreen(PlayScreen):
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events, and who was seen where somebody else usually sits."""
         super()._tell(events, known)
-        for seated in self._seats.news(events, self._world.sitting):
+        for seated in self._seats.news(events, self.world.sitting):
             self._write(seated_words(seated, self._workspace.name), "warn")
         self._cards.tell(events)
 
-    def _track(self) -> None:
+    def track(self) -> None:
+        """Show where the robot is and where it goes, as its link has it now."""
         """Draw where the robot is, and what it knows of the floor; and tell it that this lives."""
-        self._world.link.alive()
+        self.world.link.alive()
         self._cards.tell()
         room = self.query_one(RoomView)
-        state = self._world.link.state
+        state = self.world.link.state
         if not state.number:
             return
         if (doing := self._doing()) != self._seen_doing:
             self._seen_doing = doing
-            self._show_status()
+            self.show_status()
         if state.frozen and not self._frozen:
             self._write(frozen_words(state.frozen), "bad")
             self.control.note(f"the robot process was frozen for {state.frozen:.1f} s")
@@ -299,14 +300,15 @@ class LiveScreen(PlayScreen):
         self.control.break_off()
         await asyncio.to_thread(self.control.wait_for_turn, REST_SECONDS)
 
-    def _show_status(self) -> None:
-        super()._show_status()
+    def show_status(self) -> None:
+        """Show how the game stands, and the keys that do something now."""
+        super().show_status()
         going = self.control.going
-        self.query_one(KeyLine).show(*live_keys.keys(going=going, over=self._at_rest))
+        self.query_one(KeyLine).show(*live_keys.keys(going=going, over=self.at_rest))
 
     def _note(self) -> str:
         """Say what the robot is doing, or what the keys would do next."""
-        if self.control.stopped or self._learning or self._at_rest or not self.control.going:
+        if self.control.stopped or self._learning or self.at_rest or not self.control.going:
             return super()._note()
         level = self.control.autonomy.level
         autonomy = live_keys.DIAL[level] if level != AUTONOMY[0] else ""
@@ -314,9 +316,9 @@ class LiveScreen(PlayScreen):
 
     def _doing(self) -> str:
         """Say what keeps the robot busy on its wheels, "" if nothing does."""
-        if self.working and self._world.lost:
+        if self.working and self.world.lost:
             return "finds its place"
-        state = self._world.link.state
+        state = self.world.link.state
         going = state.going
         if not going:
             return ""
@@ -325,5 +327,5 @@ class LiveScreen(PlayScreen):
         return f"drives to {'the front' if going == FRONT else self._workspace.name(going)}"
 
     def _until_call(self) -> str:
-        left = 0.0 if self.working else self._world.calls_in
+        left = 0.0 if self.working else self.world.calls_in
         return f"next call in {ceil(left)} s" if left else ""

@@ -89,11 +89,11 @@ class PlayScreen(PlayStaff):
 
         control = GameController(supervision, who, robot=robot, void=void, past=past)
         super().__init__(workspace, control)
-        self._games = games
+        self.games = games
         self._speed = speed
         self._leave_after = leave_after
-        self._tally = Tally()
-        self._skipping = False
+        self.tally = Tally()
+        self.skipping = False
         self._left = 0.0  # s of a drive that STOP or a fault broke off
         self._halted = False
         self._leaving = False
@@ -101,8 +101,8 @@ class PlayScreen(PlayStaff):
     def on_mount(self) -> None:
         """Show what is known, and begin."""
         loop = asyncio.get_running_loop()
-        self.control.changed = lambda: loop.call_soon_threadsafe(self._nudge.set)
-        self._picture.begin()
+        self.control.changed = lambda: loop.call_soon_threadsafe(self.nudge.set)
+        self.picture.begin()
         self._faults.begin()
         self._voice.begin(self.app)
         self.action_panel("transcript")
@@ -130,8 +130,8 @@ class PlayScreen(PlayStaff):
     def action_speed(self, by: int) -> None:
         """Play faster or slower."""
         self._speed = faster(self._speed, by)
-        self._nudge.set()
-        self._show_status()
+        self.nudge.set()
+        self.show_status()
 
     def action_skip(self) -> None:
         """Play the rest of the game at once, if that is meant."""
@@ -141,7 +141,7 @@ class PlayScreen(PlayStaff):
     def _skip(self) -> None:
         if self._refused() or self._supervision.over:
             return
-        self._skipping = True
+        self.skipping = True
         self._voice.hush()
         self._do(GoOn())
 
@@ -153,13 +153,13 @@ class PlayScreen(PlayStaff):
     def _another(self) -> None:
         if self._refused():
             return
-        self._games += 1
-        if self._supervision.over and self._tally.games + 1 == self._games:
+        self.games += 1
+        if self._supervision.over and self.tally.games + 1 == self.games:
             self._halted = False
             self._do(GoOn())
             self.run_worker(self._play(), name="game", exclusive=True)
         else:
-            more = self._games - self._tally.games - 1
+            more = self.games - self.tally.games - 1
             follow = "Another game" if more == 1 else f"{more} more games"
             self._tell_now(f"{follow} will follow.", "dim")
 
@@ -170,8 +170,8 @@ class PlayScreen(PlayStaff):
             steps.release()
         elif (asking := self._asking) is not None:
             asking.ask_to_give_up()
-        elif self._at_rest or self._leave_after is not None:
-            close(self, self._tally)
+        elif self.at_rest or self._leave_after is not None:
+            close(self, self.tally)
         elif not self._leaving:
             self.run_worker(self._leave(), name="leave")
 
@@ -191,7 +191,7 @@ class PlayScreen(PlayStaff):
         if leaves:
             await self._come_to_rest()
             self._end_game()
-            close(self, self._tally)
+            close(self, self.tally)
         elif going and not self.control.stopped and not self._halted:
             self._do(GoOn())
 
@@ -201,7 +201,7 @@ class PlayScreen(PlayStaff):
     def _end_game(self) -> None:
         """Let the log say that a game was left."""
         if not self._supervision.over:
-            self._tally.add(self.control.abandon())
+            self.tally.add(self.control.abandon())
 
     def on_unmount(self) -> None:
         """End a game whose program is being left."""
@@ -212,23 +212,23 @@ class PlayScreen(PlayStaff):
     def on_stop(self, message: Stop) -> None:
         """Stop the robot: nothing more is executed until somebody lets it go on."""
         self.control.apply(StopRobot())  # before anything is drawn
-        self._skipping = False
+        self.skipping = False
         self._voice.hush()
-        self._nudge.set()
+        self.nudge.set()
         self._write(noted_words(StaffNote("stopped"), self._workspace.name, by_keys=True), "bad")
         if self._asking is not None:
             self._asking.hold(True)
-        self._show_status()
+        self.show_status()
 
     @property
-    def _at_rest(self) -> bool:
+    def at_rest(self) -> bool:
         """Whether no game goes on."""
         return self._supervision.over
 
     # ---------------------------------------------------------------------------------- game
 
     async def _play(self) -> None:
-        while self._tally.games < self._games:
+        while self.tally.games < self.games:
             if not await self._may_begin():
                 return
             try:
@@ -236,16 +236,16 @@ class PlayScreen(PlayStaff):
             except TangyError as error:  # the log could not be written, so nothing more is done
                 await self._hold(str(error))
         if self._leave_after is not None:
-            await close_after(self, self._tally, self._leave_after)
+            await close_after(self, self.tally, self._leave_after)
 
     async def _may_begin(self) -> bool:
         """Ask before a game begins after one that ended with what nobody cleared."""
         begun = not self._supervision.over or self._leave_after is not None
         if begun or await self._faults.all_well():
             return True
-        self._games = self._tally.games
+        self.games = self.tally.games
         if not self._supervision.games:
-            close(self, self._tally)
+            close(self, self.tally)
         return False
 
     async def _play_game(self) -> None:
@@ -257,18 +257,18 @@ class PlayScreen(PlayStaff):
         while not supervision.over:
             await self._until_going()
             if supervision.halted is not None:
-                self._skipping = False
+                self.skipping = False
                 await self._faults.free()
                 continue
-            if self._left and not self._skipping and not control.single:
+            if self._left and not self.skipping and not control.single:
                 await self._wait(self._left)  # it walks on to where it was going
                 continue
-            alone = self._skipping or control.single
-            if not alone and not await self._voice.heard(self._speed, self._nudge):
+            alone = self.skipping or control.single
+            if not alone and not await self._voice.heard(self._speed, self.nudge):
                 continue
             before = supervision.seconds
             events, rest = await self._beside(control.next), list[Event]()
-            if not self._skipping and control.going:
+            if not self.skipping and control.going:
                 events, rest = self._faults.parts(events)
             self._tell(events)
             if control.proposal is not None:
@@ -279,7 +279,7 @@ class PlayScreen(PlayStaff):
             if supervision.halted is not None:
                 self._left = owed if self._drives else 0.0
                 owed = 0.0
-            if self._skipping or self._faults.urgent(events):
+            if self.skipping or self._faults.urgent(events):
                 await asyncio.sleep(0)  # let the screen and the keys live
             elif events:
                 await self._wait(owed)
@@ -289,19 +289,19 @@ class PlayScreen(PlayStaff):
             if rest:
                 self._faults.done()
                 self._tell(rest)
-        self._skipping = False
+        self.skipping = False
 
     async def _until_going(self) -> None:
         """Wait while the game is paused, or the robot stopped."""
         while not self.control.going:
-            self._nudge.clear()
-            await self._nudge.wait()
+            self.nudge.clear()
+            await self.nudge.wait()
 
     async def _nudged(self, seconds: float) -> None:
         """Wait for somebody to do something, but no longer than so many s."""
-        self._nudge.clear()
+        self.nudge.clear()
         with suppress(TimeoutError):
-            await asyncio.wait_for(self._nudge.wait(), seconds)
+            await asyncio.wait_for(self.nudge.wait(), seconds)
 
     async def _begin_game(self) -> list[Event]:
         return await self._beside(self.control.begin)
@@ -313,10 +313,10 @@ class PlayScreen(PlayStaff):
     def _stand_still(self, reason: str) -> None:
         """Do nothing more, after a failure, until somebody lets it try again."""
         self._halted = True
-        self._skipping = False
+        self.skipping = False
         self.control.apply(Pause())
         self._write(text.halted_words(reason), "bad")
-        self._show_status()
+        self.show_status()
 
     async def _hold(self, reason: str) -> None:
         """Stand still after a failure until somebody lets it try again."""
@@ -344,17 +344,17 @@ class PlayScreen(PlayStaff):
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
-        self._tally.add(events)
+        self.tally.add(events)
         if self._faults.urgent(events):
-            self._nudge.set()  # the rest of the step's time is not waited for
-        self._picture.tell(events, 0 if self._skipping else self._speed)
-        if not self._skipping:
+            self.nudge.set()  # the rest of the step's time is not waited for
+        self.picture.tell(events, 0 if self.skipping else self._speed)
+        if not self.skipping:
             self._voice.tell(events, self._speed if self.control.going else 0)
         for event in events:
             if isinstance(event, GameEnded) and event.stopped is not None and not known:
                 self._halted = True
                 self.run_worker(self._say_why(event.stopped, text.LEADS_HOME), name="why")
-        self._show_status()
+        self.show_status()
 
     async def _say_why(self, reason: str, then: str) -> None:
         """Tell why a game could not go on, at every size of the window."""
@@ -371,7 +371,8 @@ class PlayScreen(PlayStaff):
         else:
             super().action_inject()
 
-    def _show_status(self) -> None:
+    def show_status(self) -> None:
+        """Show in the line above how the game stands."""
         asking = self._asking
         if asking is not None and self._supervision.question is None and not self._learning:
             asking.withdraw()
@@ -382,9 +383,9 @@ class PlayScreen(PlayStaff):
             robot = "ASKS"
         if self.control.stopped:
             robot = "STOPPED" if self._supervision.halted is None else f"STOPPED, {robot}"
-        self._picture.show_status(robot, self._note(), self.MODE)
+        self.picture.show_status(robot, self._note(), self.MODE)
         going = self.control.going
-        self.query_one(KeyLine).show(*keys(going=going, over=self._at_rest))
+        self.query_one(KeyLine).show(*keys(going=going, over=self.at_rest))
         if asking is not None:
             asking.show_keys(going=going)
         self._faults.show()
@@ -395,6 +396,6 @@ class PlayScreen(PlayStaff):
             return self._told(text.GOES_ON)
         if self._learning:
             return "learning"
-        if self._at_rest:
+        if self.at_rest:
             return self._told(text.PLAYS_AGAIN) if self._supervision.games else ""
         return f"x{self._speed:g}" if self.control.going else "paused"

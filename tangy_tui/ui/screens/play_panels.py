@@ -52,7 +52,7 @@ class PlayPanels(TangyScreen[Tally]):
         self._workspace = workspace
         self.control = control
         self._supervision = control.supervision
-        self._picture = GamePicture(self, workspace, control.supervision)
+        self.picture = GamePicture(self, workspace, control.supervision)
         self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
@@ -117,7 +117,7 @@ class PlayPanels(TangyScreen[Tally]):
         chosen = self.query_one(Transcript).chosen
         fault = self._faults.asked_about if chosen is None else None
         dialog: Screen[Any] | None
-        dialog = self._faults.dialog(fault.id) if fault else self._picture.why(chosen)
+        dialog = self._faults.dialog(fault.id) if fault else self.picture.why(chosen)
         if dialog is not None:
             self.app.push_screen(dialog)
         else:
@@ -126,13 +126,13 @@ class PlayPanels(TangyScreen[Tally]):
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Tell why, for the step that was chosen with Enter."""
         event.stop()
-        if (dialog := self._picture.why_step(event.number)) is not None:
+        if (dialog := self.picture.why_step(event.number)) is not None:
             self.app.push_screen(dialog)
 
     def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
         """Tell why, for the row of the policy that was chosen with Enter."""
         event.stop()
-        self.app.push_screen(self._picture.why_row(event.index))
+        self.app.push_screen(self.picture.why_row(event.index))
 
     def on_fault_list_chosen(self, event: FaultList.Chosen) -> None:
         """Tell of a fault in full."""

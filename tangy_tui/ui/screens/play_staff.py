@@ -38,10 +38,10 @@ class PlayStaff(PlayPanels):
         super().__init__(workspace, control)
         self._voice = GameVoice(workspace)
         self._learning = False
-        self._nudge = asyncio.Event()
+        self.nudge = asyncio.Event()
         """Is set when something is done that the game's time is not to be waited for."""
 
-    def _show_status(self) -> None:
+    def show_status(self) -> None:
         """Show how things stand."""
         raise NotImplementedError
 
@@ -94,13 +94,13 @@ class PlayStaff(PlayPanels):
         """
         self.minimize()
         self.app.clear_notifications()  # they would lie over the question
-        learnt, self._picture.lesson = self._picture.lesson, ""
+        learnt, self.picture.lesson = self.picture.lesson, ""
         asking = AskingPanel(self._workspace, self.control, question, learnt)
         self.add_class("-asking")
         await self.mount(asking, before="#microphone" if self.query("#microphone") else "#keys")
         if self.control.stopped:
             asking.hold(True)
-        self._show_status()
+        self.show_status()
         try:
             answer = await asking.answer()
         finally:
@@ -121,7 +121,7 @@ class PlayStaff(PlayPanels):
     async def _learn(self, answer: Verified) -> list[Result]:
         """Act on an answer and learn from it; nothing else is done or looked at meanwhile."""
         self._learning = True
-        self._show_status()
+        self.show_status()
         try:
             return await asyncio.to_thread(self.control.answer, answer.behaviour, answer.target)
         finally:

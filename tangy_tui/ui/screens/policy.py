@@ -72,13 +72,13 @@ class PolicyScreen(TangyScreen[None]):
         """Make the screen; `leave_after` so many seconds it closes by itself."""
         super().__init__()
         self._workspace = workspace
-        self._policy = policy
+        self.policy = policy
         self._effects = effects
         self._leave_after = leave_after
 
     def compose(self) -> ComposeResult:
         """Lay out the table and the effects."""
-        note = f"{self._policy.name} {self._policy.digest[:DIGEST_SHOWN]}"
+        note = f"{self.policy.name} {self.policy.digest[:DIGEST_SHOWN]}"
         yield StatusLine(Status(mode="policy", note=note))
         yield Static(self._summary(), id="summary", markup=False)
         yield panel(PolicyTable())
@@ -92,7 +92,7 @@ class PolicyScreen(TangyScreen[None]):
         """Fill both."""
         activity = self._workspace.activity
         table = self.query_one(PolicyTable)
-        table.show(policy_rows(activity, self._policy))
+        table.show(policy_rows(activity, self.policy))
         table.focus()
         effects = self.query_one(LogView)
         for behaviour in activity.behaviours:
@@ -116,19 +116,19 @@ class PolicyScreen(TangyScreen[None]):
 
     def _explain(self, index: int) -> None:
         situation = self._workspace.activity.situations[index]
-        self.app.push_screen(why_row(self._workspace, self._policy, situation))
+        self.app.push_screen(why_row(self._workspace, self.policy, situation))
 
     def action_compare(self) -> None:
         """Compare this policy with another, or with what a teacher shows."""
         app: Any = self.app
-        app.run_worker(app.compare(f"policy:{self._policy.digest}"))
+        app.run_worker(app.compare(f"policy:{self.policy.digest}"))
 
     def action_leave(self) -> None:
         """Go back."""
         close(self, None)
 
     def _summary(self) -> str:
-        policy, activity = self._policy, self._workspace.activity
+        policy, activity = self.policy, self._workspace.activity
         decisions = [policy.decide(s) for s in activity.situations]
         shown = sum(1 for decision in decisions if decision.seen)
         contested = sum(1 for decision in decisions if decision.contested)

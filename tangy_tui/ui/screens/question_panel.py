@@ -125,7 +125,7 @@ class AskingPanel(Vertical):
         self._answer = asyncio.get_running_loop().create_future()
         self._dialog: Dialog[Any] | None = None
         self._held = False
-        self._open = False  # for an answer: the line is seen, and no question waits for its own
+        self.is_open = False  # for an answer: the line is seen, and no question waits for its own
         self._by_voice = False  # the present command was spoken
         self._hearing = hearing_of(self.app)
         self._before = clean(before)
@@ -356,7 +356,7 @@ class AskingPanel(Vertical):
     @property
     def listens(self) -> bool:
         """Whether a spoken answer could be taken now."""
-        free = self._open and self._dialog is None and not self._answer.done()
+        free = self.is_open and self._dialog is None and not self._answer.done()
         return free and self.screen.is_active
 
     @property
@@ -379,7 +379,7 @@ class AskingPanel(Vertical):
 
     def _be_open(self, is_open: bool) -> None:
         """Take note whether an answer can be taken; what was said meanwhile comes next."""
-        self._open = is_open
+        self.is_open = is_open
         if self._hearing is not None:
             self._hearing.look()
 

@@ -101,7 +101,7 @@ class SensorsScreen(TangyScreen[None]):
         self._no_source = text.no_source_words("live" if live else "sensors")
         self._where = where
         self._shown = shown
-        self._told: dict[str, Told] = {}
+        self.told: dict[str, Told] = {}
         self._frames: dict[Widget, tuple[str | None, str | None]] = {}
         self._seen = False
         """Whether the picture is shown."""
@@ -121,13 +121,13 @@ class SensorsScreen(TangyScreen[None]):
     def on_mount(self) -> None:
         """Open the cameras, and tell of all devices from now on."""
         self._devices.focus()
-        self._look()
+        self.look()
         cameras = self._cameras
         if cameras:
             self._devices.show(self._device_lines, cameras[0])
             self._tell_of_chosen()
             self.run_worker(self._keep_open(), group="cameras")
-        self.set_interval(LOOK_SECONDS, self._look)
+        self.set_interval(LOOK_SECONDS, self.look)
 
     def on_choice_list_moved(self, event: ChoiceList.Moved) -> None:
         """Tell of another device, and show what it sees if that is wanted."""
@@ -216,24 +216,24 @@ class SensorsScreen(TangyScreen[None]):
             return self._shown()
         return Status(mode="sensors", note=self._workspace.robot.title)
 
-    def _look(self) -> None:
+    def look(self) -> None:
         """Tell how everything is now, if anybody can see it."""
-        if self._told and not self.is_active:
+        if self.told and not self.is_active:
             return
-        self._told = {told.device.name: told for told in self._teller.tell()}
+        self.told = {told.device.name: told for told in self._teller.tell()}
         self.query_one(StatusLine).show(self._status())
         devices = self._devices
         devices.show(self._device_lines)
-        simulated = any(told.code and not told.live for told in self._told.values())
+        simulated = any(told.code and not told.live for told in self.told.values())
         self._frame(devices, below="~ simulated" if simulated else self._where)
         self._tell_of_chosen()
         self._tell_of_card()
 
     def _device_lines(self, width: int, height: int) -> list[ChoiceLine]:
-        return [ChoiceLine(device_row(told, width), name) for name, told in self._told.items()]
+        return [ChoiceLine(device_row(told, width), name) for name, told in self.told.items()]
 
     def _tell_of_chosen(self) -> None:
-        told = self._told.get(self._chosen)
+        told = self.told.get(self._chosen)
         if told is None:
             return
         about = self.query_one("#about", Page)

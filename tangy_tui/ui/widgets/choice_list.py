@@ -49,13 +49,13 @@ class ChoiceList(Choosable):
         self.border_title = title
         self.HELP = help  # type: ignore[misc] # of each list its own
         self._write: Lines = lambda width, height: ()
-        self._keys: list[Hashable] = []
+        self.shown_keys: list[Hashable] = []
         self._at: dict[Hashable, range] = {}
 
     @property
     def chosen(self) -> Hashable | None:
         """The key of the line that the cursor is on."""
-        return None if self._cursor is None else self._keys[self._cursor]
+        return None if self._cursor is None else self.shown_keys[self._cursor]
 
     def show(self, write: Lines, key: Hashable | None = None) -> None:
         """Show other lines, the cursor on a key (None: where it was)."""
@@ -75,11 +75,11 @@ class ChoiceList(Choosable):
         for y, line in enumerate(lines):
             if line.key is not None:
                 self._at[line.key] = range(self._at.get(line.key, range(y, y)).start, y + 1)
-        self._keys = list(self._at)
-        if key in self._keys:
-            self._cursor = self._keys.index(key)
+        self.shown_keys = list(self._at)
+        if key in self.shown_keys:
+            self._cursor = self.shown_keys.index(key)
         else:
-            last = len(self._keys) - 1
+            last = len(self.shown_keys) - 1
             self._cursor = None if last < 0 else min(self._cursor or 0, last)
         if self.is_attached and self._rows.width > 0:
             self._rows.put([line.row for line in lines])
@@ -116,10 +116,10 @@ class ChoiceList(Choosable):
         self._lay_out(self.chosen)
 
     def _length(self) -> int:
-        return len(self._keys)
+        return len(self.shown_keys)
 
     def _places(self, index: int) -> range:
-        return self._at[self._keys[index]]
+        return self._at[self.shown_keys[index]]
 
     def _tell(self, index: int) -> None:
         self.post_message(self.Moved(self))

@@ -239,7 +239,7 @@ class CommandBar(Vertical):
         self._input.closed = closed
         self._letters = letters
         self._prompt = Static("> ", classes="prompt", markup=False)
-        self._reopen: Timer | None = None
+        self.reopening: Timer | None = None
 
     def compose(self) -> ComposeResult:
         """Lay out the matches above the line."""
@@ -337,7 +337,7 @@ class CommandBar(Vertical):
         """Give the command."""
         event.stop()
         self._prompt.update("· ")
-        self._reopen = self.set_timer(CLOSED_SECONDS, self.ready)
+        self.reopening = self.set_timer(CLOSED_SECONDS, self.ready)
         self.post_message(self.Given(self, event.text))
 
     def on_mount(self) -> None:
@@ -348,9 +348,9 @@ class CommandBar(Vertical):
         """Stay closed under a dialog for as long as it takes, and open soon after it."""
         self._stop_waiting()
         if screen is self.screen and self._input.closed:
-            self._reopen = self.set_timer(ANSWERED_SECONDS, self.ready)
+            self.reopening = self.set_timer(ANSWERED_SECONDS, self.ready)
 
     def _stop_waiting(self) -> None:
-        if self._reopen is not None:
-            self._reopen.stop()
-            self._reopen = None
+        if self.reopening is not None:
+            self.reopening.stop()
+            self.reopening = None

@@ -83,7 +83,7 @@ class FaultList(ChoiceList):
         super()._say_filter(f"{left} of {len(self._faults)}" if words else "")
 
     def _tell(self, index: int) -> None:
-        self.post_message(self.Chosen(self, str(self._keys[index])))
+        self.post_message(self.Chosen(self, str(self.shown_keys[index])))
 
 
 class Columns(NamedTuple):

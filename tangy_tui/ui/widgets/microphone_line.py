@@ -102,12 +102,12 @@ class MicrophoneLine(Widget):
     ) -> None:
         """Make the line; `expects` says what alone is listened for ("": commands)."""
         super().__init__(id=id)
-        self._ears = ears
+        self.ears = ears
         self._expects = expects
         self._row: Row = ()
         self._trouble = ""
-        self._ticks = 0
-        self._timer: Timer | None = None
+        self.ticks = 0
+        self.timer: Timer | None = None
 
     @property
     def text(self) -> str:
@@ -116,7 +116,7 @@ class MicrophoneLine(Widget):
 
     def on_mount(self) -> None:
         """Prepare to follow the level."""
-        self._timer = self.set_interval(1 / HERTZ, self._tick, pause=True)
+        self.timer = self.set_interval(1 / HERTZ, self.tick, pause=True)
         self.look()
 
     def on_resize(self) -> None:
@@ -125,14 +125,14 @@ class MicrophoneLine(Widget):
 
     def look(self) -> None:
         """Show what has changed; words that come while it is open are drawn with the level."""
-        if self._timer is None:
+        if self.timer is None:
             return
-        follows = self._ears.live and self._ears.state in OPENS
+        follows = self.ears.live and self.ears.state in OPENS
         if follows:
-            self._timer.resume()
+            self.timer.resume()
         else:
-            self._timer.pause()
-            self._ticks, self._trouble = 0, ""
+            self.timer.pause()
+            self.ticks, self._trouble = 0, ""
         if not follows or not self._row or self._row[0] != self._state():
             self._show()
 
@@ -140,10 +140,11 @@ class MicrophoneLine(Widget):
         """Draw the line."""
         return draw(self, self._row, self.size.width)
 
-    def _tick(self) -> None:
-        if self._ticks % LOOKS == 0:
-            self._trouble = clean(self._ears.trouble)
-        self._ticks += 1
+    def tick(self) -> None:
+        """Look at level and words, and now and then at what is wrong."""
+        if self.ticks % LOOKS == 0:
+            self._trouble = clean(self.ears.trouble)
+        self.ticks += 1
         self._show()
 
     def _show(self) -> None:
@@ -162,7 +163,7 @@ class MicrophoneLine(Widget):
         return "t" if self.screen.is_active and not typing else "ctrl+t"
 
     def _state(self) -> tuple[str, str]:
-        ears = self._ears
+        ears = self.ears
         only = self._expects()
         words = STATES.get(ears.state, ears.state)
         words = words.format(key=self._key, for_what=f" for {only}" if only else "")
@@ -172,7 +173,7 @@ class MicrophoneLine(Widget):
         return (f"{MARKS.get(ears.state, ' ')} {words}", ink)
 
     def _written(self, width: int) -> Row:
-        ears = self._ears
+        ears = self.ears
         if not self.is_attached:
             return ()
         row: list[Span] = [self._state()]

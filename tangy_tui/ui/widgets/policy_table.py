@@ -81,7 +81,7 @@ class PolicyTable(Choosable):
         self.border_title = "Policy"
         self._table: tuple[PolicyRow, ...] = ()
         self._empty = clean(empty)
-        self._now: int | None = None
+        self.marked: int | None = None
         self._stacked = False
         self._seen: list[int] = []  # the rows that are shown, by their places
 
@@ -101,12 +101,12 @@ class PolicyTable(Choosable):
         """Show these rows; `highlight` names the situation that is in use."""
         self._table = tuple(rows)
         self._cursor = None
-        self._now = self._index(highlight)
+        self.marked = self._index(highlight)
         self._show()
 
     def highlight(self, situation: str | None) -> None:
         """Mark the row that is in use; None marks none."""
-        self._now = self._index(situation)
+        self.marked = self._index(situation)
         self._mark()
 
     def _length(self) -> int:
@@ -181,7 +181,7 @@ class PolicyTable(Choosable):
 
     def _mark(self) -> None:
         marks: dict[int, str] = {}
-        now = self._seen.index(self._now) if self._now in self._seen else None
+        now = self._seen.index(self.marked) if self.marked in self._seen else None
         for index, ink in ((self._cursor, "cursor"), (now, "now")):
             if index is not None:
                 marks.update(dict.fromkeys(self._places(index), ink))

@@ -97,7 +97,7 @@ class RoomView(Widget):
         self._label = label
         self._clock_given = clock
         self._scene = EMPTY
-        self._speech = ""
+        self.speech = ""
         self._at = room.stand(FRONT, self._ids)
         self._seen = self._from = self._to = self._at
         self._going: str | None = None
@@ -108,7 +108,7 @@ class RoomView(Widget):
         self._seconds = 0.0
         self._last = 0.0
         self._heading = ""
-        self._timer: Timer | None = None
+        self.motion: Timer | None = None
         self._plan: RoomPlan = plan(1, 1)
         self._grid: Grid | None = None
         self._base: list[PlanLine] = []
@@ -173,7 +173,7 @@ class RoomView(Widget):
 
     def say(self, speech: str) -> None:
         """Show what the robot says; nothing if empty."""
-        self._speech = clean(speech)
+        self.speech = clean(speech)
         self._draw_again()
 
     def drive(self, to: str, seconds: float) -> None:
@@ -260,8 +260,8 @@ class RoomView(Widget):
 
     def _walk(self) -> None:
         self._last = self._clock()
-        if self._timer is None and not self._held:
-            self._timer = self.set_interval(FRAME_SECONDS, self.tick)
+        if self.motion is None and not self._held:
+            self.motion = self.set_interval(FRAME_SECONDS, self.tick)
 
     def _halt(self) -> None:
         self._going = None
@@ -269,9 +269,9 @@ class RoomView(Widget):
         self._stand_still()
 
     def _stand_still(self) -> None:
-        if self._timer is not None:
-            self._timer.stop()
-            self._timer = None
+        if self.motion is not None:
+            self.motion.stop()
+            self.motion = None
 
     def _arrive(self) -> None:
         place = self._going
@@ -323,7 +323,7 @@ class RoomView(Widget):
             self._grid,
             self._people,
             self._scene,
-            speech=self._speech,
+            speech=self.speech,
             label=self._label,
             robot=self._sprite_at[0] if self._going is None and not self._heading else None,
         )

@@ -67,7 +67,7 @@ class Transcript(Choosable):
     ) -> None:
         super().__init__(id=id, classes=classes)
         self.border_title = "Steps"
-        self._steps: deque[str] = deque(maxlen=most)
+        self.steps: deque[str] = deque(maxlen=most)
         self._empty = clean(empty)
         self._count = 0
         self._seen: list[int] = []  # the steps that are shown, by their places
@@ -87,34 +87,34 @@ class Transcript(Choosable):
     def append(self, step: str) -> None:
         """Add a step at the end."""
         self._count += 1
-        if len(self._steps) == self._steps.maxlen and self._cursor:
+        if len(self.steps) == self.steps.maxlen and self._cursor:
             self._cursor -= 1
-        self._steps.append(clean(step))
+        self.steps.append(clean(step))
         self._show()
 
     def remove_last(self) -> None:
         """Take the last step back."""
-        if self._steps:
-            self._steps.pop()
+        if self.steps:
+            self.steps.pop()
             self._count -= 1
             self._cursor = None
             self._show()
 
     def fill(self, steps: list[str]) -> None:
         """Show these steps and no others, numbered from 1."""
-        self._steps.clear()
-        self._steps.extend(clean(step) for step in steps)
+        self.steps.clear()
+        self.steps.extend(clean(step) for step in steps)
         self._count = len(steps)
         self._cursor = None
         self._show()
 
     def point(self, number: int) -> None:
         """Put the cursor on a step, or on the nearest one that is kept."""
-        if self._steps:
+        if self.steps:
             if self.filter:
                 self.unfilter()
-            first = self._count - len(self._steps) + 1
-            self._cursor = min(len(self._steps) - 1, max(0, number - first))
+            first = self._count - len(self.steps) + 1
+            self._cursor = min(len(self.steps) - 1, max(0, number - first))
             self._mark()
             self.post_message(self.Moved(self, self.chosen))
 
@@ -132,17 +132,17 @@ class Transcript(Choosable):
     def action_choose(self, by: int) -> None:
         """Move the cursor; past the end it lets go, and the newest step is followed again."""
         super().action_choose(by)
-        if self._steps:
+        if self.steps:
             self.post_message(self.Moved(self, self.chosen))
 
     def _length(self) -> int:
         return len(self._seen)
 
     def _number(self, index: int) -> int:
-        return self._count - len(self._steps) + self._seen[index] + 1
+        return self._count - len(self.steps) + self._seen[index] + 1
 
     def _tell(self, index: int) -> None:
-        self.post_message(self.Chosen(self, self._number(index), self._steps[self._seen[index]]))
+        self.post_message(self.Chosen(self, self._number(index), self.steps[self._seen[index]]))
 
     def _filter_changed(self) -> None:
         self._cursor = None
@@ -150,14 +150,14 @@ class Transcript(Choosable):
         self.post_message(self.Moved(self, None))
 
     def _show(self) -> None:
-        self._seen = [n for n, step in enumerate(self._steps) if self._has(step)]
+        self._seen = [n for n, step in enumerate(self.steps) if self._has(step)]
         if not self.is_attached or self._rows.width <= 0:
             return
-        first = self._count - len(self._steps) + 1
+        first = self._count - len(self.steps) + 1
         digits = max(2, len(str(self._count)))
         width = self._rows.width
-        rows = [_row(first + n, self._steps[n], digits, width) for n in self._seen]
-        self._rows.put(rows or [((NONE_FOUND if self._steps else self._empty, "dim"),)])
+        rows = [_row(first + n, self.steps[n], digits, width) for n in self._seen]
+        self._rows.put(rows or [((NONE_FOUND if self.steps else self._empty, "dim"),)])
         self._mark()
 
     def _mark(self) -> None:
