@@ -25,7 +25,7 @@ def pronounce(word: str) -> tuple[str, ...]:
     There are none where it does not have the word, or is not installed. The first call reads the
     dictionary, 3 MB, in 20 ms; each takes some 0.1 ms.
     """
-    text, key = _dictionary(), word.casefold()
+    text, key = dictionary(), word.casefold()
     if not text or not key.strip() or "(" in key:  # which numbers further pronunciations
         return ()
     found: list[str] = []
@@ -39,7 +39,7 @@ def pronounce(word: str) -> tuple[str, ...]:
 
 def can_look_up() -> bool:
     """Say whether the dictionary is installed."""
-    return bool(_dictionary())
+    return bool(dictionary())
 
 
 def suggest(word: str, which: Callable[[str], str | None] = shutil.which) -> str:
@@ -51,7 +51,7 @@ def suggest(word: str, which: Callable[[str], str | None] = shutil.which) -> str
     latin = all(letter == "'" or "LATIN" in unicodedata.name(letter, "") for letter in word)
     guessed = espeak_phones.espeak_phones(word, which) if latin else ""
     if not guessed and set(word) <= set(spelling.SOUNDS):
-        guessed = spelling.guess(word, _dictionary())
+        guessed = spelling.guess(word, dictionary())
     return " ".join(guessed.split()[:LONGEST])
 
 
@@ -97,13 +97,13 @@ def check_name(text: str, name: str) -> str:
 @cache
 def _letter(letter: str) -> tuple[int, int]:
     """Return where in the dictionary the words with a first letter stand."""
-    text = _dictionary()
+    text = dictionary()
     start, last = text.find(f"\n{letter}"), text.rfind(f"\n{letter}")
     return (start, text.find("\n", last + 1) + 1) if start >= 0 else (0, 0)
 
 
 @cache
-def _dictionary() -> str:
+def dictionary() -> str:
     """Return the text of the dictionary, a word a line; "" where there is none."""
     spec = find_spec("pocketsphinx")
     if spec is None or spec.origin is None:

@@ -50,7 +50,7 @@ class Detector:
 
     def __init__(self, activity: Activity, robot: Robot, effects: Effects) -> None:
         self.effects = effects
-        self._activity = activity
+        self.activity = activity
         self._robot = robot
         self._refusals: Counter[str] = Counter()
         self._in_game: Counter[str] = Counter()
@@ -79,7 +79,7 @@ class Detector:
 
     def spent_for_game(self, person: str | None) -> bool:
         """Say whether a person was asked in vain as often as the activity allows in a game."""
-        return person is not None and self._in_game[person] >= self._activity.asking.game
+        return person is not None and self._in_game[person] >= self.activity.asking.game
 
     def refusals(self, person: str | None) -> dict[str, Fact]:
         """Return the evidence of how often a person did not do what they were asked."""
@@ -87,7 +87,7 @@ class Detector:
             return {}
         times, spent = self._refusals[person], self.spent_for_game(person)
         found: dict[str, Fact] = {"person.refusals": times} if times or spent else {}
-        if spent or times >= self._activity.asking.visit:
+        if spent or times >= self.activity.asking.visit:
             found["person.spent"] = True
         return found
 
@@ -173,7 +173,7 @@ class Detector:
         followed = outcome.response is None or outcome.response.followed
         return [
             mismatch
-            for mismatch in self.effects.mismatches(behaviour.name, before, after, self._activity)
+            for mismatch in self.effects.mismatches(behaviour.name, before, after, self.activity)
             if followed or mismatch.variable not in OWED_BY_PEOPLE
         ]
 

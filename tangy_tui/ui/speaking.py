@@ -89,7 +89,7 @@ class Speaker:
         """The ears that are shut while Tangy speaks."""
         self._activity = activity
         self._tell = tell
-        self._make = make
+        self.make_voice = make
         self._voice: CanSpeak | None = None
         self._before: set[asyncio.Task[None]] = set()  # voices that are being ended
         self._known: tuple[str, ...] = ()
@@ -177,7 +177,7 @@ class Speaker:
                 told.append(sentence)
                 self._tell(sentence)
 
-            voice = self._voice = self._make(self._activity, self._begin, self._end, tell)
+            voice = self._voice = self.make_voice(self._activity, self._begin, self._end, tell)
             if voice.silent and not told:
                 self._tell(voice.silent)
         return not voice.silent

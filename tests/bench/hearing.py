@@ -162,7 +162,7 @@ def be_the_child(folder: Path) -> int:
         await program.action_talk()
         found["decoding"] = await gaps(PHASE_SECONDS)
         partial.add(ears.words)
-        program.speaker._make = silent_voice
+        program.speaker.make_voice = silent_voice
         program.speaker.prepare(opening_lines(workspace.activity))
         program.speaker.switch(True)
         program.speaker.say("Good afternoon, everybody, and welcome.", VoicePreference())

@@ -49,7 +49,7 @@ def apart(one: Sequence[str], other: Sequence[str]) -> int:
 
 def by_spelling(word: str) -> str:
     """Guess from the dictionary without the word."""
-    without = re.sub(rf"\n{word}(\(\d\))? [^\n]*", "", pronunciation._dictionary())
+    without = re.sub(rf"\n{word}(\(\d\))? [^\n]*", "", pronunciation.dictionary())
     return spelling.guess(word, without)
 
 
@@ -75,7 +75,7 @@ def main() -> None:
     """Measure both guesses on words and on names, and the look-up."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 500
     begun = process_time()
-    lines = pronunciation._dictionary().split("\n")
+    lines = pronunciation.dictionary().split("\n")
     print(f"dictionary read in {(process_time() - begun) * 1000:.0f} ms CPU, {len(lines)} lines")
     usual = [w for line in lines if re.fullmatch("[a-z]{3,}", w := line.partition(" ")[0])]
     words = Random(5).sample(usual, count)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from importlib import resources
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -25,8 +26,8 @@ from tangy_profiles.card_face import numbers_of
 from tangy_sim.rendering.card_chips import Chip
 from tangy_sim.rendering.card_frames import CardCamera, RenderedFrame, View
 from tangy_sim.rendering.card_odd_chips import odd_chip, sheer_chip
-from tests.conftest import TESTS
 
+TESTS = Path(__file__).parents[1]
 CLEAN = View(pixels=36, noise=1, quality=95)
 ALL = (1 << 25) - 1
 Take = Callable[..., RenderedFrame]

@@ -39,27 +39,27 @@ class FakeSource:
         self.live, self.recorded = live, not live
         self.tell: Callable[[str], None] = lambda sentence: None
         self.closed = 0
-        self._said: asyncio.Queue[bytes | Exception | None] = asyncio.Queue()
+        self.coming: asyncio.Queue[bytes | Exception | None] = asyncio.Queue()
         self._taken = False
 
     async def feed(self, *chunks: bytes) -> None:
         """Say something, and wait until it has been taken."""
         for chunk in chunks:
-            self._said.put_nowait(chunk)
+            self.coming.put_nowait(chunk)
         async with asyncio.timeout(PATIENCE):
-            await self._said.join()
+            await self.coming.join()
 
     def end(self, error: Exception | None = None) -> None:
-        self._said.put_nowait(error)
+        self.coming.put_nowait(error)
 
     def __aiter__(self) -> FakeSource:
         return self
 
     async def __anext__(self) -> bytes:
         if self._taken:
-            self._said.task_done()
+            self.coming.task_done()
         self._taken = False
-        said = None if self.closed else await self._said.get()
+        said = None if self.closed else await self.coming.get()
         self._taken = True
         if isinstance(said, bytes):
             return said

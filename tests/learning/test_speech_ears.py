@@ -121,7 +121,7 @@ class TestPushToTalk:
     async def test_nothing_is_lost_of_what_comes_in_the_same_turn(self, enter: Enter) -> None:
         here = await enter().ready()
         here.ears.talk()
-        here.source._said.put_nowait(sound("c"))
+        here.source.coming.put_nowait(sound("c"))
         await here.source.feed(sound("c"))
         here.ears.talk()
         await here.ready()

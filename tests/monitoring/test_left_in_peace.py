@@ -150,7 +150,7 @@ def test_an_activity_can_ask_less_often(
         game = supervise("card-out-of-sight~1", seed=seed)
         limits = AskingLimits(visit=2, game=3)
         activity = replace(game.world.activity, asking=limits)
-        monkeypatch.setattr(game._detector, "_activity", activity)
+        game.detector.activity = activity
         events = play(game)
         assert max(Counter(visit for visit, _ in in_vain(events)).values(), default=0) <= 2
         assert max(asked(events, person) for person in game.world.people) <= 3

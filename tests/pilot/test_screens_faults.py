@@ -64,7 +64,12 @@ async def test_nothing_is_written_while_nothing_changes(
         await pilot.pause()
         looked: list[list[Event]] = []
         look = screen.control.look
-        monkeypatch.setattr(screen.control, "look", lambda: looked.append(look()) or looked[-1])
+
+        def noted() -> list[Event]:
+            looked.append(look() or [])
+            return looked[-1]
+
+        monkeypatch.setattr(screen.control, "look", noted)
         kept, told = list(workspace.store.events()), list(screen.query_one(LogView).sentences)
         await until_shown(pilot, lambda: len(looked) > 2)
         assert list(workspace.store.events()) == kept

@@ -339,9 +339,9 @@ async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(
     async with run(app=program(workspace)) as pilot:
         screen = pilot.app.screen
         assert isinstance(screen, TeachScreen)
-        teacher = ScriptedTeacher(screen._teaching)
-        while not screen._teaching.demonstration.finished:
-            screen._tell(list(screen._teaching.apply(teacher.command())))
+        teacher = ScriptedTeacher(screen.teaching)
+        while not screen.teaching.demonstration.finished:
+            screen.follow(teacher.command())
             await pilot.pause()
             if isinstance(pilot.app.screen, QuestionDialog):
                 await pilot.press("y")
@@ -392,9 +392,9 @@ async def mid_game(pilot: Pilot[None], steps: int) -> None:
     """Demonstrate some steps of a game."""
     screen = pilot.app.screen
     assert isinstance(screen, TeachScreen)
-    teacher = ScriptedTeacher(screen._teaching)
-    while len(screen._teaching.demonstration.steps) < steps:
-        screen._tell(list(screen._teaching.apply(teacher.command())))
+    teacher = ScriptedTeacher(screen.teaching)
+    while len(screen.teaching.demonstration.steps) < steps:
+        screen.follow(teacher.command())
         await pilot.pause()
         if isinstance(pilot.app.screen, QuestionDialog):
             await pilot.press("y")

@@ -69,7 +69,7 @@ async def test_a_story_waits_for_the_help_to_be_closed(
         await pilot.pause(0.3)
         screen = app.screen_stack[-2]
         assert isinstance(screen, TeachScreen)
-        assert screen._teaching.demonstration.finished is (covered == "at the end")
+        assert screen.teaching.demonstration.finished is (covered == "at the end")
         assert ended == []
         await pilot.press("escape")
         for _ in range(500):

@@ -23,7 +23,6 @@ SOURCES = [
     for floor in ("tangy_tui", "sim", "hw", "profiles")
     for path in sorted((ROOT / floor).rglob("*.py"))
 ]
-CONFTEST = re.compile(r"^\s*from tests\.(\w+)\.conftest import", re.MULTILINE)
 HEAVY = {"sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy"}
 
 
@@ -151,17 +150,6 @@ def test_no_two_public_classes_share_a_name() -> None:
 def test_no_module_is_longer_than_400_lines() -> None:
     long = {path.name: path.read_text(encoding="utf-8").count("\n") for path in SOURCES}
     assert {name: lines for name, lines in long.items() if lines > 400} == {}
-
-
-def test_no_test_imports_the_conftest_of_another_folder() -> None:
-    # It would run as a second module of that name: what folders share stands in tests/support.
-    others = [
-        f"{path.relative_to(ROOT)}: {folder}"
-        for path in sorted((ROOT / "tests").rglob("*.py"))
-        for folder in CONFTEST.findall(path.read_text(encoding="utf-8"))
-        if folder != path.parent.name
-    ]
-    assert others == []
 
 
 def test_each_file_of_tests_has_a_name_of_its_own() -> None:

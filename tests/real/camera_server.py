@@ -42,13 +42,13 @@ class CameraServer:
     """
 
     def __init__(self, seed: int = 1) -> None:
-        self._kinds = {
+        self.kinds = {
             "live": _pictures(seed),
             "covered": _pictures(seed, light=0.03, blur=20),
             "dark": _pictures(seed, light=0.08, lamp=True),
             "blurred": _pictures(seed, blur=3),
         }
-        self._kinds["frozen"] = self._kinds["live"][:1]
+        self.kinds["frozen"] = self.kinds["live"][:1]
         self.still = room(seed, *SIZE)
         """What it looks at, without noise."""
         self.mode = "live"
@@ -120,7 +120,7 @@ class CameraServer:
                 if mode == "rubbish":
                     connection.sendall(np.random.default_rng(number).bytes(3_000))
                     continue
-                kind = self._kinds["live" if mode == "half" else mode]
+                kind = self.kinds["live" if mode == "half" else mode]
                 number += 1
                 jpeg = kind[number % len(kind)]
                 part = PART % len(jpeg)

@@ -56,13 +56,13 @@ class Peer:
         for one in (self.diagnostics, self.base, self.arms, self.voice, self.button, self.laser):
             await one.start()
         assert await self.timing.wait_connected(5.0) and await self.link.wait_connected(5.0)
-        self.clock.follow(self.timing, {"laser": self._counted})
+        self.clock.follow(self.timing, {"laser": self.counted})
         await asyncio.wait_for(self.bench.ros.subscribed("/odom", "/stop_button"), 5.0)
         async with asyncio.timeout(5.0):
             while not self.bench.scip.measuring:  # noqa: ASYNC110
                 await asyncio.sleep(0.01)
 
-    def _counted(self) -> int:
+    def counted(self) -> int:
         return 0 if self.laser.scan is None else self.laser.scan.seq
 
     async def close(self) -> None:
@@ -118,13 +118,13 @@ async def played() -> AsyncIterator[Peer]:
 class TestSteppedTime:
     async def test_time_passes_when_it_is_asked_for_and_all_that_is_due_has_come(self) -> None:
         async with played() as peer:
-            began, scans = peer.world.now, peer._counted()
+            began, scans = peer.world.now, peer.counted()
             assert peer.base.odometry is not None
             odometries = peer.base.odometry.seq
             await peer.passes(2.0)
             assert peer.world.now - began == pytest.approx(2.0)
             assert peer.clock.now() == pytest.approx(peer.world.now)
-            assert peer._counted() - scans == 20
+            assert peer.counted() - scans == 20
             assert peer.base.odometry.seq - odometries == 40
             await asyncio.sleep(0.15)
             assert peer.world.now - began == pytest.approx(2.0)

@@ -104,7 +104,7 @@ class TeachScreen(TangyScreen[bool]):
         """
         super().__init__()
         self._workspace = workspace
-        self._teaching = teaching
+        self.teaching = teaching
         self._resume = resume
         self._scripted = scripted
         self._another = another
@@ -134,8 +134,8 @@ class TeachScreen(TangyScreen[bool]):
                 self.AUTO_FOCUS = ""  # type: ignore[misc]  # so that t is a key at once
             yield HearingLine(hearing)
         yield CommandBar(
-            lambda typed: self._teaching.phrasebook.complete(typed),
-            sayable=lambda: self._teaching.sayable,
+            lambda typed: self.teaching.phrasebook.complete(typed),
+            sayable=lambda: self.teaching.sayable,
             letters=False,
             id="command",
         )
@@ -144,7 +144,7 @@ class TeachScreen(TangyScreen[bool]):
 
     def on_mount(self) -> None:
         """Begin the session."""
-        phrases = (b.phrases[0] for b in self._teaching.activity.behaviours.values())
+        phrases = (b.phrases[0] for b in self.teaching.activity.behaviours.values())
         said = text.sayable_words(phrases)
         self.HELP = f"{type(self).HELP}{self._listener.help} {said}"  # type: ignore[misc]
         self._tell(self._begun or self._begin())
@@ -160,8 +160,8 @@ class TeachScreen(TangyScreen[bool]):
 
     def _begin(self) -> list[TeachingEvent]:
         if self._another:
-            return self._teaching.apply(Next())
-        return self._teaching.begin(resume=self._resume)
+            return self.teaching.apply(Next())
+        return self.teaching.begin(resume=self._resume)
 
     # ------------------------------------------------------------------------------ commands
 
@@ -169,11 +169,11 @@ class TeachScreen(TangyScreen[bool]):
         """Put a typed command to Tangy."""
         event.stop()
         self._listener.by_voice = False
-        remark = self._teaching.remark
+        remark = self.teaching.remark
         if remark is not None and (settle := read_settling(event.text, remark)) is not None:
             self._apply(settle)
             return
-        follow_word(self, read_teaching(event.text, self._teaching.phrasebook.game), event.text)
+        follow_word(self, read_teaching(event.text, self.teaching.phrasebook.game), event.text)
 
     def follow(self, command: TeacherCommand) -> None:
         """Put a command to the session, and tell what came of it."""
@@ -185,7 +185,7 @@ class TeachScreen(TangyScreen[bool]):
         if step is None:
             self._log.write(text.WHICH_STEP, "warn")
         else:
-            self.again(self._teaching.demonstration.id, step - 1)
+            self.again(self.teaching.demonstration.id, step - 1)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave a scripted teacher alone: who watches can only look, leave or stop."""
@@ -236,7 +236,7 @@ class TeachScreen(TangyScreen[bool]):
         self.run_worker(self._again(Again(id, kept)), name="again")
 
     async def _again(self, command: Again) -> None:
-        present = self._teaching.demonstration
+        present = self.teaching.demonstration
         steps = len(present.steps)
         if command.demonstration == present.id and 0 <= command.kept < steps:
             first = command.kept + 1
@@ -307,7 +307,7 @@ class TeachScreen(TangyScreen[bool]):
         self.run_worker(self._discard(), name="discard")
 
     async def _discard(self) -> None:
-        steps = len(self._teaching.demonstration.steps)
+        steps = len(self.teaching.demonstration.steps)
         dialog = ConfirmDialog(*text.discard_words(steps), yes=text.DISCARD, no=text.KEEP)
         if not steps or await self._alone(dialog):
             self._apply(Discard())
@@ -325,7 +325,7 @@ class TeachScreen(TangyScreen[bool]):
 
     def _apply(self, command: TeacherCommand) -> None:
         try:
-            events = self._teaching.apply(command)
+            events = self.teaching.apply(command)
         except TangyError as error:  # the log could not be written, and nothing was done
             self._log.write(str(error), "bad")
             self.notify(str(error), severity="error", markup=False)
@@ -370,7 +370,7 @@ class TeachScreen(TangyScreen[bool]):
             self._picture.undone(undone)
         bar.ready()
         self._picture.state()
-        remark = self._teaching.remark
+        remark = self.teaching.remark
         quiet = self._scripted is not None or self._listener.by_voice
         if remark is not None and remark in events and not quiet:
             self.run_worker(self._remark(remark), name="remark")
@@ -379,7 +379,7 @@ class TeachScreen(TangyScreen[bool]):
 
     async def _remark(self, remark: Remark) -> None:
         """Let a remark be answered in place; one on a spoken step is answered by its word."""
-        self._apply(Settle(await self._alone(remark_dialog(remark, self._teaching))))
+        self._apply(Settle(await self._alone(remark_dialog(remark, self.teaching))))
 
     async def _verify(self, asked: Asked | Offered) -> None:
         """Put the question, and give its answer to the session when its dialog has gone."""
@@ -391,7 +391,7 @@ class TeachScreen(TangyScreen[bool]):
         return self.query_one(LogView)
 
     async def _follow_script(self, pace: float) -> None:
-        await follow_script(self, self._teaching, pace, self._tell)
+        await follow_script(self, self.teaching, pace, self._tell)
         self.close(True)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
