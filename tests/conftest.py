@@ -273,6 +273,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if groups and there is not None:
             group = "_".join(groups)
             setattr(item, "_id", type(there).parse(f"{item.nodeid}@{group}"))  # noqa: B010
+    if config.getoption("loadgroup", False):  # else one worker goes on when the others are done
+        items.sort(key=lambda item: item.get_closest_marker("xdist_group") is None)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -18,7 +18,9 @@ def judged(scans: list[Placed]) -> tuple[float, Revisits]:
     return contradicted(found, map_of_scans(found, 0.1)), revisits(found)
 
 
-@pytest.mark.parametrize(("side", "seed"), [(12.0, 31), (18.0, 32)])
+@pytest.mark.parametrize(
+    ("side", "seed"), [(12.0, 31), pytest.param(18.0, 32, marks=pytest.mark.slow)]
+)
 def test_a_ring_corridor_closes_unless_its_wheels_slipped(side: float, seed: int) -> None:
     walls, way = ring(side, 2.0, 4.0)
     share, found = judged(logged(walls, way, seed))
@@ -28,6 +30,7 @@ def test_a_ring_corridor_closes_unless_its_wheels_slipped(side: float, seed: int
     assert verdict(share, found) == "torn" and found.off > 1.0
 
 
+@pytest.mark.slow
 def test_of_two_rings_one_that_is_torn_is_enough() -> None:
     walls, way = two_rings(11.0, 2.0)
     assert verdict(*judged(logged(walls, way, 33))) == "closed"

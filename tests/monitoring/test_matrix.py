@@ -108,10 +108,13 @@ def test_who_complies_seldom_changes_nothing_of_it() -> None:
         assert monitoring.matrix({**SETTINGS, "complies": 0.6}, (kind, 5, 2)) == usual
 
 
-@pytest.mark.parametrize("lesson", [0, 3])
-def test_games_in_which_nothing_is_wrong_have_no_alarm(lesson: int) -> None:
-    told = monitoring.alarms({**SETTINGS, "complies": 0.6}, (lesson, 40, 120))
-    assert told["steps"] > 4_000
+@pytest.mark.parametrize(
+    ("lesson", "games"),
+    [(0, 60), (3, 60), *(pytest.param(n, 240, marks=pytest.mark.slow) for n in (0, 3))],
+)
+def test_games_in_which_nothing_is_wrong_have_no_alarm(lesson: int, games: int) -> None:
+    told = monitoring.alarms({**SETTINGS, "complies": 0.6}, (lesson, 40, games))
+    assert told["steps"] > 33 * games
     assert sum(told["codes"].values()) <= 0.01 * told["games"]
 
 
