@@ -7,7 +7,13 @@ from pathlib import Path
 from tangy_hw.perception.faces import face_store
 from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.events import KINDS
-from tangy_profiles.game_records import CallMade, DrillHeld, EffectAccepted, FaultDiagnosed
+from tangy_profiles.game_records import (
+    CallMade,
+    DrillHeld,
+    EffectAccepted,
+    FaultDiagnosed,
+    GameResumed,
+)
 from tangy_profiles.game_world import BENCH
 from tangy_profiles.people_records import (
     EventsLost,
@@ -95,6 +101,7 @@ def _play(workspace: Workspace) -> None:
     take_back(workspace.store, "bingo", 1)
     called = {"game": fault.body["game"], "fault": fault.body["fault"], "role": "expert"}
     append_body(workspace.store, CallMade, {**called, "way": "command", "stage": "sent"})
+    append_body(workspace.store, GameResumed, {"game": fault.body["game"], "steps": 1, "by": "Ada"})
     GameWorlds(workspace.store).set(fault.body["game"], BENCH, "Ada")
     append_body(workspace.store, EffectAccepted, {**about, "fault": fault.body["fault"], **kept})
 
