@@ -120,7 +120,7 @@ class TeachScreen(TangyScreen[bool]):
         with Horizontal(id="body"):
             with Vertical(id="left"):
                 yield room_panel(self._workspace)
-                yield panel(CallBoard(self._teaching.activity.deck))
+                yield panel(CallBoard(self.teaching.activity.deck))
                 yield panel(SayableList())
                 yield panel(LogView(id="log"))
             with Vertical(id="right"):
