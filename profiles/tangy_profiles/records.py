@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Literal, TypeAlias, TypeVar, dataclass_transform
 
 from tangy_profiles import codec
@@ -19,13 +19,30 @@ VERSION_KEY = "v"
 
 
 class EventRecord:
-    """The body of one kind of event, typed and frozen. Make one with `@kind`."""
+    """The body of one kind of event, typed and frozen. Make one with `@kind`.
+
+    What every dataclass would have made for it alone stands here once: making it for each of the
+    kinds took a tenth of the time until the first screen.
+    """
 
     __slots__ = ()
     KIND: ClassVar[str]
     VERSION: ClassVar[int]
     ABOUT: ClassVar[About]
     OLDER: ClassVar[Older]
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and self._values() == EventRecord._values(other)
+
+    def __hash__(self) -> int:
+        return hash((type(self), *self._values().values()))
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value!r}" for name, value in self._values().items())
+        return f"{type(self).__name__}({values})"
+
+    def _values(self: Any) -> dict[str, Any]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @property
     def body(self) -> dict[str, Any]:
@@ -65,7 +82,7 @@ def _as_it_is(version: int, body: dict[str, Any]) -> dict[str, Any]:
     return body
 
 
-@dataclass_transform(frozen_default=True, kw_only_default=True)
+@dataclass_transform(eq_default=False, frozen_default=True, kw_only_default=True)
 def kind(
     name: str, *, about: About = "nobody", version: int = 1, older: Older = _as_it_is
 ) -> Callable[[type[R]], type[R]]:
@@ -81,7 +98,7 @@ def kind(
     def make(cls: type[R]) -> type[R]:
         if name in KINDS:
             raise TypeError(f"{KINDS[name].__name__} is the record of {name!r} already.")
-        made = dataclass(frozen=True, slots=True, kw_only=True)(cls)
+        made = dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)(cls)
         made.KIND, made.VERSION, made.ABOUT = name, version, about
         made.OLDER = staticmethod(older)
         KINDS[name] = made

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from tangy_profiles.past_game import PastGame
+from typing import TYPE_CHECKING
+
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.times import day_and_time
+
+if TYPE_CHECKING:
+    from tangy_profiles.past_game import PastGame
 
 TITLE = "A game was interrupted"
 RESUME = ("resume", "go on with it", "paused at first")

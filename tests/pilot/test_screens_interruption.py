@@ -40,7 +40,7 @@ def interrupted(workspace: Workspace, learnt: Policy) -> Workspace:
 
 
 async def asked(pilot: TangyPilot) -> None:
-    await pilot.press("p")
+    await pilot.press("p", "enter")
     await until(lambda: isinstance(pilot.app.screen, ChooseDialog))
 
 
