@@ -199,15 +199,19 @@ class Keymap:
 def read_keys(table: Table) -> Keymap:
     """Read the keys that a user has set: `undo = "f12"`, or several in a list.
 
+    An action is named by its id or by its word.
+
     Raises:
         ProfileError: an action or a key is not known, cannot be changed, or is used twice.
     """
-    changeable = [action.id for action in ACTIONS if not action.fixed]
+    changeable = {action.id: action.id for action in ACTIONS if not action.fixed}
+    changeable |= {BY_ID[id].word.replace(" ", "_"): id for id in tuple(changeable)}
     changed: dict[str, tuple[str, ...]] = {}
-    for id in table:
-        if id not in changeable:
-            raise table.wrong(id, f"is no action; {nearest(id, changeable)}")
-        keys = tuple(dict.fromkeys(_read(table, id)))
+    for name in table:
+        if name not in changeable:
+            raise table.wrong(name, f"is no action; {nearest(name, changeable)}")
+        id = changeable[name]
+        keys = tuple(dict.fromkeys(_read(table, name, BY_ID[id])))
         if id == "stop":
             keys = tuple(dict.fromkeys((*_PERMANENT, *keys)))
         changed[id] = keys
@@ -218,7 +222,7 @@ def read_keys(table: Table) -> Keymap:
     return keymap
 
 
-def _read(table: Table, id: str) -> Iterator[str]:
+def _read(table: Table, id: str, action: KeyAction) -> Iterator[str]:
     for written in table.texts(id):
         key = written.strip()
         key = key if len(key) == 1 else key.lower()
@@ -227,7 +231,7 @@ def _read(table: Table, id: str) -> Iterator[str]:
         if key in OF_THE_LINE:
             raise table.wrong(id, "edits the line you type in.")
         key = NAMED.get(key, key)
-        if BY_ID[id].with_line and is_letter(key) and key not in BY_ID[id].keys:
+        if action.with_line and is_letter(key) and key not in action.keys:
             raise table.wrong(id, "works while you type: give it a function or control key.")
         yield key
 

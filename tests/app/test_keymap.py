@@ -43,6 +43,7 @@ def test_what_works_while_one_types_has_a_key_that_no_line_takes() -> None:
         ('pause = ";"', "pause", ("semicolon",)),
         ('drive = "p"\npause = "d"', "drive", ("p",)),
         ('stop = "f12"', "stop", ("ctrl+x", "f12")),
+        ('seen = "z"', "acknowledge", ("z",)),
     ],
 )
 def test_a_user_changes_keys(tmp_path: Path, written: str, id: str, keys: tuple[str, ...]) -> None:
