@@ -7,6 +7,7 @@ Every verb prints one JSON document with `--json`. The exit status is 0 when don
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -60,6 +61,11 @@ def program_options(words: Sequence[str]) -> dict[str, Any] | None:
         name, equals, value = word.partition("=")
         if word == "--ascii":
             given["ascii_only"] = True
+        elif name == "--link":
+            value = value if equals else next(rest, "")
+            if value not in ("slow", "fast", "auto"):
+                return None
+            os.environ["TANGY_LINK"] = value
         elif name in ("--data", "--robot"):
             value = value if equals else next(rest, "")
             if not value or value.startswith("-"):

@@ -44,6 +44,7 @@ from textual.screen import Screen
 
 from tangy_tui.app.keymap import Keymap
 from tangy_tui.app.terminal_session import QuestionKey, terminal_session
+from tangy_tui.app.user_settings import LinkSpeed
 from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.text import program as text
 from tangy_tui.text.keys import with_keys
@@ -56,6 +57,7 @@ from tangy_tui.ui.screen_diff import ScreenDiff, Written
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
 from tangy_tui.ui.type_ahead_guard import Clock
+from tangy_tui.ui.writer import HeldWrites
 
 if TYPE_CHECKING:
     from textual.command import Provider
@@ -100,6 +102,7 @@ class TangyApp(App[None]):
         clock: Clock = monotonic,
         question: QuestionKey = "auto",
         keymap: Keymap = DEFAULT,
+        link: LinkSpeed = "auto",
     ) -> None:
         """Make the program.
 
@@ -110,6 +113,7 @@ class TangyApp(App[None]):
             clock: seconds, on the scale of `time.monotonic`; dialogs and the room use it.
             question: how a question takes a yes.
             keymap: which keys do what.
+            link: how fast the way to the terminal is.
         """
         kind = kind or TerminalKind()
         super().__init__(ansi_color=True if kind.ansi else None)
@@ -126,9 +130,11 @@ class TangyApp(App[None]):
         self._pictures = pictures
         self._leaving = False
         self._reader = KeyReader(self)
+        self.frames = HeldWrites(lambda: None if self.is_headless else self._driver)
         self._shown = ScreenDiff()
         self._question = question
         self.keymap = keymap
+        self._link = link
         self.set_keymap(keymap.overrides())
         self.round_trip: RoundTrip | None = None
         """What asks the terminal whether a question was seen; None where there is none."""
@@ -180,6 +186,13 @@ class TangyApp(App[None]):
         if self._driver is not None:
             self._driver.write(sequence)
             self._driver.flush()
+
+    @property
+    def slow_link(self) -> bool:
+        """Whether what is written takes its time to be seen, so that less is to be drawn."""
+        if self._link != "auto" or self.round_trip is None:
+            return self._link == "slow"
+        return self.round_trip.slow
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
         """Take the terminal's answer: what was drawn before has reached it."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import random
 import re
+from collections import deque
 from collections.abc import Callable, Iterable
 
 from textual._xterm_parser import XTermParser
@@ -27,6 +28,9 @@ from tangy_tui.app.terminal_session import (
 from tangy_tui.ui.pasted_text import marked, pasted_in
 
 MOST_WAITING = 4
+
+SLOW_SECONDS = 0.3
+"""An answer that takes longer than this came over a slow link."""
 
 READING_SECONDS = 0.1
 """How long a person needs at the least to see a question that the terminal has drawn."""
@@ -69,6 +73,7 @@ class RoundTrip:
         self._waiting: dict[tuple[int, int], tuple[Seen, float]] = {}
         self._shortest = math.inf  # the quickest answer so far, in s
         self._answers = False
+        self._took: deque[float] = deque(maxlen=3)  # how long the last answers took, in s
         self._base = 0  # what the terminal takes from the positions that it reports
         self._for_another = False
         self._digit = ""
@@ -117,6 +122,7 @@ class RoundTrip:
         seen, asked = found
         self._answers = True
         self._shortest = min(self._shortest, time - asked)
+        self._took.append(time - asked)
         self._waiting = {p: waits for p, waits in self._waiting.items() if waits[0] != seen}
         # An answer that was held up on its way came later than the person saw the question. Keys
         # cannot overtake it, so that the time to read may be as much shorter.
@@ -145,6 +151,11 @@ class RoundTrip:
         session = self._session()
         proven = self._answers and not (session.multiplexer or self._for_another)
         return session.remote and not proven
+
+    @property
+    def slow(self) -> bool:
+        """Whether the terminal's last answers were long on their way, or behind much else."""
+        return max(self._took, default=0.0) > SLOW_SECONDS
 
     @property
     def answers(self) -> bool:

@@ -195,5 +195,6 @@ def _run(
         live=live,
         question=workspace.settings.question,
         keymap=workspace.settings.keymap,
+        link=workspace.settings.link,
     )
     return run_app(program)

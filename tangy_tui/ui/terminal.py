@@ -36,6 +36,7 @@ def terminal_kind(
     *,
     stdin: TextIO | None = None,
     stdout: TextIO | None = None,
+    stderr: TextIO | None = None,
     ascii: bool | None = None,
 ) -> TerminalKind:
     """Say how to show the program on this terminal.
@@ -43,7 +44,8 @@ def terminal_kind(
     Args:
         environ: the environment (default: the process's own).
         stdin: where keys come from.
-        stdout: where the screen is drawn.
+        stdout: where lines are written.
+        stderr: where the screen is drawn (default: the process's own, with its stdin and stdout).
         ascii: what the user asked for with `--ascii`; None decides by TERM and locale.
     """
     environ = os.environ if environ is None else environ
@@ -53,6 +55,8 @@ def terminal_kind(
     reason = ""
     if not all(_is_tty(s) for s in (stdin or sys.__stdin__, stdout or sys.__stdout__)):
         reason = "input or output is not a terminal"
+    elif not _is_tty(stderr or (sys.__stderr__ if stdin is stdout is None else sys.__stdin__)):
+        reason = "the screen is drawn where errors go, and they go elsewhere (2>)"
     elif term in ("dumb", "unknown"):
         reason = f"the terminal (TERM={term}) cannot place a cursor"
     return TerminalKind(not reason, ansi, plain_text, reason)

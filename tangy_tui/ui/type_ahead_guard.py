@@ -14,6 +14,10 @@ from textual import events
 from textual.widget import Widget
 
 from tangy_tui.ui.round_trip import RoundTrip
+from tangy_tui.ui.writer import HeldWrites
+
+HELD_SECONDS = 0.2
+"""The longest that a frame waits for what asks the terminal behind it."""
 
 SETTLE_SECONDS = 0.2
 """How long a person needs at the least to see that there is a question."""
@@ -53,7 +57,12 @@ class FreshKeys:
             dialog: what is laid out.
             clock: s, on the scale of `time.monotonic` (default: the app's).
         """
-        dialog.call_after_refresh(self._drawn, dialog, clock or clock_of(dialog.app))
+        trip, app = round_trip_of(dialog.app), dialog.app
+        frames: HeldWrites | None = getattr(app, "frames", None)
+        if frames is not None and trip is not None and trip.answers and not trip.needs_digit:
+            frames.hold()  # what asks the terminal is to travel with what it asks about
+            app.set_timer(HELD_SECONDS, frames.release)
+        dialog.call_after_refresh(self._drawn, dialog, clock or clock_of(app))
 
     def _drawn(self, dialog: Widget, clock: Clock) -> None:
         trip = round_trip_of(dialog.app)
@@ -62,6 +71,9 @@ class FreshKeys:
         else:
             self._trip = trip
             trip.ask(self._answered)
+        frames: HeldWrites | None = getattr(dialog.app, "frames", None)
+        if frames is not None:
+            frames.release()
 
     def _answered(self, time: float) -> None:
         if self._from is None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Annotated, Any
 
 import typer
 
+from tangy_profiles.reading import nearest
 from tangy_tui import __version__
+from tangy_tui.app.user_settings import LINK_SPEEDS, LINK_VARIABLE
 from tangy_tui.text.command_line import no_screens
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.verbs.catalogue import LazyVerbs
@@ -32,11 +35,18 @@ def program(
     ] = None,
     data: Data = None,
     ascii_only: Ascii = False,
+    link: Annotated[
+        str, typer.Option("--link", help="How fast the way to your terminal is: auto, slow, fast.")
+    ] = "",
 ) -> None:
     """Open the program, where no verb is given; options before a verb are the verb's."""
     if version:
         print(f"tangy {__version__}")
         raise typer.Exit
+    if link:
+        if link not in LINK_SPEEDS:
+            raise typer.BadParameter(nearest(link, LINK_SPEEDS), param_hint="--link")
+        os.environ[LINK_VARIABLE] = link
     given: dict[str, Any] = {} if data is None else {"data": str(data)}
     if ascii_only:
         given["ascii_only"] = True

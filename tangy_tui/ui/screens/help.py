@@ -69,6 +69,7 @@ class HelpScreen(Dialog[None]):
     """The help over a screen; any of esc, q, ? and Enter closes it."""
 
     DEFAULT_CSS = """
+    HelpScreen { background: transparent; }
     HelpScreen > .box { width: 76; height: auto; }
     HelpScreen Static { width: 100%; height: auto; }
     """

@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from math import ceil
+from time import monotonic
 from typing import ClassVar, TypeVar
 
 from textual.binding import BindingType
@@ -63,6 +64,7 @@ from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status
 
 TRACK_SECONDS = 0.2
+SLOW_TRACK_SECONDS = 1.0
 """Between two pictures of where the robot is."""
 REST_SECONDS = 5.0  # in which what it does is broken off
 
@@ -101,6 +103,7 @@ class LiveScreen(PlayScreen):
         self.working = 0  # how many things are being done, or wait for their turn
         self._seen_doing = ""
         self._frozen = 0.0
+        self._tracked = 0.0
         self._seats = Seats()
         self._cards = LiveCards(workspace, supervision, world, self._write)
 
@@ -293,7 +296,10 @@ class LiveScreen(PlayScreen):
             self._write(frozen_words(state.frozen), "bad")
             self.control.note(f"the robot process was frozen for {state.frozen:.1f} s")
         self._frozen = state.frozen
-        track(room, state)
+        due = SLOW_TRACK_SECONDS if getattr(self.app, "slow_link", False) else 0.0
+        if (now := monotonic()) - self._tracked >= due:
+            self._tracked = now
+            track(room, state)
 
     async def _come_to_rest(self) -> None:
         """Stop the robot in the midst of what it does, and wait until it has broken that off."""

@@ -28,6 +28,8 @@ from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPla
 from tangy_tui.ui.widgets.rows import Row, draw
 
 FRAME_SECONDS = 0.1
+SLOW_FRAME_SECONDS = 1.0
+"""Between two pictures of the robot on its way, and over a slow link."""
 
 Mark = tuple[Point, str, str]
 """Something on the floor: where, the character that it is drawn with, and the ink."""
@@ -261,7 +263,9 @@ class RoomView(Widget):
     def _walk(self) -> None:
         self._last = self._clock()
         if self.motion is None and not self._held:
-            self.motion = self.set_interval(FRAME_SECONDS, self.tick)
+            slow = getattr(self.app, "slow_link", False)
+            every = SLOW_FRAME_SECONDS if slow else FRAME_SECONDS
+            self.motion = self.set_interval(every, self.tick)
 
     def _halt(self) -> None:
         self._going = None
