@@ -271,7 +271,7 @@ class CommandBar(Vertical):
         """Write a character that was typed elsewhere, and take the keys from then on."""
         if not self._input.closed:
             self._input.replace(character, *self._input.selection)
-            self._input.focus()
+            self.screen.set_focus(self._input)  # at once: Enter may come with it
 
     @property
     def typing(self) -> bool:
