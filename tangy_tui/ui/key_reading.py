@@ -10,6 +10,7 @@ from textual.widgets import Input
 
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.pasted_text import pasted_text
 from tangy_tui.ui.type_ahead_guard import clock_of
 from tangy_tui.ui.typed_stop import Taken, TypedStop
@@ -32,7 +33,18 @@ class KeyReader:
             return True
         if not writes and self._is_typed(event):
             return True
-        return not writes and bool(pasted_text(event)) and _is_text(event)
+        if writes or not isinstance(event, events.Key):
+            return False
+        return self._begins_filter(event) or (bool(pasted_text(event)) and _is_text(event))
+
+    def _begins_filter(self, event: events.Key) -> bool:
+        """Begin to filter before the next key is read: it may have come with this one."""
+        app: Any = self._app
+        top = app.screen_stack[-1] if app.screen_stack else None
+        filters = keymap_of(app).action(event.key) == "filter" and isinstance(top, TangyScreen)
+        if filters and not pasted_text(event):
+            getattr(top, "action_search", app.action_filter)()
+        return filters
 
     def _is_typed(self, event: events.Key | events.Paste) -> bool:
         """Let the screen take what it wants to be typed, wherever the keys are."""

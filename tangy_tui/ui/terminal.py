@@ -52,10 +52,11 @@ def terminal_kind(
     term = environ.get("TERM", "")
     plain_text = ascii if ascii is not None else term == "linux" or not _speaks_utf8(environ)
     ansi = bool(environ.get("NO_COLOR")) or _few_colours(environ)
+    drawn = stderr or (sys.__stderr__ if stdin is None and stdout is None else None)
     reason = ""
     if not all(_is_tty(s) for s in (stdin or sys.__stdin__, stdout or sys.__stdout__)):
         reason = "input or output is not a terminal"
-    elif not _is_tty(stderr or (sys.__stderr__ if stdin is stdout is None else sys.__stdin__)):
+    elif drawn is not None and not _is_tty(drawn):
         reason = "the screen is drawn where errors go, and they go elsewhere (2>)"
     elif term in ("dumb", "unknown"):
         reason = f"the terminal (TERM={term}) cannot place a cursor"

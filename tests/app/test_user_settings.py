@@ -20,6 +20,15 @@ def test_how_a_question_takes_a_yes_can_be_set(tmp_path: Path, question: str) ->
     assert read_settings(tmp_path).question == question
 
 
+@pytest.mark.parametrize(("wanted", "link"), [("", "fast"), ("slow", "slow"), ("x", "fast")])
+def test_the_speed_of_the_link_is_set_in_the_file_or_for_one_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wanted: str, link: str
+) -> None:
+    monkeypatch.setenv("TANGY_LINK", wanted)
+    (tmp_path / "settings.toml").write_text('link = "fast"\n')
+    assert read_settings(tmp_path).link == link
+
+
 @pytest.mark.parametrize(
     ("written", "told"),
     [

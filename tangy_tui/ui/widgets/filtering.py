@@ -32,7 +32,7 @@ class Filtered(ScrollView):
     def begin_filter(self) -> None:
         """Begin to type words."""
         self.filtering = True
-        self.focus()
+        self.screen.set_focus(self)  # at once: words may come with the key
         self._refilter()
 
     def unfilter(self) -> None:
