@@ -119,7 +119,7 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
             assert "OVER" not in pilot.lines()[0] and "i autonomy" in pilot.lines()[-1]
             await pilot.press("escape")
             await until_shown(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))
-            await pilot.press("full_stop")
+            await pilot.press("n")
         finally:
             link.state = replace(link.state, health=well)
             link.free = True
@@ -150,7 +150,7 @@ async def test_a_stop_that_is_said_goes_to_the_robot_itself(
         await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
         assert "Heard: stop the robot." in [told.message for told in pilot.app._notifications]
         link.free = True
-        await pilot.press("p")
+        await pilot.press("p", "y")
         await until_shown(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
 
 
@@ -165,7 +165,7 @@ async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
         await until_shown(pilot, lambda: "stop: staff stopped it" in link.told)
         await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
         link.free = True
-        await pilot.press("p")
+        await pilot.press("p", "y")
         await until_shown(pilot, lambda: link.told[-1] == "release")
 
 
@@ -179,7 +179,7 @@ async def test_each_stop_is_logged_once_and_told_once(
             await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
             noted = [event.body["what"] for event in workspace.store.events(StaffAction)]
             assert noted.count("the robot was stopped") == count
-            await pilot.press("p")
+            await pilot.press("p", "y")
             await until_shown(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
         told = live(pilot).query_one(LogView).sentences
         assert sum(line.startswith("STOP.") for line in told) == 2
@@ -246,7 +246,7 @@ async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Pro
         await pilot.press("y")
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps == steps + 1)
         await asked_about_the_next(pilot)
-        await pilot.press("full_stop")
+        await pilot.press("n")
         await until_shown(pilot, lambda: bool(live(pilot).query(AskingPanel)))
 
 

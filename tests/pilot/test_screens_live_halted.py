@@ -131,7 +131,7 @@ async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
         await lives(pilot, link)
         assert STAFF in link.held_by and "STOPPED" in pilot.lines()[0]
         assert link.done[done:] == [] and link.released[released:] == [FAULT]
-        await pilot.press("p")
+        await pilot.press("p", "y")
         assert not link.held_by
 
 

@@ -102,29 +102,12 @@ async def test_the_keys_are_where_they_were_when_the_help_is_closed(
         assert bar.text == "u"
 
 
-async def test_the_keys_are_told_over_a_text_that_was_left_in_the_line(
-    run: Run, workspace: Workspace
-) -> None:
-    async with run(app=program(workspace, [])) as pilot:
-        await pilot.press(*"call numb", "escape")
-        await pilot.pause()
-        left = screen_text(pilot.app)
-        assert "> call numb" in left
-        assert "f2 undo" in left
-        assert "esc home" in left
-        await pilot.press("colon")
-        await pilot.pause()
-        typing = screen_text(pilot.app)
-        assert "f2 undo" not in typing
-        assert "call number" in typing
-
-
 async def test_who_watches_a_story_is_told_only_the_keys_that_work(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace, [], scripted=1.0)) as pilot:
         watched = screen_text(pilot.app)
-        assert "f4 why" in watched
+        assert "w why" in watched
         assert "f2 undo" not in watched
 
 

@@ -12,6 +12,7 @@ from tangy_profiles.voice import VoicePreference
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui import speaking
+from tangy_tui.ui.listing import listed
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.screens.teach import TeachScreen
@@ -134,7 +135,7 @@ async def test_the_palette_switches_it_on_too(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     async with run(app=teaching(workspace, voice=False)) as pilot:
-        titles = [c.title for c in pilot.app.get_system_commands(pilot.app.screen)]
+        titles = [one.name for one in listed(pilot.app.screen)]
         assert titles.count("Voice on or off") == 1
 
 

@@ -248,7 +248,8 @@ class Homely(TangyApp):
 async def test_home_chooses_by_letter_arrows_and_mouse(run: Run) -> None:
     app = Homely()
     async with run(app=app) as pilot:
-        await pilot.press("t", "i", "l", "p", "o", "e", "d")
+        for letter in "tilpoed":
+            await pilot.press(letter, "enter")
         words = ["teach", "library", "learn", "play", "policy", "people", "demo"]
         assert app.chosen == words
         await pilot.press("down", "down", "down", "enter")  # help, quit, and round to the first
@@ -257,7 +258,7 @@ async def test_home_chooses_by_letter_arrows_and_mouse(run: Run) -> None:
         assert app.chosen[-1] == "demo"
         await pilot.click("#home", offset=(6, 6))
         assert app.chosen[-1] == "library"
-        await pilot.press("h")
+        await pilot.press("h", "enter")
         await pilot.pause()
         assert isinstance(app.screen, HelpScreen)
         await pilot.press("escape")

@@ -289,8 +289,8 @@ class ChoicesDialog(VerifyingDialog):
     ]
     HELP = (
         "Tangy is not sure what it heard, and does nothing on a guess. Press the number of what "
-        "you meant: it is asked about before it is done. n or esc: none of these; what was heard "
-        "stays in the command line, to be changed."
+        "you meant: it is asked about before it is done. n or esc: none of these; "
+        "give the command again."
     )
 
     def _yes(self) -> str:
