@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.checking import ActivityFlaw
 from tangy_profiles.declared.model import Effect, Fact, FactCondition
+from tangy_profiles.declared.search import Reach
 from tangy_profiles.declared.situations import seen_facts
-from tangy_profiles.state import ActivityState
+from tangy_profiles.state import EVERYBODY, ActivityState
+from tangy_tui.learning.policy import Policy
+from tangy_tui.text.numbers import counted
 
 
 def finding_words(source: str, found: ActivityFlaw) -> str:
@@ -88,6 +92,53 @@ def _fact_words(fact: Fact) -> str:
     whose = " of each player" if fact.per_player else ""
     sources = f", from {', '.join(fact.sources)}" if fact.sources else ""
     return f"{fact.kind}{whose} ({values}){sources}"
+
+
+SELECTORS: dict[str, str] = {
+    "first asking": "the person who asked first",
+    "whose turn": "the person whose turn it is",
+    "next in circle": "the next in the circle",
+    "quietest": "the person who has done least so far",
+    "last to act": "the person who did something last",
+    "addressed": "the person spoken to last",
+    "beside": "the person whom Tangy is with",
+    EVERYBODY: "everybody",
+}
+"""What the selectors of an activity's file mean."""
+
+
+def whom_words(activity: Activity, policy: Policy) -> list[str]:
+    """Say for whom Tangy does something, where it has learnt that from what was shown."""
+    return [
+        f"{stage} -> {activity.behaviour_words(behaviour)}: for {_any_of(selectors)}."
+        for (stage, behaviour), selectors in policy.whom.items()
+    ]
+
+
+def _any_of(selectors: tuple[str, ...]) -> str:
+    words = [SELECTORS.get(one, one) for one in selectors]
+    more = ", as long as they are the same" if len(words) > 1 else ""
+    return f"{' or '.join(words)}{more}"
+
+
+def proof_words(activity: Activity, found: Reach) -> list[str]:
+    """Say what a search of all games has shown: whether Tangy would ask anywhere."""
+    reached = counted(len(found.reached), "situation")
+    if not found.whole:
+        return [f"So many games are possible that not all were searched: {reached} came about."]
+    where = [
+        f"  {activity.in_words(one)}{': for whom?' if why else ''}"
+        for one, why in found.open.items()
+    ]
+    searched = f"Searched all games of up to two players: {reached} can come about"
+    if where:
+        return [f"{searched}, and Tangy would ask here:", *where]
+    stuck = (
+        []
+        if found.stuck is None
+        else [f"From here no game ends: {activity.in_words(found.stuck)}."]
+    )
+    return [f"{searched}, and each was shown.", *stuck]
 
 
 TRIED = "The game has come to its end."

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import FeedbackEntry
@@ -12,6 +14,7 @@ from tangy_tui.interaction.record import Record
 from tangy_tui.learning.comparison import SituationComparison
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.coverage import coverage
+from tangy_tui.learning.coverage_proof import prove_coverage
 from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.library import effects_of, read_library
 from tangy_tui.learning.online_learning import Lesson
@@ -44,6 +47,21 @@ def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
     }
 
 
+def _searched(activity: Activity, policy: Policy, people: Sequence[str]) -> dict[str, Any]:
+    """Describe whom behaviours are for, and what a search of all games has found."""
+    found = prove_coverage(activity, policy, people)
+    if found is None:
+        return {}
+    return {
+        "whom": [[*key, list(selectors)] for key, selectors in policy.whom.items()],
+        "searched": {
+            "whole": found.whole,
+            "reached": [list(situation) for situation in found.reached],
+            "asks": [list(situation) for situation in found.open],
+        },
+    }
+
+
 def policy_document(workspace: Workspace, policy: Policy) -> dict[str, Any]:
     """Describe a policy: its rows, its effects, and on how many joint states it is as expected."""
     activity = workspace.activity
@@ -72,6 +90,7 @@ def policy_document(workspace: Workspace, policy: Policy) -> dict[str, Any]:
             for decision in [policy.decide(situation)]
         ],
         "joint_states": {"people": len(people), "reachable": len(states), "as_expected": right},
+        **_searched(activity, policy, people),
         "exact": policy.exact(activity),
         "asks": [list(s) for s in activity.situations if not policy.decide(s).sure],
         "effects": {

@@ -72,7 +72,9 @@ def learnt_lines(
     ]
     if unseen:
         lines.append(not_shown)
-    lines += [f"  {activity.not_yet(one)} ({activity.in_words(one)})" for one in unseen]
+    for one in unseen:
+        words, where = activity.not_yet(one), activity.in_words(one)
+        lines.append(f"  {words}" if words == where else f"  {words} ({where})")
     if contested:
         lines.append(f"Demonstrations disagree about {counted(len(contested), 'situation')}:")
         for situation in contested:

@@ -19,10 +19,12 @@ from tangy_profiles.teaching_records import PolicyLearnt
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.comparison import SituationComparison
+from tangy_tui.learning.coverage_proof import prove_coverage
 from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library import Library
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.text.activities import proof_words, whom_words
 from tangy_tui.text.demonstrations import NONE_YET
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.people import COMPLIED
@@ -39,6 +41,10 @@ def progress(items: Iterable[T], what: str, *, quiet: bool) -> Iterator[T]:
         yield from items
     else:
         yield from track(items, description=what, console=console, transient=True)
+
+
+PLAYERS = ("one", "other")
+"""As many as a search of all games has."""
 
 
 def print_policy(activity: Activity, policy: Policy, effects: Effects, library: Library) -> None:
@@ -67,6 +73,11 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
     for conflict in library.conflicts:
         for line in conflict_lines(activity, library, conflict):
             console.print(Text(line))
+    for line in whom_words(activity, policy):
+        console.print(Text(line))
+    found = prove_coverage(activity, policy, activity.teams or PLAYERS)
+    for line in () if found is None else proof_words(activity, found):
+        console.print(Text(line))
     table = _table("What follows", "behaviour", "what was seen afterwards")
     for behaviour in activity.behaviours:
         words, variables = activity.behaviour_words(behaviour), effects.values.get(behaviour)

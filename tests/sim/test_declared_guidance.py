@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tangy_profiles.activity import load_activity
-from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.activity import DeclaredActivity, made_activity
 from tangy_profiles.declared.search import reach
 from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
 from tangy_profiles.declared.vocabulary import Selector
@@ -14,6 +14,7 @@ from tangy_profiles.state import ActivityState
 from tangy_sim.worlds.declared_guidance import GuidedDeclaredWorld
 from tangy_sim.worlds.declared_world import DeclaredWorld
 from tests.support.declared import DECLARED, declared
+from tests.support.renaming import renamed
 
 MOST_STEPS = 400
 
@@ -83,3 +84,32 @@ def test_a_search_names_what_was_not_shown() -> None:
     found = reach(activity.declaration, ("user1", "user2"), taught)
     assert found.open[left_out] == ""
     assert all(why == UNDECIDED for one, why in found.open.items() if one != left_out)
+
+
+@pytest.mark.parametrize("name", DECLARED)
+@pytest.mark.parametrize("guided", [False, True])
+def test_other_words_for_everything_change_nothing(name: str, *, guided: bool) -> None:
+    activity = declared(name)
+    declaration, old = renamed(activity.declaration)
+    other = made_activity(declaration)
+    players = activity.teams or ("user1", "user2", "user3")
+
+    def told(one: DeclaredActivity) -> list[tuple[str, str, str | None, str]]:
+        shown = ShownMoves(one.behaviours)
+        world = (
+            GuidedDeclaredWorld(one, players, seed=3, shown=shown)
+            if guided
+            else DeclaredWorld(one, players, seed=3)
+        )
+        found = []
+        while not world.over:
+            state = world.observe()
+            behaviour = one.expected[state.situation]
+            target = whom(one, state, behaviour)
+            action = one.action(one.behaviours[behaviour], target, None)
+            said, _ = one.words_of(action, world.execute(action), str)
+            stage = old.get(state.stage, state.stage)
+            found.append((stage, old.get(behaviour, behaviour), target, said))
+        return found
+
+    assert told(other) == told(activity)
