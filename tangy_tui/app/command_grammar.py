@@ -40,6 +40,7 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.keymap import ACTIONS
+from tangy_tui.language.steering import WHILE_TEACHING, steering_of
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.remarks import answers_to
 from tangy_tui.learning.teaching_events import (
@@ -181,7 +182,7 @@ def read_command(
     """
     said = " ".join(text.split()).strip(" .!")
     words = said.casefold()
-    if words in FIXED:
+    if words in FIXED or (words := steering_of(text) or words) in FIXED:
         return FIXED[words]
     if words == "stop" or stops(text, game):
         return StopRobot()
@@ -221,9 +222,11 @@ def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
     if again := _AGAIN.fullmatch(words):
         number = again[1]
         return AgainFrom(int(number) if number and number.isdecimal() else None)
+    if (way := steering_of(text)) in WHILE_TEACHING:
+        words = str(way)
     if words in TEACHING:
         return TEACHING[words]
-    return Leave() if words in LEAVING else read_program(text)
+    return Leave() if words in LEAVING else read_program(words)
 
 
 def read_program(text: str) -> Perform | Inquiry | None:

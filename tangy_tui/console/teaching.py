@@ -206,7 +206,7 @@ class TeachingLines:
         if said is None:
             self._ears = None
             return await self._line()
-        return said
+        return said.text if isinstance(said, Say) and said.commands is None else said
 
     def _reading(self) -> asyncio.Future[str | None]:
         """Read a line beside the program, in a thread that does not hold up its end."""

@@ -14,6 +14,7 @@ from difflib import SequenceMatcher
 
 from tangy_tui.language.answers import NO, YES, choice_in, choice_phrases, yes_or_no
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
+from tangy_tui.language.steering import WHILE_TEACHING, steering_of, steering_phrases
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import clean
 from tangy_tui.learning.verification import Reply, Say, StopCommand
@@ -40,6 +41,9 @@ OWN_NAME = {"tangy": ("T AE NG IY",)}
 LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The margins from which words are an answer: where the grammar finds it too, and where not."""
 
+LEAST_STEERING = 0.0
+"""The margin from which words steer the program where the grammar does not find them, too."""
+
 SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "eight"}
 
 
@@ -54,7 +58,7 @@ def wanted(
         phrases: those that can be told apart by their sound, if that is known.
     """
     return Wanted(
-        (*(phrasebook.spoken() if phrases is None else phrases), *STOPS),
+        (*(phrasebook.spoken() if phrases is None else phrases), *steering_phrases(), *STOPS),
         (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions, *STOPS),
         STOPS,
         {**OWN_NAME, **phrasebook.pronunciations()},
@@ -78,6 +82,8 @@ def understand(
     text, margin = best_words(evidence, phrasebook)
     if stops(text, phrasebook.game):
         return StopCommand(text)
+    if text not in phrasebook.phrases and _steers(evidence, settings):
+        return Say(text, 1.0, None)
     near, confidence = _nearest(text, margin, phrasebook, settings)
     if confidence >= SURE and near[0].confidence >= 1:
         return _said(text, confidence, near)
@@ -94,6 +100,13 @@ def understand(
     named = {c.behaviour: c for c in (*reversed(learnt), *reversed(near))}
     rest = [c for c in (*near, *learnt) if c is named[c.behaviour]]
     return _said(text, confidence, rest[:MOST_ALTERNATIVES])
+
+
+def _steers(evidence: AcousticEvidence, settings: EvidenceSettings) -> bool:
+    """Say whether an utterance asks the program itself for something, by words and by sound."""
+    way = steering_of(evidence.words)
+    least = LEAST_ANSWER if steering_of(evidence.phrase) == way else LEAST_STEERING
+    return way in WHILE_TEACHING and evidence.margin - settings.shift >= least
 
 
 def _nearest(

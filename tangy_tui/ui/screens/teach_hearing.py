@@ -109,7 +109,12 @@ class TeachHearing:
             self.hearing.understand()
 
     def hear(self, said: Say) -> None:
-        """Put a spoken command to the session."""
+        """Put a spoken command to the session; what steers the program counts as if typed."""
+        if said.commands is None:
+            self._screen.post_message(
+                CommandBar.Given(self._screen.query_one(CommandBar), said.text)
+            )
+            return
         self.by_voice = True
         self._apply(said)
 

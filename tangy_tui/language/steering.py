@@ -1,0 +1,78 @@
+"""How people ask the program itself for something: to take a step back, to pause, for help.
+
+Each way stands for the word that can be typed for it; a whole sentence has to be one of them.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Literal, TypeAlias
+
+from tangy_tui.language.words import Words, bare, words_of
+
+Steering: TypeAlias = Literal["undo", "redo", "phrases", "help", "pause", "go on", "call again"]
+
+WAYS: dict[Steering, tuple[str, ...]] = {
+    "undo": (
+        *("undo", "undo that", "undo it", "undo the last step", "take that back", "take it back"),
+        *("take back that step", "take back the last step", "go one step back", "go back one step"),
+        *(
+            "one step back",
+            "that was wrong",
+            "that was a mistake",
+            "i made a mistake",
+            "scratch that",
+        ),
+        *("i did not mean that", "i didn't mean that", "delete that", "delete the last step"),
+    ),
+    "redo": ("redo", "redo that", "redo the last step", "do that again after all"),
+    "phrases": (
+        *("what can i say", "what could i say", "what may i say", "what do you understand"),
+        *("what can i tell you", "what can you do", "show me the phrases", "list the phrases"),
+        *("which commands are there", "what are the commands", "what are my choices"),
+    ),
+    "help": (
+        "help",
+        "help me",
+        "i need help",
+        "show the help",
+        "how does this work",
+        "open the help",
+    ),
+    "pause": (
+        *(
+            "pause",
+            "pause it",
+            "pause the game",
+            "make a pause",
+            "take a break",
+            "let us take a break",
+        ),
+        *("let's take a break", "wait a moment", "wait a minute", "hold on", "one moment"),
+    ),
+    "go on": (
+        *("go on", "continue", "resume", "carry on", "keep going", "continue the game"),
+        *("resume the game", "go on with the game", "let us go on", "let's go on", "proceed"),
+    ),
+    "call again": (
+        *("call again", "say it again", "say that again", "repeat that", "repeat it", "repeat"),
+        *("repeat the number", "what was that", "what did you say", "once more", "pardon"),
+    ),
+}
+WHILE_TEACHING: tuple[Steering, ...] = ("undo", "redo", "phrases", "help")
+"""What a teacher asks for while showing a game."""
+
+
+def steering_of(text: str) -> Steering | None:
+    """Return what a sentence asks of the program, None if it asks for nothing of that."""
+    return _ways().get(bare(words_of(text)))
+
+
+def steering_phrases() -> tuple[str, ...]:
+    """Return what is listened for."""
+    return tuple(text for way in WHILE_TEACHING for text in WAYS[way])
+
+
+@cache
+def _ways() -> dict[Words, Steering]:
+    return {bare(words_of(text)): way for way, texts in WAYS.items() for text in texts}

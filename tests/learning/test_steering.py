@@ -1,0 +1,56 @@
+"""What is asked of the program itself is understood, typed and said."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.activity import load_activity, shipped_activities
+from tangy_profiles.person import load_people
+from tangy_tui.app.command_grammar import read_command, read_teaching
+from tangy_tui.app.game_commands import CallAgain, GoOn, Pause
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.steering import WAYS, steering_of
+from tangy_tui.learning.teaching_events import Redo, Undo
+from tangy_tui.learning.verification import Say
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence
+from tangy_tui.speech.understanding import clearly_heard, understand
+
+BOOK = Phrasebook(load_activity("bingo"), load_people(4))
+
+
+def nobody(name: str) -> str:
+    raise AssertionError(name)
+
+
+@pytest.mark.parametrize("text", WAYS["undo"])
+def test_a_step_is_taken_back_in_many_words(text: str) -> None:
+    assert read_teaching(text) == Undo()
+
+
+def test_other_words_steer_as_well() -> None:
+    assert read_teaching("please redo that") == Redo()
+    assert read_teaching("What can I say?") == "phrases"
+    assert read_teaching("I need help") == "help"
+    assert read_command("let's take a break", nobody) == Pause()
+    assert read_command("please carry on", nobody) == GoOn()
+    assert read_command("what was that?", nobody) == CallAgain()
+
+
+@pytest.mark.parametrize("name", list(shipped_activities()))
+def test_no_phrase_of_an_activity_steers_the_program(name: str) -> None:
+    book = Phrasebook(load_activity(name), load_people(4))
+    assert [phrase for phrase in book.phrases if steering_of(phrase)] == []
+
+
+def test_said_words_steer_where_the_sound_agrees() -> None:
+    assert understand(clearly_heard("undo that"), BOOK, USUAL) == Say("undo that", 1.0, None)
+    agreed = AcousticEvidence("take that back", "take that back", -1.0, 1.0, 1.0)
+    assert understand(agreed, BOOK, USUAL) == Say("take that back", 1.0, None)
+    doubtful = AcousticEvidence("take that back", "", -1.0, 1.0, 1.0)
+    said = understand(doubtful, BOOK, USUAL)
+    assert isinstance(said, Say) and said.commands == ()
+
+
+@pytest.mark.parametrize("text", ["I undid my coat", "help the user", "the step was high", ""])
+def test_other_words_steer_nothing(text: str) -> None:
+    assert steering_of(text) is None
