@@ -69,3 +69,12 @@ def login_name() -> str:
     """Return the login name, or what stands for it where there is none."""
     login = os.environ.get("USER") or os.environ.get("USERNAME") or ""
     return plain(login).strip()[:LONGEST_NAME].strip() or NOBODY
+
+
+def teacher_name(given: str | None, folder: Path) -> str:
+    """Return who teaches: the name that was given, the one that is kept, or the login name.
+
+    Raises:
+        TangyError: the given name is none that may be kept (see `read_name`).
+    """
+    return checked(given) if given is not None else read_profile(folder).name or login_name()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import replace
@@ -15,7 +14,7 @@ from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
-from tangy_profiles.person import LONGEST_NAME, Person, folded, load_people, read_name, unaccented
+from tangy_profiles.person import Person, folded, load_people, unaccented
 from tangy_profiles.process_log import logging_to
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
@@ -25,6 +24,7 @@ from tangy_profiles.store import Store
 from tangy_profiles.voice import VoicePreference
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
+from tangy_tui.app.teacher_profile import login_name, read_profile
 from tangy_tui.app.user_settings import read_settings
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.intents import Intents
@@ -52,18 +52,6 @@ def data_folder(chosen: Path | None) -> Path:
     from platformdirs import user_data_path
 
     return user_data_path("tangy", appauthor=False)
-
-
-def teacher_name(given: str | None = None) -> str:
-    """Return who teaches: the name that was given, or else the login name.
-
-    Raises:
-        TangyError: the given name is none that may be kept (see `read_name`).
-    """
-    if given is not None:
-        return read_name(given, "A teacher's name")
-    login = os.environ.get("USER") or os.environ.get("USERNAME") or ""
-    return plain(login).strip()[:LONGEST_NAME].strip() or "teacher"
 
 
 class Workspace:
@@ -102,6 +90,11 @@ class Workspace:
             self._logging.enter_context(logging_to(folder))
         self.people: tuple[Person, ...] = ()
         self.read_people()
+
+    @property
+    def teacher(self) -> str:
+        """Who teaches here, as they said when they began; else the login name."""
+        return read_profile(self.store.folder).name or login_name()
 
     def close(self) -> None:
         """Close the store, and the log of what the program decides."""

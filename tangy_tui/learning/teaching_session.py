@@ -106,10 +106,10 @@ class TeachingSession:
             again: begin by showing a demonstration again from some step on.
             learnt: see `Phrasebook`.
         """
-        self.activity = activity
+        self.activity, self._learnt = activity, learnt
         self.phrasebook = Phrasebook(activity, people, learnt)
-        self._learnt = learnt
-        self.teacher = teacher
+        self._store, self._make_world, self._seed = store, make_world, seed
+        self.teach_as(teacher)
         self.demonstration: Demonstration
         self.world: World
         self.numbers: tuple[tuple[int, ...], ...] = ()
@@ -117,13 +117,13 @@ class TeachingSession:
         self.guided, self._first = guided, again
         self._verifier: Verifier
         self._undone: list[Step] = []
-        self._announcements = Announcements()
+        self._announcements, self._logged = Announcements(), False
         self._people = {person.id: person for person in people}
         self._names = {person.id: person.name for person in people}
-        self._store, self._make_world = store, make_world
-        self._seed = seed
-        self._logged = False
-        self._remarks = Remarks(activity, teacher, store)
+
+    def teach_as(self, teacher: str) -> None:
+        """Let somebody teach, before the session begins."""
+        self.teacher, self._remarks = teacher, Remarks(self.activity, teacher, self._store)
 
     @property
     def people(self) -> tuple[str, ...]:

@@ -12,11 +12,12 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
-from tangy_tui.app.workspace import Workspace, teacher_name
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning import library, policies
 from tangy_tui.text import program as text
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
+from tangy_tui.ui.first_start import ask_name, first_start
 from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.messages import OpenStep
@@ -52,13 +53,14 @@ class Program(SoundingApp):
         *,
         sensors: CameraHub | None = None,
         live: bool = False,
+        asks_name: bool = False,
         **settings: Any,
     ) -> None:
         """Make the program; without a start it waits at home. It may have ears, eyes and voice."""
         pictures = workspace.store.folder
         super().__init__(self._home, pictures=pictures, activity=workspace.activity, **settings)
         self.workspace = workspace
-        self._start = start
+        self._start, self._asks_name = start, asks_name
         self.eyes = CameraSession(workspace, sensors, live=live)
         self._busy = False
         self._opening = False
@@ -67,8 +69,7 @@ class Program(SoundingApp):
     def on_mount(self) -> None:
         """Do what comes first."""
         self._tell_of_log()
-        if self._start is not None:
-            self.run_worker(self._start(self))
+        self.run_worker(first_start(self, self._start, asks=self._asks_name))
 
     def _home(self) -> Screen[Any]:
         def far() -> Mapping[str, str]:
@@ -97,9 +98,9 @@ class Program(SoundingApp):
             return
         match event.id:
             case "teach":
-                self.teach(self.workspace.teaching(teacher_name(), None))
+                self.teach(self.workspace.teaching(self.workspace.teacher, None))
             case "guided":
-                self.teach(self.workspace.teaching(teacher_name(), None, guided=True))
+                self.teach(self.workspace.teaching(self.workspace.teacher, None, guided=True))
             case "library":
                 self.action_library()
             case "learn":
@@ -116,6 +117,8 @@ class Program(SoundingApp):
                 self._open(self.sensors())
             case "demo":
                 self._open(tell_story_aside(self))
+            case "name":
+                self._open(ask_name(self, again=True))
             case "live":
                 self._open(self.live())
 
@@ -157,7 +160,7 @@ class Program(SoundingApp):
                 await self.screen.dismiss(None)
             open_one.again(id, kept)
             return
-        teaching = self.workspace.teaching(teacher_name(), None, again=Again(id, kept))
+        teaching = self.workspace.teaching(self.workspace.teacher, None, again=Again(id, kept))
         try:
             begun = teaching.begin()
         except TangyError as error:
@@ -201,7 +204,8 @@ class Program(SoundingApp):
             return
         if isinstance(self.screen, TeachScreen):
             self.screen.dismiss(False)
-        self.call_next(self.teach, self.workspace.teaching(teacher_name(), None, guided=True))
+        teaching = self.workspace.teaching(self.workspace.teacher, None, guided=True)
+        self.call_next(self.teach, teaching)
 
     def action_learn(self) -> None:
         """Learn from all finished demonstrations."""
@@ -288,7 +292,7 @@ class Program(SoundingApp):
                 workspace.robot,
                 workspace.names,
                 workspace.store,
-                who=who or teacher_name(),
+                who=who or self.workspace.teacher,
                 seed=seed,
                 rounds=rounds or ROUNDS,
                 clock=self.clock,

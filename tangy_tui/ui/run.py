@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 def run_program(workspace: Workspace, *, ascii_only: bool, voice: bool = False) -> int:
     """Open the program at its first screen; return the exit status."""
-    return _run(workspace, None, ascii_only, voice=voice)
+    return _run(workspace, None, ascii_only, voice=voice, asks_name=True)
 
 
 def run_teaching(
@@ -40,6 +40,7 @@ def run_teaching(
     speed: float | None,
     ascii_only: bool,
     voice: bool = False,
+    asks_name: bool = False,
 ) -> int:
     """Open the teaching screen; return the exit status. Ears and voice stay the program's.
 
@@ -49,6 +50,9 @@ def run_teaching(
 
     async def start(program: Program) -> None:
         from tangy_tui.learning.scripted_teacher import SCRIPTED
+
+        if asks_name:
+            teaching.teach_as(workspace.teacher)
         from tangy_tui.ui.screens.teach import TeachScreen
 
         pace = speed if teaching.teacher == SCRIPTED else None
@@ -62,7 +66,7 @@ def run_teaching(
         if pace:
             program.leave()
 
-    return _run(workspace, start, ascii_only, ears, voice=voice)
+    return _run(workspace, start, ascii_only, ears, voice=voice, asks_name=asks_name)
 
 
 def run_playing(
@@ -181,6 +185,7 @@ def _run(
     voice: bool = False,
     sensors: CameraHub | None = None,
     live: bool = False,
+    asks_name: bool = False,
 ) -> int:
     outlive_terminal()
     read_replies()
@@ -194,6 +199,7 @@ def _run(
         sensors=sensors,
         live=live,
         question=workspace.settings.question,
+        asks_name=asks_name,
         keymap=workspace.settings.keymap,
         link=workspace.settings.link,
     )

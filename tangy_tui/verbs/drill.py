@@ -39,11 +39,11 @@ def drill(
     With --json the answers come as lines on standard input. --scores lists the sheets of everybody,
     or of --who.
     """
-    from tangy_tui.app.workspace import teacher_name
-
-    name = teacher_name() if who is None else read_name(who, "--who: a name")
+    if who is not None:
+        read_name(who, "--who: a name")
     with open_workspace(data, activity, users, write=not scores) as workspace:
         workspace.activity.need_cards()
+        name = workspace.teacher if who is None else read_name(who, "--who: a name")
         if scores:
             from tangy_profiles.codec import written
             from tangy_tui.monitoring.drill_log import read_sheets

@@ -124,7 +124,7 @@ def live(
     if INJECT_HELP in (inject or ()):
         list_injections(as_json)
         return
-    who = who_answers(teacher, expert)
+    who = who_answers(teacher, expert, data)
     listening = Listening(mic, hands_free, spoken_answers, mode)
     listening.check()
     if inject and not bench:

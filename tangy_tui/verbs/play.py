@@ -98,7 +98,7 @@ def play(
     if INJECT_HELP in (inject or ()):
         list_injections(as_json)
         return
-    who = who_answers(teacher, expert)
+    who = who_answers(teacher, expert, data)
     faults = tuple(inject or ())
     listening = Listening(mic, hands_free, spoken_answers, mode)
     listening.check()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -46,17 +47,18 @@ SCRIPTED = "scripted"
 """Who answers, or clears, by what the activity expects."""
 
 
-def who_answers(teacher: str | None, expert: str) -> str:
+def who_answers(teacher: str | None, expert: str, data: Path | None) -> str:
     """Return who answers where Tangy asks.
 
     Raises:
         TangyError: there is no such expert.
     """
-    from tangy_tui.app.workspace import teacher_name
+    from tangy_tui.app.teacher_profile import teacher_name
+    from tangy_tui.app.workspace import data_folder
 
     if expert not in ("", SCRIPTED):
         raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
-    return teacher_name(teacher)
+    return teacher_name(teacher, data_folder(data))
 
 
 def recall(workspace: Workspace, wanted: str, *, quiet: bool) -> Policy:

@@ -69,10 +69,12 @@ def teach(
     ascii_only: common.Ascii = False,
 ) -> None:
     """Demonstrate an activity: say or type what Tangy should do, and confirm with Y."""
-    from tangy_tui.app.workspace import teacher_name
-    from tangy_tui.console.inputs import keys_from_terminal
+    from tangy_tui.app.teacher_profile import teacher_name
+    from tangy_tui.app.workspace import data_folder
+    from tangy_tui.console.inputs import is_typed, keys_from_terminal, line_reader
+    from tangy_tui.console.who import ask_who
 
-    who = teacher_name(teacher)
+    who = teacher_name(teacher, data_folder(data))
     if who == "scripted" and script is not None:
         raise TangyError("--teacher scripted gives its own lines: leave out --script.")
 
@@ -93,10 +95,14 @@ def teach(
 
             status = run_teaching(
                 workspace, teaching, ears=ears, resume=not new, games=games, speed=speed,
-                ascii_only=ascii_only, voice=voice,
+                ascii_only=ascii_only, voice=voice, asks_name=teacher is None,
             )  # fmt: skip
             raise typer.Exit(status)
         else:
+            if teacher is None and is_typed(script) and not as_json:
+                teaching.teach_as(
+                    ask_who(workspace.store.folder, line_reader(None), common.print_line)
+                )
             _teach_by_lines(workspace, teaching, script, ears, as_json, resume=not new)
 
 
@@ -144,7 +150,7 @@ def _teach_by_lines(
     *,
     resume: bool,
 ) -> None:
-    from tangy_tui.app.workspace import data_folder, teacher_name
+    from tangy_tui.app.workspace import data_folder
     from tangy_tui.console.inputs import is_typed, line_reader
     from tangy_tui.console.teaching import TeachingLines, command_line
     from tangy_tui.console.typed_yes import TypedYes
@@ -156,7 +162,7 @@ def _teach_by_lines(
         "activity": None if workspace.profile == usual else workspace.profile,
         "data": None if folder == data_folder(None).absolute() else str(folder),
     }
-    who = None if teaching.teacher == teacher_name() else teaching.teacher
+    who = None if teaching.teacher == workspace.teacher else teaching.teacher
     write: Callable[[str], None] = (lambda _: None) if as_json else common.print_line
     lines = TeachingLines(
         teaching,

@@ -11,6 +11,7 @@ import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_tui.app.device_simulator import DeviceSimulator
+from tangy_tui.app.teacher_profile import TeacherProfile, save_profile
 from tests.real.bench_setup import setup_on
 from tests.support.terminal import TANGY, Terminal, Tmux
 
@@ -36,6 +37,9 @@ def open_terminal(tmp_path: Path) -> Iterator[OpenTerminal]:
         data: bool = True,
     ) -> Terminal:
         folder = ["--data", str(tmp_path / "data")] if data else []
+        if data:  # who teaches was asked before
+            (tmp_path / "data").mkdir(exist_ok=True)
+            save_profile(tmp_path / "data", TeacherProfile("Ada", toured=True))
         terminal = Terminal(
             [TANGY, *words, *folder], columns=columns, lines=lines, environment=environment
         )

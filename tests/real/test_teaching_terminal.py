@@ -22,7 +22,7 @@ def test_a_step_is_typed_asked_about_confirmed_and_still_there_next_time(
     open_tmux: Callable[[int, int], Tmux], tangy: str, tmp_path: Path, columns: int, lines: int
 ) -> None:
     tmux = open_tmux(columns, lines)
-    command = (tangy, "teach", "--seed", "1", "--data", str(tmp_path / "data"))
+    command = (tangy, "teach", "--teacher", "Ada", "--seed", "1", "--data", str(tmp_path / "data"))
     tmux.run(*command)
     tmux.until("type a command")
     tmux("send-keys", "-l", "greet everyone")

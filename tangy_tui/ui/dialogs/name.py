@@ -68,7 +68,8 @@ class NameDialog(Dialog[str | None]):
 
     def on_key(self, event: events.Key) -> None:
         """Let letters be letters: none is a key here."""
-        event.stop()
+        if event.is_printable:
+            event.stop()
 
     def action_later(self) -> None:
         """Leave it for another time."""

@@ -18,7 +18,7 @@ from tangy_tui.app.game_commands import (
     StopRobot,
 )
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.workspace import Workspace, teacher_name
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.interaction.voiding import void_last
@@ -82,7 +82,7 @@ class PlayScreen(PlayStaff):
             robot: the world of a robot that is there.
             past: a game that was interrupted, which is taken up first.
         """
-        who = teacher or teacher_name()
+        who = teacher or workspace.teacher
 
         def void(person: str) -> bool:
             return void_last(workspace.store, supervision.game.game, person, who)

@@ -1,0 +1,37 @@
+"""Asking the teacher's name by lines, once; it is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.app.teacher_profile import checked, login_name, read_profile, save_profile
+from tangy_tui.text.tour import TYPE_NAME, WHO, WHO_DETAIL
+
+
+def ask_who(folder: Path, read: Callable[[], str | None], write: Callable[[str], None]) -> str:
+    """Return who teaches; asked where nobody has said so yet, and kept.
+
+    Args:
+        folder: the data folder.
+        read: returns the next line, None where there is none any more.
+        write: writes a line.
+    """
+    profile, usual = read_profile(folder), login_name()
+    if profile.name:
+        return profile.name
+    write(f"{WHO} {WHO_DETAIL}")
+    while True:
+        write(TYPE_NAME.format(usual))
+        line = read()
+        if line is None:
+            return usual
+        try:
+            name = checked(line.strip() or usual)
+        except TangyError as error:
+            write(str(error))
+        else:
+            save_profile(folder, replace(profile, name=name))
+            return name

@@ -1,0 +1,59 @@
+"""On the first start the program asks who teaches; later it does so only when it is wanted."""
+
+from __future__ import annotations
+
+from textual.widgets import Input
+
+from tangy_tui.app.teacher_profile import TeacherProfile, read_profile, save_profile
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.ui.dialogs.name import NameDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.home import HomeScreen
+from tests.pilot.conftest import Run, StillClock
+
+
+def program(workspace: Workspace) -> Program:
+    return Program(workspace, asks_name=True, clock=StillClock())
+
+
+async def test_the_name_is_asked_on_the_first_start_and_kept(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, NameDialog)
+        await pilot.press("A", "d", "a", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        assert read_profile(workspace.store.folder).name == "Ada"
+
+
+async def test_it_is_asked_once_and_changed_from_home(run: Run, workspace: Workspace) -> None:
+    save_profile(workspace.store.folder, TeacherProfile("Ada"))
+    async with run(app=program(workspace)) as pilot:
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        await pilot.press("n")
+        await pilot.pause()
+        assert pilot.app.screen.query_one(Input).value == "Ada"
+        await pilot.press(*"Bea", "enter")
+        await pilot.pause()
+        assert workspace.teacher == "Bea"
+
+
+async def test_escape_leaves_it_for_the_next_start(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await pilot.pause()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        assert read_profile(workspace.store.folder) == TeacherProfile()
+
+
+async def test_a_name_that_cannot_be_kept_is_told(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await pilot.pause()
+        await pilot.press("backspace", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, NameDialog)
+        assert pilot.app.screen.query_one(".wrong").has_class("-shown")
