@@ -33,7 +33,8 @@ async def test_it_is_asked_once_and_changed_from_home(run: Run, workspace: Works
     async with run(app=program(workspace)) as pilot:
         await pilot.pause()
         assert isinstance(pilot.app.screen, HomeScreen)
-        await pilot.press("n")
+        await pilot.press("n", "enter")
+        await pilot.pause()
         await pilot.pause()
         assert pilot.app.screen.query_one(Input).value == "Ada"
         await pilot.press(*"Bea", "enter")
