@@ -252,9 +252,9 @@ async def test_home_chooses_by_letter_arrows_and_mouse(run: Run) -> None:
             await pilot.press(letter, "enter")
         words = ["teach", "library", "learn", "play", "policy", "people", "demo"]
         assert app.chosen == words
-        await pilot.press("down", "down", "down", "enter")  # help, quit, and round to the first
+        await pilot.press(*["down"] * 4, "enter")  # name, help, quit, and round to the first
         assert app.chosen[-1] == "teach"
-        await pilot.press("up", "up", "k", "enter")
+        await pilot.press("up", "up", "up", "k", "enter")
         assert app.chosen[-1] == "demo"
         await pilot.click("#home", offset=(6, 6))
         assert app.chosen[-1] == "library"
