@@ -25,9 +25,14 @@ RECOVERIES = ("continue", "user", "teacher", "expert")
 URGENCY = ("expert", "user", "teacher", "continue")
 """Which recovery comes first when several faults are there at once."""
 
-OWN_REMEDIES = ("spin", "restart", "replan", "do without", "other requests", "set aside")
+LEAVE_TO_STAFF = "leave to staff"
+OWN_REMEDIES = (
+    *("spin", "restart", "replan", "do without", "other requests", "set aside"),
+    LEAVE_TO_STAFF,
+)
 """What a robot can do by itself: turn on the spot to find where it is; start a device again; plan
-another way; leave a device alone; take requests by voice or key; close a person's request."""
+another way; leave a device alone; take requests by voice or key; close a person's request, and
+also judge what they have no more in this game."""
 
 SOLVED = ("evidence gone", "card in view", "request closed")
 """How it is seen that a recovery succeeded, where that is not that the evidence is gone."""
@@ -46,6 +51,7 @@ SYMPTOMS: Mapping[str, str] = MappingProxyType(
     {
         "person.refusals": "how often in a row a person did not follow",
         "person.spent": "whether a person was asked as often as the activity allows",
+        "person.unchanged": "how often what was asked for looked as before, and nobody refused",
         "visit.fruitless": "behaviours in a row after which nothing had changed",
         "situation.shown": "whether a teacher has shown what to do in the situation",
         **{f"mismatch.{name}": f"an unexpected value of: {name}" for name in VARIABLES},

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.effects import CORRECTS
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import (
     ERROR,
@@ -54,6 +55,9 @@ class Detector:
         self._robot = robot
         self._refusals: Counter[str] = Counter()
         self._in_game: Counter[str] = Counter()
+        self._unchanged: Counter[str] = Counter()
+        self.doubted: set[str] = set()
+        """Of whom Tangy may misread what they have; that is judged no more in this game."""
         self._fruitless = 0
         self._last: ActivityState | None = None
         self._health: Health | None = None
@@ -63,6 +67,8 @@ class Detector:
         """Forget what the last game had."""
         self._refusals.clear()
         self._in_game.clear()
+        self._unchanged.clear()
+        self.doubted.clear()
         self._fruitless = 0
         self._last = None
 
@@ -74,8 +80,8 @@ class Detector:
 
     @property
     def spent(self) -> bool:
-        """Whether anybody was asked in vain as often as the activity allows in a game."""
-        return any(map(self.spent_for_game, self._in_game))
+        """Whether anybody is not to be asked any more in this game."""
+        return bool(self.doubted) or any(map(self.spent_for_game, self._in_game))
 
     def spent_for_game(self, person: str | None) -> bool:
         """Say whether a person was asked in vain as often as the activity allows in a game."""
@@ -151,6 +157,9 @@ class Detector:
         self._count(acted, explained)
         if self._refusals[str(acted.state.attended)]:
             evidence |= self.refusals(acted.state.attended)
+        if not explained and self._is_unchanged(acted, found):
+            self._unchanged[str(acted.state.attended)] += 1
+            evidence["person.unchanged"] = self._unchanged[str(acted.state.attended)]
         if self._fruitless:
             evidence["visit.fruitless"] = self._fruitless
         if evidence:
@@ -159,6 +168,13 @@ class Detector:
             evidence["behaviour.completed"] = outcome.completed
             evidence["behaviour.response"] = _response(outcome)
         return evidence, found
+
+    @staticmethod
+    def _is_unchanged(acted: Acted, found: Sequence[Mismatch]) -> bool:
+        """Say whether what was to be mended looks as before, and nobody was seen to refuse."""
+        mends = acted.action.behaviour.effect in CORRECTS and acted.state.attended is not None
+        unseen = acted.outcome.response is None
+        return mends and unseen and any(one.variable == OWED_BY_PEOPLE[0] for one in found)
 
     def take_in(self, now: ActivityState) -> None:
         """Begin anew from a state that staff brought about."""

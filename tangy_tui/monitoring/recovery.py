@@ -14,8 +14,8 @@ from collections.abc import Callable
 from typing import TypeAlias
 from uuid import uuid4
 
-from tangy_profiles.faults import URGENCY, FaultRule, Remedy
-from tangy_profiles.game_records import FaultMove, MoveKind
+from tangy_profiles.faults import LEAVE_TO_STAFF, URGENCY, FaultRule, Remedy
+from tangy_profiles.game_records import FaultMove, MoveKind, named
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
@@ -278,6 +278,17 @@ class Recovery:
         self.seconds += self._game.world.recover(
             Remedy(kind, fault.code, device, fault.person, *said)
         )
+
+    def leave_to_staff(self, person: str) -> None:
+        """Close a person's request once more for whom an earlier fault was left to staff."""
+        for fault in self.faults:
+            rule = self._rules[fault.id]
+            if fault.person == person and rule.remedy == LEAVE_TO_STAFF:
+                said = named(self._text(fault, rule.aloud), fault.called)
+                image = named(self._text(fault, rule.image), fault.called)
+                remedy = Remedy(LEAVE_TO_STAFF, fault.code, "", person, said, image)
+                self.seconds += self._game.world.recover(remedy)
+                return
 
     def _text(self, fault: Fault, text: str) -> str:
         """Fill in a text of a rule; the person stays a slot."""

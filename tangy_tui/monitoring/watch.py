@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.faults import Evidence, FaultBook
+from tangy_profiles.faults import LEAVE_TO_STAFF, Evidence, FaultBook
 from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.game_events import Acted, GameEvent, Unsure
 from tangy_tui.learning.effects import Mismatch
@@ -109,12 +109,16 @@ class FaultWatch:
             return []
         state = self._game.world.observe()
         person = state.attended
-        if not self._detector.spent_for_game(person):
+        doubted = person in self._detector.doubted
+        if person is None or not (doubted or self._detector.spent_for_game(person)):
             return []
         behaviours = self._game.world.activity.behaviours
         behaviour = behaviours.get(self._game.policy.decide(state.situation).behaviour)
         asks = behaviour is not None and behaviour.persuades and behaviour.effect != "none"
         if not asks or state.place != person:
+            return []
+        if doubted:
+            self._recovery.leave_to_staff(person)
             return []
         return self._take(diagnose(self.book, self._detector.refusals(person)), None, person)
 
@@ -171,6 +175,8 @@ class FaultWatch:
                 self._seen = None  # so that the next look finds it again
                 raise
             told += self._recovery.supersede(self._recovery.faults[-1])
+            if diagnosis.rule.remedy == LEAVE_TO_STAFF and person is not None:
+                self._detector.doubted.add(person)
             if acted is not None and diagnosis.mismatches:
                 self.acted[self._recovery.faults[-1].id] = acted
         if told and not self._recovery.ended:

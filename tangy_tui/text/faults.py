@@ -40,6 +40,7 @@ DOING_REMEDIES = {
     "do without": "doing without it",
     "other requests": "taking requests by voice and key",
     "set aside": "leaving it at that",
+    "leave to staff": "leaving it to you",
 }
 """What Tangy does by itself, in words."""
 
@@ -50,6 +51,7 @@ DONE_REMEDIES = {
     "do without": "Tangy does without it",
     "other requests": "Tangy listens for requests instead",
     "set aside": "Tangy left it at that",
+    "leave to staff": "Tangy left it to you",
 }
 """What Tangy has done by itself, in words."""
 

@@ -12,8 +12,8 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.observation import MOST_LOOKS, Observation
 from tangy_tui.learning.policy import Policy
 from tangy_tui.world import World
-from tests.support.games import codes, moves, play
-from tests.support.odd_looks import ODD, OddCards, OddStates, OddWorld
+from tests.support.games import codes, ended, moves, play
+from tests.support.odd_looks import ODD, OddCards, OddStates, OddWorld, StuckCards
 
 GAMES = 12
 
@@ -79,3 +79,25 @@ def test_single_odd_looks_are_no_fault_no_accusation_and_no_request(
         told = [event for _ in range(GAMES) for event in play(game)]
     assert world.odd_looks > 5  # or it says nothing
     assert (codes(told), moves(told), world.accused) == ([], [], 0)
+
+
+@pytest.mark.parametrize("effect", ["clear wrong marks", "set missing marks"])
+def test_a_reading_that_stays_wrong_is_left_to_staff_once_and_the_game_goes_on(
+    effect: str, workspace: Workspace, learnt: Policy
+) -> None:
+    activity = workspace.activity
+    (behaviour,) = (b.name for b in activity.behaviours.values() if b.effect == effect)
+    (stuck,) = {s.user_state for s, name in activity.expected.items() if name == behaviour}
+    world = StuckCards(activity, list(workspace.names), seed=5, odd="late", share=0.0)
+    world.stuck = stuck
+    game = workspace.supervision(learnt, 5, asks=True, world=world)
+    told = []
+    with workspace.store.transaction():
+        for _ in range(GAMES):
+            events = play(game)
+            assert ended(events).stopped is None
+            doubted = [fault for fault in game.faults if fault.code == "reading-doubtful"]
+            told += doubted
+            assert len(doubted) <= 1 and all(fault.person == world.person for fault in doubted)
+            assert not any(fault.critical for fault in game.faults)
+    assert len(told) >= 3  # or it says nothing

@@ -89,3 +89,15 @@ class OddStates(OddWorld):
         )
         situation = state.situation._replace(user_state=seen)
         return state._replace(situation=situation, users=tuple(users))
+
+
+class StuckCards(OddWorld):
+    """A world in which the card of one person is read as in one state, however it is."""
+
+    person = "user2"
+    stuck = ""
+
+    def read_card(self) -> None:
+        super().read_card()
+        if self.tracker.place == self.person and self.tracker.seen is not None and self.stuck:
+            self.tracker.seen = self.stuck

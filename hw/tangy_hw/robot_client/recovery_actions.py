@@ -63,7 +63,7 @@ class RecoveryActions:
                 commands.do("replan")
             case "do without":
                 commands.do("relax")
-            case "set aside" if person is not None and person in tracker.queue:
+            case "set aside" | "leave to staff" if person is not None and person in tracker.queue:
                 tracker.queue.remove(person)
                 world.requests.set_aside(person)
                 commands.do("answered", seat=world.people.index(person) + 1)

@@ -365,7 +365,7 @@ class FaultyWorld(SimulatedWorld):
             case "other requests":
                 self._by_word = True
                 self._hear()
-            case "set aside" if remedy.person in self.tracker.queue:
+            case "set aside" | "leave to staff" if remedy.person in self.tracker.queue:
                 self._set_aside(remedy.person)
         return seconds
 
