@@ -263,7 +263,7 @@ async def test_home_chooses_by_letter_arrows_and_mouse(run: Run) -> None:
         assert isinstance(app.screen, HelpScreen)
         await pilot.press("escape")
         await pilot.pause()
-        await pilot.press("q")
+        await pilot.press("q", "enter")
         await pilot.pause()
         assert not app.is_running
 
