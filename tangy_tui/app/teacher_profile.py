@@ -18,10 +18,9 @@ NOBODY = "teacher"
 
 @dataclass(frozen=True, slots=True)
 class TeacherProfile:
-    """What is kept of the teacher. `name`: "" if they were not asked; `toured`: had the tour."""
+    """What is kept of the teacher. `name`: "" if they were not asked."""
 
     name: str = ""
-    toured: bool = False
 
 
 def read_profile(folder: Path) -> TeacherProfile:
@@ -35,9 +34,8 @@ def read_profile(folder: Path) -> TeacherProfile:
         return TeacherProfile()
     table = read_toml(path)
     name = table.text("name", "")
-    toured = table.choice("tour", ("open", "done"), "open") == "done"
     table.close()
-    return TeacherProfile(checked(name) if name else "", toured)
+    return TeacherProfile(checked(name) if name else "")
 
 
 def save_profile(folder: Path, profile: TeacherProfile) -> None:
@@ -46,11 +44,10 @@ def save_profile(folder: Path, profile: TeacherProfile) -> None:
     Raises:
         TangyError: the file cannot be written.
     """
-    tour = "done" if profile.toured else "open"
     name = json.dumps(profile.name, ensure_ascii=False)
     new = folder / f"{FILE}.new"
     try:
-        new.write_text(f'name = {name}\ntour = "{tour}"\n', encoding="utf-8")
+        new.write_text(f"name = {name}\n", encoding="utf-8")
         new.replace(folder / FILE)
     except OSError as error:
         raise TangyError(plain(f"{folder / FILE}: cannot be written: {error.strerror}.")) from None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.teacher_profile import checked, login_name, read_profile, save_profile
-from tangy_tui.text.tour import TYPE_NAME, WHO, WHO_DETAIL
+from tangy_tui.text.who import TYPE_NAME, WHO, WHO_DETAIL
 
 
 def ask_who(folder: Path, read: Callable[[], str | None], write: Callable[[str], None]) -> str:

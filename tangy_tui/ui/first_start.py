@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.teacher_profile import read_profile, save_profile
-from tangy_tui.text.tour import renamed_teacher
+from tangy_tui.text.who import renamed_teacher
 
 if TYPE_CHECKING:
     from tangy_tui.ui.program import Program

@@ -9,7 +9,6 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from tangy_profiles.state import ActivityState
-from tangy_tui.app.tour import Tour
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, missing_words
 from tangy_tui.learning.teaching_events import (
@@ -31,7 +30,6 @@ from tangy_tui.text import teaching as text
 from tangy_tui.text.coach import arranged_words, coach_words, unseen_words
 from tangy_tui.text.remarks import remark_words, settled_words
 from tangy_tui.text.situations import step_words
-from tangy_tui.text.tour import tour_words
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.coverage_list import CoverageList
@@ -56,8 +54,6 @@ class TeachingPicture:
         self._workspace = workspace
         self._teaching = teaching
         self._shown = ShownSoFar(workspace, teaching)
-        self.tour: Tour | None = None
-        """The tour, while a new teacher is shown around."""
 
     def tell(self, event: TeachingEvent) -> None:
         """Show what followed from a command."""
@@ -146,14 +142,7 @@ class TeachingPicture:
         return coach_words(teaching.activity, state, teaching.world.scene(), teaching.name)
 
     def _now(self, words: str) -> None:
-        """Say what is going on; while the tour lasts, what it shows."""
-        tour, teaching = self.tour, self._teaching
-        if tour is not None and tour.at is not None:
-            phrase = next(iter(teaching.sayable), "")
-            words = tour_words(tour.at, teaching.teacher, teaching.activity.title, phrase)
-        now = self._screen.query_one("#now", Static)
-        now.set_class(tour is not None and tour.at is not None, "-tour")
-        now.update(words if now.has_class("-tour") else f"Now: {words}")
+        self._screen.query_one("#now", Static).update(f"Now: {words}")
 
     def _scene(self, came_from: str) -> None:
         room = self._screen.query_one(RoomView)

@@ -39,7 +39,7 @@ def open_terminal(tmp_path: Path) -> Iterator[OpenTerminal]:
         folder = ["--data", str(tmp_path / "data")] if data else []
         if data:  # who teaches was asked before
             (tmp_path / "data").mkdir(exist_ok=True)
-            save_profile(tmp_path / "data", TeacherProfile("Ada", toured=True))
+            save_profile(tmp_path / "data", TeacherProfile("Ada"))
         terminal = Terminal(
             [TANGY, *words, *folder], columns=columns, lines=lines, environment=environment
         )

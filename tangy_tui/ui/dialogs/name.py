@@ -14,7 +14,7 @@ from textual.widgets import Input, Static
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import LONGEST_NAME
 from tangy_tui.app.teacher_profile import checked
-from tangy_tui.text.tour import NAME_KEYS, WHO, WHO_DETAIL
+from tangy_tui.text.who import NAME_KEYS, WHO, WHO_DETAIL
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 
