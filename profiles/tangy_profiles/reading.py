@@ -126,6 +126,11 @@ class Table:
             raise self.wrong(key, f"must be a list of {count} numbers from {low:g} to {high:g}.")
         return tuple(float(v) for v in values)
 
+    def length(self, key: str) -> int:
+        """Return how long the list under a key is, which is still to be taken."""
+        values: list[Any] = self._take(key, list, "a list", None)
+        return len(values)
+
     def words(
         self, key: str, known: Iterable[str] | None = None, default: tuple[str, ...] | None = None
     ) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.body import BodyProfile, read_body
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, read_contact
 from tangy_profiles.contacts import Contact as Contact
 from tangy_profiles.errors import ProfileError
@@ -122,7 +123,8 @@ class Robot:
     it when it is there in earnest, by the name of the device. `gaze` says which limb does what
     (angles in degrees) to look at a `card` and at a `face`. `file` is where all this was read.
     `expert` is whom the facility has named for what staff cannot mend, and `staff` who is called
-    where it stands still. `liveness` is how late its data may be.
+    where it stands still. `liveness` is how late its data may be, `body` how large it is, how it
+    drives, and where its devices sit.
     """
 
     name: str
@@ -138,6 +140,7 @@ class Robot:
     expert: Contact | None = None
     liveness: Liveness = field(default_factory=Liveness)
     staff: Contact | None = None
+    body: BodyProfile = field(default_factory=BodyProfile)
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -216,6 +219,7 @@ def read_robot(top: Table, path: Path) -> Robot:
         read_contact(top, EXPERT),
         liveness,
         read_contact(top, STAFF_ROLE),
+        read_body(top, (name for name in devices if "camera" in name)),
     )
     top.close()
     return robot

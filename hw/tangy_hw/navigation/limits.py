@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import isfinite, radians
 
-from tangy_hw.device_protocols import STILL, Twist
+from tangy_hw.device_protocols import STILL, Pose, Twist
+from tangy_profiles.robot import Robot
+
+PLANNED = 0.6  # of how hard a base brakes, by which drives are planned
 
 
 @dataclass(frozen=True)
 class MotionLimits:
     """How a base may drive: m/s, rad/s, m/s^2, rad/s^2, and metres.
 
-    `radius` is the robot's own, `gap` what it always keeps free ahead. Within `wary` of people, on
-    any side, it drives at no more than `gentle`. `unseen` is how fast it drives where its laser
+    `radius` is the robot's own, or that of its outermost corner where it has `corners` (x, y in m,
+    once round it to the left); `gap` is what it always keeps free ahead. Within `wary` of people,
+    on any side, it drives at no more than `gentle`. `unseen` is how fast it drives where its laser
     does not look; within `close` of anything it turns no faster than `turn_close`.
 
     Past people it must be able to stop before they meet (see `people_guard`): `late` is how many s
@@ -39,6 +43,21 @@ class MotionLimits:
     spare: float = 0.09
     approach: float = 0.35
     approach_new: float = 0.8
+    corners: tuple[tuple[float, float], ...] = ()
+
+    @classmethod
+    def of(cls, robot: Robot) -> MotionLimits:
+        """Return how a robot may drive, as its file describes its body."""
+        body = robot.body
+        return cls(
+            speed=robot.speed,
+            turn=body.turn,
+            gain=body.acceleration,
+            brake=PLANNED * body.braking,
+            radius=body.radius,
+            stops=body.braking,
+            corners=body.corners,
+        )
 
     def clamped(self, twist: Twist) -> Twist:
         """Return a twist on the same arc that is no faster than it may be; no number is none.
@@ -56,3 +75,9 @@ class MotionLimits:
             max(-self.turn, min(self.turn, turn / over)),
         )
         return clamped if isfinite(over) else STILL
+
+
+def laser_of(robot: Robot) -> Pose:
+    """Return where a robot's scanner sits on it: x and y in m, its heading in rad."""
+    laser = robot.body.laser
+    return Pose(laser.x, laser.y, radians(laser.yaw))

@@ -20,6 +20,7 @@ from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.planning import (
     BESIDE,
+    FOOTPRINT,
     KEEP,
     RADIUS,
     Path,
@@ -63,8 +64,6 @@ class Navigator:
         start: Pose | None = None,
         *,
         limits: MotionLimits | None = None,
-        radius: float = RADIUS,
-        keep: float = KEEP,
         laser: Pose = HERE,
         people: Floats | None = None,
     ) -> None:
@@ -75,8 +74,6 @@ class Navigator:
             rng: where chance comes from.
             start: where the robot is, within some 10 cm; None: it may be anywhere.
             limits: how it may drive.
-            radius: how near its middle may come to what is on the map, in metres.
-            keep: how near it may come to what is not, which may be somebody, in metres.
             laser: where the scanner sits on the robot.
             people: where people may be (n, 2), near whom it drives gently.
         """
@@ -90,7 +87,8 @@ class Navigator:
         self.path: Path | None = None
         self.slip = 0.0
         self.still = 0.0
-        self._radius, self._keep, self._laser = radius, keep, laser
+        larger = self.limits.radius - FOOTPRINT
+        self._radius, self._keep, self._laser = RADIUS + larger, KEEP + larger, laser
         self._localisation = Localisation(map_, rng, start, laser)
         self._around = Surroundings(map_, laser, self.limits)
         self._disagreement = Disagreement(laser)
@@ -362,7 +360,7 @@ class Navigator:
         if not len(path) or not len(obstacles):
             return False
         beside = near_ends(obstacles, ((pose.x, pose.y), (goal.x, goal.y)), self._keep)
-        keep = np.where(beside, BESIDE, self._keep) - INTO
+        keep = np.where(beside, self._radius + BESIDE - RADIUS, self._keep) - INTO
         keep = np.minimum(keep, lengths(obstacles - (pose.x, pose.y)) - AWAY)
         apart = ((path[::2, None] - obstacles[None]) ** 2).sum(axis=2)
         return bool((apart < np.maximum(keep, 0.0) ** 2).any())

@@ -37,15 +37,20 @@ class Around(NamedTuple):
 
 
 def passed(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
-    """Return how much of a twist may be driven, on the same arc: all of it, less, or nothing."""
-    if abs(twist.forward) < SPOT:
+    """Return how much of a twist may be driven, on the same arc: all of it, less, or nothing.
+
+    A round robot may always turn on the spot; one that has corners, where they come near nobody.
+    """
+    spins = abs(twist.forward) < SPOT
+    if spins and (not limits.corners or twist.turn == 0.0):
         return twist
     bodies = _bodies(around, limits)
     if not len(bodies.at):
         return twist
     for share in SHARES:
-        if _keeps_apart(twist.forward * share, twist.turn / twist.forward, bodies, limits):
-            return Twist(twist.forward * share, twist.turn * share)
+        part = Twist(0.0 if spins else twist.forward * share, twist.turn * share)
+        if _keeps_apart(part, bodies, limits):
+            return part
     return STILL
 
 
@@ -79,25 +84,49 @@ def _bodies(around: Around, limits: MotionLimits) -> _Bodies:
     ]
     rows += [(x, y, 0.0, 0.0, END + limits.spare, limits.approach) for x, y in ends]
     table = np.array(rows, dtype=np.float64).reshape(-1, 6)
-    apart = table[:, 4] + limits.radius
+    apart = table[:, 4]
     walks = np.hypot(table[:, 2], table[:, 3]) > WALKS
     leeway = np.where(walks, FURTHER, -NEARER)
     return _Bodies(table[:, :2], table[:, 2:4], apart, table[:, 5], leeway)
 
 
-def _keeps_apart(speed: float, curvature: float, bodies: _Bodies, limits: MotionLimits) -> bool:
+def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
     """Say whether the robot, driving so and then braking, comes too near to nobody."""
-    fast = abs(speed)
-    until = limits.late + fast / limits.stops
+    fast, brakes = abs(twist.forward), limits.stops
+    if not fast:
+        fast, brakes = abs(twist.turn), limits.spin_up
+    until = limits.late + fast / brakes
     times = np.append(np.arange(STEP, until, STEP), until)
     braking = np.maximum(times - limits.late, 0.0)
-    along = np.sign(speed) * (fast * times - limits.stops * braking**2 / 2)
-    turned = curvature * along
+    gone = (fast * times - brakes * braking**2 / 2) / fast  # s at full speed: the same way
+    along, turned = twist.forward * gone, twist.turn * gone
     half = turned / 2
     chord = along * np.sinc(half / np.pi)
     robot = np.column_stack((chord * np.cos(half), chord * np.sin(half)))
     people = bodies.at + times[:, None, None] * bodies.velocity
-    driving = np.hypot(*(people - robot[:, None]).transpose(2, 0, 1))
-    standing = np.hypot(*people.transpose(2, 0, 1))
+    driving = _off(people - robot[:, None], turned, limits)
+    standing = _off(people, np.zeros_like(turned), limits)
     near = driving < bodies.apart + bodies.approach * times[:, None]
     return not bool((near & (driving < standing + bodies.leeway)).any())
+
+
+def _off(people: Floats, turned: Floats, limits: MotionLimits) -> Floats:
+    """Return how far people (times, n, 2) are from a robot's edge that has turned so (times,)."""
+    if not limits.corners:
+        return np.asarray(np.hypot(people[..., 0], people[..., 1]) - limits.radius)
+    c, s = np.cos(turned)[:, None], np.sin(turned)[:, None]
+    x = c * people[..., 0] + s * people[..., 1]
+    y = c * people[..., 1] - s * people[..., 0]
+    return outside(np.stack((x, y), axis=-1), np.array(limits.corners))
+
+
+def outside(points: Floats, corners: Floats) -> Floats:
+    """Return how far points (..., 2) are from a shape with corners (m, 2), in m; inside it < 0."""
+    sides = np.roll(corners, -1, axis=0) - corners
+    far = np.hypot(sides[:, 0], sides[:, 1])
+    to = points[..., None, :] - corners
+    along = np.clip((to * sides).sum(axis=-1) / far**2, 0.0, 1.0)
+    apart = np.linalg.norm(to - along[..., None] * sides, axis=-1).min(axis=-1)
+    across = (sides[:, 0] * to[..., 1] - sides[:, 1] * to[..., 0]) / far
+    within = (across > 0).all(axis=-1)
+    return np.asarray(np.where(within, -apart, apart))

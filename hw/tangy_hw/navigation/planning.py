@@ -92,7 +92,8 @@ def inflate(
     closed, squeezed = distance < radius, np.zeros(map_.shape, dtype=np.bool_)
     if blocked is not None and len(blocked):
         beside = near_ends(blocked, ends, keep)
-        for points, hard in ((blocked[~beside], keep), (blocked[beside], min(BESIDE, keep))):
+        nearer = min(radius + BESIDE - RADIUS, keep)
+        for points, hard in ((blocked[~beside], keep), (blocked[beside], nearer)):
             if len(points):
                 free = np.ones(map_.shape, dtype=np.bool_)
                 free[map_.cells_of(points)] = False

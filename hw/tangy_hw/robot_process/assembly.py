@@ -16,6 +16,7 @@ from tangy_hw.drivers.registry import Wiring, open_device
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.simulated_clock import SteppedClock
 from tangy_hw.navigation.external_navigator import ExternalNavigator
+from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
@@ -187,10 +188,9 @@ def _wayfinder(
     setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation | None
 ) -> NavigatorProtocol:
     """Return what finds place and way: the robot's own navigation where it has one, or ours."""
+    limits, laser = MotionLimits.of(robot), laser_of(robot)
     if own is not None:
-        return ExternalNavigator(own)
-    from tangy_hw.navigation.limits import MotionLimits
-
+        return ExternalNavigator(own, limits, laser)
     count = len(setup.people)
     known = map_of_room(room, people=count)
     if setup.map:
@@ -201,7 +201,8 @@ def _wayfinder(
         known,
         np.random.default_rng(setup.seed),
         start,
-        limits=MotionLimits(speed=robot.speed),
+        limits=limits,
+        laser=laser,
         people=np.array([(seat.x, seat.y) for seat in seats]),
     )
 

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 
 from tangy_hw.device_protocols import STILL, Clock, Picture, Pose, Twist
-from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
@@ -82,8 +82,8 @@ class LiveRobot:
         """Where it is driving to."""
         self.passing = ControlLoop(clock, self.tick, stepped=stepped)
         self._body, self._clock, self.stepped = body, clock, stepped
-        limits = MotionLimits(speed=robot.speed)
-        self.hand = HandDrive(limits)
+        limits = MotionLimits.of(robot)
+        self.hand = HandDrive(limits, laser_of(robot))
         self.watch = TickWatch(late=robot.liveness.fault_after)
         self.wheels = Wheels(body.base, limits)
         self._stops = StopLatch()

@@ -1,0 +1,136 @@
+"""A robot's body as its file describes it: how large it is, how it drives, where its devices sit.
+
+The origin is the middle between its wheels, round which it turns: x is ahead, y to the left, in m.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from math import cos, hypot, pi, radians, sin
+from types import MappingProxyType
+
+from tangy_profiles.reading import Table
+
+LARGEST = 2.0  # metres from its middle to its edge
+FASTEST_TURN = 6.0  # rad/s
+HARDEST = 5.0  # m/s^2
+HIGHEST = 3.0  # metres above the floor
+
+
+@dataclass(frozen=True)
+class Mount:
+    """Where a device sits on the robot: x, y and height in m; yaw in degrees, to the left.
+
+    `reach` is how far it sees, in m; 0: as far as the device itself says.
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    height: float = 0.0
+    yaw: float = 0.0
+    reach: float = 0.0
+
+
+@dataclass(frozen=True)
+class BodyProfile:
+    """The body of a robot; what is left out is that of Tangy.
+
+    It is round, of `radius` m, or has `corners` (x, y) in m, of which `radius` is the distance of
+    the outermost. `turn` is in rad/s, `acceleration` and `braking` are in m/s^2: how it may speed
+    up, and how hard its base brakes. `arms` is how far its arms reach out, in m from its middle.
+    """
+
+    radius: float = 0.25
+    corners: tuple[tuple[float, float], ...] = ()
+    turn: float = 1.0
+    acceleration: float = 0.5
+    braking: float = 1.0
+    laser: Mount = field(default_factory=Mount)
+    cameras: Mapping[str, Mount] = field(default_factory=dict)
+    arms: float = 0.0
+
+
+def read_body(top: Table, cameras: Iterable[str]) -> BodyProfile:
+    """Read the table `body` of a robot's file, if there is one; `cameras` are those that it has.
+
+    Raises:
+        ProfileError: naming the key and what is wrong with it.
+    """
+    if "body" not in top:
+        return BodyProfile()
+    entry, usual = top.table("body"), BodyProfile()
+    corners = _corners(entry)
+    if corners:
+        radius = max(hypot(x, y) for x, y in corners)
+    else:
+        radius = entry.number("radius", 0.05, LARGEST, usual.radius)
+    seen = entry.table("cameras", optional=True)
+    known = tuple(cameras)
+    body = BodyProfile(
+        radius,
+        corners,
+        entry.number("turn", 0.1, FASTEST_TURN, usual.turn),
+        entry.number("acceleration", 0.05, HARDEST, usual.acceleration),
+        entry.number("braking", 0.2, HARDEST, usual.braking),
+        _mount(entry.table("laser", optional=True)),
+        MappingProxyType({name: _mount(seen.table(name)) for name in seen if name in known}),
+        entry.number("arms", 0.0, LARGEST, usual.arms),
+    )
+    seen.close(also=known)
+    entry.close(also=("radius",) if not corners else ())
+    return body
+
+
+def _mount(entry: Table) -> Mount:
+    mount = Mount(
+        entry.number("x", -LARGEST, LARGEST, 0.0),
+        entry.number("y", -LARGEST, LARGEST, 0.0),
+        entry.number("height", 0.0, HIGHEST, 0.0),
+        entry.number("yaw", -180.0, 180.0, 0.0),
+        entry.number("range", 0.0, 1000.0, 0.0),
+    )
+    entry.close()
+    return mount
+
+
+def _corners(entry: Table) -> tuple[tuple[float, float], ...]:
+    """Read the corners of a robot that is not round: x, y, x, y, ... once round it, in m."""
+    if "corners" not in entry:
+        return ()
+    count = entry.length("corners")
+    if count < 6 or count % 2:
+        raise entry.wrong("corners", "must be x, y of at least three corners, one after another.")
+    numbers = entry.numbers("corners", count, -LARGEST, LARGEST)
+    corners = tuple(zip(numbers[::2], numbers[1::2], strict=True))
+    after, next_but_one = corners[1:] + corners[:1], corners[2:] + corners[:2]
+    turns = {_left_of(*three) for three in zip(corners, after, next_but_one, strict=True)}
+    if len(turns) != 1 or 0 in turns:
+        raise entry.wrong("corners", "must go once round a shape without a dent.")
+    side = turns.pop()
+    if any(_left_of(a, b, (0.0, 0.0)) != side for a, b in zip(corners, after, strict=True)):
+        raise entry.wrong("corners", "must go round 0, 0, the middle between the wheels.")
+    return corners if side > 0 else corners[::-1]
+
+
+Point = tuple[float, float]
+
+
+def _left_of(a: Point, b: Point, c: Point) -> int:
+    """Say whether c lies to the left (1) or right (-1) of the line from a to b, or on it (0)."""
+    across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    return (across > 1e-9) - (across < -1e-9)
+
+
+def outline(body: BodyProfile, count: int = 24) -> tuple[Point, ...]:
+    """Return points on the edge of a robot (x, y) in m: its corners, or so many on its circle."""
+    if body.corners:
+        return body.corners
+    angles = [2 * pi * number / count for number in range(count)]
+    return tuple((body.radius * cos(angle), body.radius * sin(angle)) for angle in angles)
+
+
+def looks(mount: Mount, metres: float) -> Point:
+    """Return the point so many metres before a device on the robot."""
+    yaw = radians(mount.yaw)
+    return mount.x + metres * cos(yaw), mount.y + metres * sin(yaw)
