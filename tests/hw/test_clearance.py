@@ -74,7 +74,7 @@ class TestPeople:
         assert past(Twist(0.5, 0.0), person(1.4, 0.0, 0.8)).forward == 0.5
 
     def test_it_stands_for_who_crosses_its_way(self) -> None:
-        assert past(Twist(0.5, 0.0), person(0.7, 0.6, 0.0, -1.2)) == STILL
+        assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL
 
     def test_who_has_just_appeared_is_kept_further_off(self) -> None:
         known, new = (past(Twist(0.5, 0.0), person(1.2, 0.3, age=a)).forward for a in (3.0, 0.3))
