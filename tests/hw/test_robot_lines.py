@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import random
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -15,7 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.device_protocols import MachineClock
+from tangy_hw.device_protocols import STILL, MachineClock
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.rate_estimator import FIRST
 from tangy_hw.robot_client.robot_state import RobotState
@@ -252,3 +253,38 @@ async def test_a_device_state_that_there_is_not_is_refused_and_never_taken_for_w
         beat = json.loads(json.dumps(beat_of(one.robot, 1)))
         beat["health"][0][2] = "BETTER THAN EVER"
         assert RobotState.from_json(beat).health[0].state == ERROR
+
+
+def fuzzed(rng: random.Random) -> bytes:
+    """Return a line that is wrong somehow, or only odd."""
+    line = bytearray(rng.choice([*WRONG, *(json.dumps({"id": rng.randrange(9), "do": do}).encode()
+                                           for do in DOES)])[:300])  # fmt: skip
+    for _ in range(rng.randrange(6)):
+        at = rng.randrange(len(line) + 1)
+        match rng.randrange(3):
+            case 0:
+                line[at:at] = bytes([rng.randrange(256)])
+            case 1:
+                del line[at : at + rng.randrange(5)]
+            case _:
+                line[at : at + 1] = rng.choice(list(JSON_PARTS))
+    return bytes(line).replace(b"\n", b" ")
+
+
+JSON_PARTS = (b"{", b"}", b"[", b"]", b'"', b":", b",", b"NaN", b"1e999", b"null", b"\x00", b"\xff")
+
+
+@pytest.mark.slow
+async def test_ten_thousand_lines_of_nonsense_end_nothing_and_drive_nothing() -> None:
+    rng = random.Random(5)
+    async with spoken() as one:
+        for number in range(10_000):
+            await one.process.take(fuzzed(rng))
+            if number % 500 == 499:
+                one.said.clear()
+                await one.take(id="check", do="stop", by="staff")
+                await until(lambda: any(said.get("id") == "check" for said in one.said))
+                assert one.robot.failed == "" and one.robot.stopped
+                one.robot._tick()
+                assert one.robot._wheels.driven == STILL
+                await one.take(do="release", by="staff")
