@@ -285,6 +285,6 @@ async def test_ten_thousand_lines_of_nonsense_end_nothing_and_drive_nothing() ->
                 await one.take(id="check", do="stop", by="staff")
                 await until(lambda: any(said.get("id") == "check" for said in one.said))
                 assert one.robot.failed == "" and one.robot.stopped
-                one.robot._tick()
-                assert one.robot._wheels.driven == STILL
+                one.robot.tick()
+                assert one.robot.wheels.driven == STILL
                 await one.take(do="release", by="staff")
