@@ -45,6 +45,14 @@ def test_a_game_that_cannot_end(tmp_path: Path) -> None:
     assert any(flaw == "never ends" for flaw, _ in stuck)
 
 
+def test_a_game_that_does_not_end_as_it_is_expected_to_go(tmp_path: Path) -> None:
+    round_and_round = (
+        '["over", "told is no", "tell scores"],',
+        '["over", "told is no", "allow time"],',
+    )
+    assert any(flaw == "never ends" for flaw, _ in flaws(tmp_path, round_and_round))
+
+
 def test_a_text_that_lacks_a_word_when_it_is_said(tmp_path: Path) -> None:
     early = flaws(tmp_path, ("Welcome to the quiz!", "Welcome! The first is: {ask}"))
     assert early == {("text lacks a word", "welcome everyone")}

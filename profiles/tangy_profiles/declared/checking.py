@@ -41,8 +41,12 @@ def findings(activity: DeclaredActivity) -> Iterator[ActivityFlaw]:
     """Yield what is wrong with an activity that can be read, the worst first."""
     slots: dict[tuple[str, str], bool] = {}
     found = _tried(activity, slots)
-    if found.stuck is not None:
-        yield ActivityFlaw("never ends", activity.in_words(found.stuck))
+    stuck = found.stuck
+    if activity.expected:
+        slots, as_expected = _played_as_expected(activity)
+        stuck = stuck or as_expected.stuck
+    if stuck is not None:
+        yield ActivityFlaw("never ends", activity.in_words(stuck))
     if found.whole:
         stages = {situation.stage for situation in found.reached}
         for stage in activity.stages:
@@ -54,8 +58,6 @@ def findings(activity: DeclaredActivity) -> Iterator[ActivityFlaw]:
         for name in activity.behaviours:
             if name not in found.played:
                 yield ActivityFlaw("behaviour never possible", name)
-    if activity.expected:
-        slots = _spoken_as_expected(activity)
     for (behaviour, text), lacks in slots.items():
         if lacks and behaviour in found.played:
             yield ActivityFlaw("text lacks a word", behaviour, text)
@@ -84,8 +86,10 @@ def _tried(activity: DeclaredActivity, slots: dict[tuple[str, str], bool]) -> Re
     return explore(game, moves, situations.situation, MOST_TRIED)
 
 
-def _spoken_as_expected(activity: DeclaredActivity) -> dict[tuple[str, str], bool]:
-    """Return which texts lack a word at some time in games that go as the file expects."""
+def _played_as_expected(
+    activity: DeclaredActivity,
+) -> tuple[dict[tuple[str, str], bool], Reach]:
+    """Search games that go as the file expects; return which texts lack a word at some time."""
     slots: dict[tuple[str, str], bool] = {}
     declaration = activity.declaration
     shown = expected_moves(activity)
@@ -100,8 +104,7 @@ def _spoken_as_expected(activity: DeclaredActivity) -> dict[tuple[str, str], boo
     game = DeclaredGame(declaration, (activity.teams or PLAYERS)[:2], range(1))
     if declaration.items.rounds:
         game = DeclaredGame(declaration, game.players, range(min(2, declaration.items.rounds)))
-    explore(game, moves, shown.situation, MOST_TRIED)
-    return slots
+    return slots, explore(game, moves, shown.situation, MOST_TRIED)
 
 
 def expected_moves(activity: DeclaredActivity) -> ShownMoves:
