@@ -8,6 +8,7 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.joint_state import joint_state
+from tests.support.declared import DECLARED, declared
 
 PLAYERS = ("ann", "ben", "cat")
 
@@ -90,3 +91,13 @@ def test_no_situation_of_a_game_is_missing_from_those_of_the_activity(
 ) -> None:
     assert joint_state(game).situation in trivia.situations
     assert len(trivia.situations) == 13
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_every_text_can_be_prepared_before_there_is_a_game(name: str) -> None:
+    activity = declared(name)
+    for behaviour in activity.behaviours.values():
+        for template in (*behaviour.speech.values(), behaviour.image):
+            text = activity.fill(template, "Rosa", ())
+            assert "{" not in text
+            assert bool(text) is ("{" not in template.replace("{name}", ""))

@@ -20,7 +20,7 @@ from tangy_profiles.declared.situations import (
     situations,
     told,
 )
-from tangy_profiles.declared.speech import with_names
+from tangy_profiles.declared.speech import SLOT, with_names
 from tangy_profiles.declared.vocabulary import Selector
 from tangy_profiles.effects import Effect
 from tangy_profiles.errors import ProfileError
@@ -74,6 +74,11 @@ class DeclaredActivity(Activity):
     ) -> tuple[str, str]:
         """Return what the world said and showed, with people by their names."""
         return with_names(outcome.speech, name), with_names(outcome.image, name)
+
+    def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
+        """Put a name into a text; "" where it needs what only a game knows."""
+        text = template.replace("{name}", name)
+        return "" if SLOT.search(text) else text
 
     def expectation(self, situation: Situation) -> Expectation | None:
         """Return what a test expects of a facilitator in a situation."""
