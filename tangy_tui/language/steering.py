@@ -1,6 +1,7 @@
 """How people ask the program itself for something: to take a step back, to pause, for help.
 
-Each way stands for the word that can be typed for it; a whole sentence has to be one of them.
+Each way stands for the word that can be typed for it; a whole sentence has to be one of them. The
+decoder has them from everyday words alone: listened for as phrases, they cost sentences that stop.
 """
 
 from __future__ import annotations
@@ -66,11 +67,6 @@ WHILE_TEACHING: tuple[Steering, ...] = ("undo", "redo", "phrases", "help")
 def steering_of(text: str) -> Steering | None:
     """Return what a sentence asks of the program, None if it asks for nothing of that."""
     return _ways().get(bare(words_of(text)))
-
-
-def steering_phrases() -> tuple[str, ...]:
-    """Return what is listened for."""
-    return tuple(text for way in WHILE_TEACHING for text in WAYS[way])
 
 
 @cache

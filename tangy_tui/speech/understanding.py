@@ -14,7 +14,7 @@ from difflib import SequenceMatcher
 
 from tangy_tui.language.answers import NO, YES, choice_in, choice_phrases, yes_or_no
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
-from tangy_tui.language.steering import WHILE_TEACHING, steering_of, steering_phrases
+from tangy_tui.language.steering import WHILE_TEACHING, steering_of
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import clean
 from tangy_tui.learning.verification import Reply, Say, StopCommand
@@ -58,7 +58,7 @@ def wanted(
         phrases: those that can be told apart by their sound, if that is known.
     """
     return Wanted(
-        (*(phrasebook.spoken() if phrases is None else phrases), *steering_phrases(), *STOPS),
+        (*(phrasebook.spoken() if phrases is None else phrases), *STOPS),
         (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions, *STOPS),
         STOPS,
         {**OWN_NAME, **phrasebook.pronunciations()},

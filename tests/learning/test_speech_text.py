@@ -23,7 +23,6 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.phones import PHONES
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.language.steering import steering_phrases
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import transcription
@@ -119,7 +118,7 @@ class TestLanguage:
 
     def test_what_is_wanted_is_every_phrase_what_stops_and_answers(self) -> None:
         found = wanted(BOOK, USUAL)
-        assert found.phrases == (*BOOK.spoken(), *steering_phrases(), *STOPS)
+        assert found.phrases == (*BOOK.spoken(), *STOPS)
         assert set(STOPS) < set(found.answers)
         assert found.urgent == STOPS
         assert wanted(BOOK, USUAL, ["tell a joke"]).phrases == ("tell a joke", *STOPS)
