@@ -16,11 +16,15 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from importlib.util import cache_from_source
 from pathlib import Path
 from statistics import median
 from time import monotonic
 
 import pyte
+
+import tangy_profiles
+import tangy_tui
 
 ROUNDS = 7
 COLUMNS, LINES = 120, 40
@@ -65,10 +69,25 @@ def cpu_until(word: str, command: Sequence[str], home: str) -> tuple[float, floa
         os.close(parent)
 
 
+def compiled() -> bool:
+    """Say whether every module of Tangy stands compiled beside its source, and no older."""
+    folders = [tangy_tui, tangy_profiles]
+    sources = [path for one in folders for path in Path(one.__path__[0]).rglob("*.py")]
+    pairs = [(path, Path(cache_from_source(str(path)))) for path in sources]
+    return not os.environ.get("PYTHONDONTWRITEBYTECODE") and all(
+        kept.exists() and kept.stat().st_mtime >= path.stat().st_mtime for path, kept in pairs
+    )
+
+
 def main() -> None:
     """Print the table."""
     if len(sys.argv) != 2:
         raise SystemExit("usage: python tests/bench/first_paint.py PATH_OF_HARLEQUIN")
+    if not compiled():
+        raise SystemExit(
+            "Tangy has no compiled bytecode, or may not read it, and would compile itself at each "
+            "start: run python -m compileall on its folders, without PYTHONDONTWRITEBYTECODE."
+        )
     tangy = str(Path(sys.executable).parent / "tangy")
     rows: dict[str, list[tuple[float, float]]] = {"tangy": [], "harlequin": []}
     with tempfile.TemporaryDirectory() as home:
