@@ -125,6 +125,13 @@ def test_what_comes_with_tangy_was_learnt_from_the_words_that_come_with_it(name:
     )
 
 
+def test_nothing_comes_with_tangy_that_was_learnt_from_other_words() -> None:
+    shipped = {digest_of(load_activity(name)) for name in shipped_activities()}
+    assert {file.stem for file in SHIPPED.glob("*.json")} - shipped == set(), (
+        "run: python -m tangy_tui.language.intent_training"
+    )
+
+
 def test_other_words_make_another_digest() -> None:
     greeting = BINGO.behaviours["greeting"]
     other = replace(greeting, phrases=(*greeting.phrases, "hi all"))
