@@ -1,7 +1,7 @@
 """What was learnt of each activity: learnt once, and kept by the digest of its examples.
 
 To learn takes seconds, to read what was learnt milliseconds. That of the activities which come with
-Tangy comes with it, too; others are learnt when they are checked, or first needed.
+Tangy comes with it, too; others are learnt when they are first needed.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """What is meant by sentences that are no phrase of an activity, by what was learnt of it.
 
 Three tiers come of it: *sure* (one behaviour is asked about), *unsure* (up to three are offered),
-and nothing. The limits were set by `tests/bench/paraphrases.py` on sentences that no figure is
-quoted for.
+and nothing. The limits were chosen by hand and looked at on the tuned half of
+`tests/bench/sentences.py`, which no figure is quoted for.
 """
 
 from __future__ import annotations
