@@ -117,13 +117,13 @@ async def test_speed_goes_from_life_to_a_thousand_times(
         screen = pilot.app.screen
         await pilot.press("p", "p")
         for _ in range(12):
-            await pilot.press("full_stop")
+            await pilot.press("greater_than_sign")
         await pilot.press("p")
         await pilot.press("p")
         await pilot.pause()
         assert screen.query_one(StatusLine).status.note == "x1000"
         for _ in range(12):
-            await pilot.press("comma")
+            await pilot.press("less_than_sign")
         await pilot.pause()
         assert screen.query_one(StatusLine).status.note == "x1"
 
@@ -252,7 +252,7 @@ async def test_home_leads_everywhere_and_back(
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         assert "3 demonstrations" in screen_text(pilot.app)
         for key, kind in ways.items():
-            await pilot.press(key)
+            await pilot.press(key, "enter")
             while not isinstance(pilot.app.screen, kind):
                 await pilot.pause(0.02)
             if kind is TeachScreen:
@@ -270,7 +270,7 @@ async def test_playing_before_learning_is_answered_with_what_to_do(
     run: Run, untaught: Workspace
 ) -> None:
     async with run(app=Program(untaught, clock=StillClock())) as pilot:
-        await pilot.press("p")
+        await pilot.press("p", "enter")
         while not isinstance(pilot.app.screen, MessageDialog):
             await pilot.pause(0.02)
         assert "has not learnt Bingo yet" in screen_text(pilot.app)

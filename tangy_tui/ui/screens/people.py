@@ -82,8 +82,8 @@ class PeopleScreen(TangyScreen[None]):
                 yield panel(ChoiceList("What works", text.STRATEGIES_HELP, id="strategies"))
             yield panel(ChoiceList("History", text.HISTORY_HELP, id="history"))
         yield key_line(
-            "panel", "put_away:off", "filter", "feedback", "method", "undo", "pronounce",
-            "world", "back", "help",
+            "panel", "put_away:off", "feedback", "method", "undo", "pronounce", "world",
+            "filter", "back", "help",
         )  # fmt: skip
 
     @property
