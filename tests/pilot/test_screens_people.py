@@ -308,7 +308,9 @@ async def test_in_ascii_every_line_is_ascii(run: Run, workspace: Workspace) -> N
         assert "settled" in pilot.text()
 
 
-@pytest.mark.parametrize("keys", [("tab", "tab", "x"), ("down", "F"), ("x",)], ids=["void", "answer", "switch"])
+@pytest.mark.parametrize(
+    "keys", [("tab", "tab", "x"), ("down", "F"), ("x",)], ids=["void", "answer", "switch"]
+)
 async def test_how_the_questions_look(
     run: Run, workspace: Workspace, keys: tuple[str, ...], looks: Callable[[App[None]], None]
 ) -> None:

@@ -10,6 +10,7 @@ from textual.app import App
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.text.keys import NAMES
 from tangy_tui.ui.dialogs.pronunciation import PhonesInput, PronunciationDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.phrases import PhrasesScreen
@@ -158,10 +159,12 @@ async def test_at_the_smallest_size_it_is_drawn(
 async def test_the_palette_leads_to_it_and_esc_back(run: Run, workspace: Workspace) -> None:
     program = Program(workspace, clock=StillClock())
     async with run(app=program) as pilot:
-        (command,) = [
-            one for one in program.get_system_commands(program.screen) if one.title == "Phrases"
-        ]
-        await command.callback()
+        await pilot.press("ctrl+p", *"phrases")
+        while NAMES["phrases"].name not in pilot.text():
+            await pilot.pause(0.02)
+        await pilot.press("enter")
+        while not isinstance(program.screen, PhrasesScreen):
+            await pilot.pause(0.02)
         await looked_up(pilot)
         assert isinstance(program.screen, PhrasesScreen)
         pilot.type("escape")
