@@ -45,8 +45,9 @@ def test_it_is_said_once_in_each_game_who_sits_where_somebody_else_does(
             link.sign()  # no sign is up any more
 
     played.play(range(2), expert=False, tell=tell)
+    going = workspace.activity.behaviours["navigate to user"].question
     said = [line for line in lines if "sits at" in line]
-    assert len([line for line in lines if "navigate to user (User 2)" in line]) == 4
+    assert len([line for line in lines if f"{going} (User 2): " in line]) == 4
     assert said == ["User 4 sits at User 2's place: Tangy speaks to User 4."] * 2
 
 
