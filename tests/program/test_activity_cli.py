@@ -9,6 +9,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
+import tangy_profiles
 from tangy_profiles.activity import read_activity, shipped_activities
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import load_people
@@ -24,6 +25,7 @@ from tangy_tui.text.rules import together_words
 Tangy = Callable[..., CompletedProcess[str]]
 SHIPPED = shipped_activities()["bingo"].read_text(encoding="utf-8")
 LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
+RULES_FILE = Path(tangy_profiles.__path__[0]) / "faults.toml"
 RULES = """
 [[faults]]
 code = "unexplained"
@@ -127,11 +129,11 @@ def test_a_folder_and_an_empty_file_are_called_that(tangy: Tangy, tmp_path: Path
 
 
 def test_what_only_comes_of_two_kinds_together_can_be_brought_about(tangy: Tangy) -> None:
-    rules = json.loads(tangy("activity", "check", "--json").stdout)["files"][-1]
+    rules = json.loads(tangy("activity", "check", RULES_FILE, "--json").stdout)["files"][-1]
     together = rules["only_by_kinds_together"]
     assert together == {"mute": ["voice-dead", "screen-dead"]}
     assert not {"mute", "unknown-situation"} & set(rules["rules_without_kind"])
-    said = tangy("activity", "check").stdout
+    said = tangy("activity", "check", RULES_FILE).stdout
     assert together_words(["voice-dead", "screen-dead"], "mute") in said
 
 
