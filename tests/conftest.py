@@ -53,10 +53,12 @@ gc.set_threshold(100_000, 10, 10)
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
-# A shell that runs something in its background makes it ignore Ctrl-C, and so would every program
-# that tests start: they would not end, and go on beside the tests that follow.
+# A shell that runs something in its background makes it ignore Ctrl-C, and `nohup` a hang-up. So
+# would every program that tests start: they would not end, and go on beside the tests that follow.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 pytest_plugins = ["tests.support.hangs"]
 

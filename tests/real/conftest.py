@@ -69,15 +69,21 @@ def open_tmux(tmp_path: Path) -> Iterator[Callable[[int, int], Tmux]]:
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data folder in which one guided game was shown and learnt from."""
-    folder = tmp_path_factory.mktemp("live")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data folder in which one guided game was shown and learnt from, as it was then."""
+    folder = tmp_path_factory.mktemp("taught")
     teach = ["teach", "--guided", "--teacher", "scripted", "--plain"]
     for command in (teach, ["learn"]):
         subprocess.run(  # noqa: S603
             [TANGY, *command, "--data", str(folder)], check=True, capture_output=True
         )
     return folder
+
+
+@pytest.fixture
+def folder(taught: Path, tmp_path: Path) -> Path:
+    """A copy of the taught folder of the test's own: no game of another test goes on in it."""
+    return Path(shutil.copytree(taught, tmp_path / "taught"))
 
 
 @pytest.fixture

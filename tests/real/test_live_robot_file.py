@@ -68,7 +68,9 @@ def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
 ) -> None:
     terminal = program(bench, folder)
     try:
-        if "Is all well now?" in terminal.until(lambda text: "greeting" in text or "well" in text):
+        if "Is all well now?" in terminal.until(
+            lambda text: "greet everyone" in text or "well" in text
+        ):
             terminal.settle()
             terminal.type("y")
         terminal.until("call number")
@@ -96,7 +98,9 @@ def test_a_tablet_is_paired_by_what_the_live_screen_tells(
     told = re.compile(r"(http://[\d.:]+/), code[^\d]+(\d{4}-\d{4})")
     tablet = None
     try:
-        if "Is all well now?" in terminal.until(lambda text: "greeting" in text or "well" in text):
+        if "Is all well now?" in terminal.until(
+            lambda text: "greet everyone" in text or "well" in text
+        ):
             terminal.settle()
             terminal.type("y")
         terminal.until("No screen")  # nobody has paired a tablet yet
