@@ -51,4 +51,4 @@ def done_words(settled: int, left: int) -> str:
 
 def keys_words(then: str) -> str:
     """Say which keys lead on when all conflicts have been looked at."""
-    return f"Press enter to {then}, esc to go back, u to take the last answer back."
+    return f"Press enter to {then}, esc to go back, {{undo}} to take the last answer back."

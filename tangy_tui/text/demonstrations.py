@@ -14,12 +14,12 @@ LIST_HELP = (
 NONE_TO_LIST = "No demonstrations yet: choose Teach at home to show Tangy a game."
 
 NO_STEPS = "It has no steps."
-NOTHING_LOST = "Nothing is lost: u takes it back."
+NOTHING_LOST = "Nothing is lost: {undo} takes it back."
 AGAIN_DETAIL = (
     "The steps before it stay as they are. The old demonstration is replaced only when you have "
     "shown the game to its end."
 )
-MARK_FIRST = "Mark two or more with space first, and then merge them with g."
+MARK_FIRST = "Mark two or more with {mark} first, and then merge them with {merge}."
 CHOOSE_LAST = "Choose the step that ends the first part: tab goes to the steps."
 CHOOSE_FIRST = "Choose the step to begin with: tab goes to the steps."
 
@@ -65,7 +65,7 @@ def refused_words(row: ListRow) -> str:
 
 def changed_words(change: str, before: str = "") -> str:
     """Say what a change did, after what it was, or how it is taken back."""
-    return f"{before}: {change}" if before else f"{change} u takes it back."
+    return f"{before}: {change}" if before else f"{change} {{undo}} takes it back."
 
 
 def steps_title(number: int) -> str:

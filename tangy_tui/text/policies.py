@@ -21,7 +21,7 @@ ONE_POLICY = (
     "person teach."
 )
 WHICH = "Which policy do you want to see?"
-ALL_THE_SAME = "They do the same everywhere; d shows all rows."
+ALL_THE_SAME = "They do the same everywhere; {differences} shows all rows."
 
 
 def compared_words(differ: int, situations: int) -> str:

@@ -319,4 +319,4 @@ def no_pictures_words(label: str) -> str:
 
 def look_words(label: str) -> str:
     """Say which key shows what a camera sees."""
-    return f"v shows what the {label} sees."
+    return f"{{camera}} shows what the {label} sees."

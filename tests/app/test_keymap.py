@@ -10,6 +10,7 @@ import pytest
 from tangy_profiles.errors import ProfileError
 from tangy_tui.app.keymap import ACTIONS, BY_ID, Keymap, is_letter
 from tangy_tui.app.user_settings import read_settings
+from tangy_tui.text import conflicts, demonstrations, phrases, policies, sensors
 from tangy_tui.text.keys import NAMES, with_keys
 
 
@@ -75,3 +76,23 @@ def test_texts_name_the_keys_that_were_set(tmp_path: Path) -> None:
     assert with_keys("{undo} takes it back, {redo} not; {other}", keymap) == (
         "f12 takes it back, f3 not; {other}"
     )
+
+
+@pytest.mark.parametrize(
+    ("text", "ids"),
+    [
+        (conflicts.keys_words("learn"), ["undo"]),
+        (demonstrations.MARK_FIRST, ["mark", "merge"]),
+        (demonstrations.NOTHING_LOST, ["undo"]),
+        (demonstrations.changed_words("Deleted."), ["undo"]),
+        (phrases.LIST_HELP, ["filter", "hear", "pronounce"]),
+        (policies.ALL_THE_SAME, ["differences"]),
+        (sensors.look_words("camera"), ["camera"]),
+    ],
+)
+def test_lists_and_pictures_name_the_key_that_does_it(text: str, ids: list[str]) -> None:
+    set_by_user = {id: (f"f1{number}",) for number, id in enumerate(ids)}
+    told = with_keys(text, Keymap(set_by_user))
+    assert [key for (key,) in set_by_user.values() if key in told] == [
+        f"f1{n}" for n in range(len(ids))
+    ]

@@ -31,7 +31,7 @@ def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
     with CameraServer() as server:
         terminal = open_terminal("sensors", "--camera", f"camera={server.url}")
         terminal.until("it works")
-        terminal.type("v")
+        terminal.type("V")
         terminal.until("▀▀▀▀▀▀▀▀")
         started = children(terminal.process.pid)
         assert started

@@ -151,7 +151,8 @@ def test_sound_on_standard_input_leaves_the_keys_to_the_terminal(
     file = voices.folder / "greeting.raw"
     file.write_bytes(voices.say("greet everyone") + bytes(2 * RATE))
     data = str(tmp_path / "data")
-    tmux.run("cat", str(file), "|", tangy, "teach", "--hands-free", "--mic", "-", "--data", data)
+    words = ("teach", "--teacher", "Ada", "--hands-free", "--mic", "-", "--data", data)
+    tmux.run("cat", str(file), "|", tangy, *words)
     tmux.until("Did you say: greet everyone?")
     tmux.until(lambda text: _confirmed(tmux, text))
     tmux("send-keys", "C-c")

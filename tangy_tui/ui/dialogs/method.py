@@ -51,7 +51,8 @@ class MethodDialog(Dialog[MethodChoice | None]):
     ]
     HELP = (
         "How a strategy is chosen, where beliefs begin, and how fast they fade for people who "
-        "change. The counts stay whatever you choose, and u on the people screen takes it back."
+        "change. The counts stay whatever you choose, and {undo} on the people screen takes it "
+        "back."
     )
 
     def __init__(

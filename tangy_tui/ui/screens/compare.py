@@ -15,6 +15,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.comparison import SituationComparison, compare
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.comparison import WHY_A, WHY_B
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.policies import (
     ALL_THE_SAME,
@@ -28,7 +29,7 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
-from tangy_tui.ui.keys import bind
+from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.policy_options import DIGEST_SHOWN, comparison_options, policy_options
 from tangy_tui.ui.reasons import why_row
@@ -167,7 +168,7 @@ class CompareScreen(TangyScreen[None]):
     def _write(self, width: int) -> list[PageLine]:
         rows = self.rows
         if not rows:
-            return [PageLine(((ALL_THE_SAME, "dim"),))]
+            return [PageLine(((with_keys(ALL_THE_SAME, keymap_of(self.app)), "dim"),))]
         activity = self._workspace.activity
         words = [clean(activity.in_words(row.situation)) for row in rows]
         label = max(cell_len(word) for word in words) + 2

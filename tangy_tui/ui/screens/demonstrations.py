@@ -17,6 +17,7 @@ from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
 from tangy_tui.text import demonstrations as text
 from tangy_tui.text.conflicts import NONE_LEFT
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import edit_words, step_words
 from tangy_tui.ui.base import TangyScreen
@@ -221,7 +222,8 @@ class DemonstrationsScreen(TangyScreen[None]):
         """Ask a question, with what it means, and make the change if it is meant."""
 
         async def ask() -> None:
-            if await self.app.push_screen_wait(ConfirmDialog(*asked, yes=yes)):
+            question, detail = asked[0], with_keys(asked[1], keymap_of(self.app))
+            if await self.app.push_screen_wait(ConfirmDialog(question, detail, yes=yes)):
                 self._do(change)
 
         self.run_worker(ask(), name="confirm")

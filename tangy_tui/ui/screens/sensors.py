@@ -15,11 +15,12 @@ from textual.widget import Widget
 from tangy_profiles.health import Health
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text import sensors as text
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.sensors import Sensing, Teller, Told, age_words, card_words, rate_words, remark
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
-from tangy_tui.ui.keys import bind
+from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.block_picture import BlockPicture
 from tangy_tui.ui.widgets.card_lines import SEEN_LEGEND, seen_card_lines
@@ -246,7 +247,8 @@ class SensorsScreen(TangyScreen[None]):
         elif told.device.name not in self._cameras:
             picture.say(text.no_pictures_words(told.device.label))
         elif not self._seen:
-            picture.say(text.look_words(told.device.label))
+            words = text.look_words(told.device.label)
+            picture.say(with_keys(words, keymap_of(self.app)))
         elif picture.there:
             below = "live" if told.well else f"{told.state}, {age_words(told.age)} old"
         self._frame(picture, below=below)
