@@ -186,7 +186,7 @@ async def test_the_text_of_a_no_can_be_changed_and_given_again(run: Run) -> None
         await ask(pilot)
         await pilot.press("n")
         await pilot.pause()
-        await pilot.press("s", "enter")
+        await pilot.press("right", "s", "enter")
         await pilot.pause()
         assert screen.given == ["call number", "call numbers"]
 
