@@ -75,6 +75,14 @@ def test_one_that_is_called_off_meanwhile_is_off() -> None:
     assert robot.did == ["begins", "is off"]
 
 
+@pytest.fixture
+def hang_ups() -> Iterator[None]:
+    """Let a hang-up be heard, even where the tests themselves are run by nohup."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
 @contextmanager
 def signalled(number: int, when: Callable[[], object]) -> Iterator[None]:
     """Send this program a signal, once."""
@@ -93,6 +101,7 @@ def signalled(number: int, when: Callable[[], object]) -> Iterator[None]:
         sender.join()
 
 
+@pytest.mark.usefixtures("hang_ups")
 @pytest.mark.parametrize(
     ("number", "status"),
     [(signal.SIGHUP, 129), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.slow)],
@@ -136,6 +145,7 @@ def test_a_signal_that_interrupts_no_wait_calls_it_off_as_well() -> None:
     assert robot.did == ["begins", "is off"]
 
 
+@pytest.mark.usefixtures("hang_ups")
 def test_a_signal_in_a_game_switches_the_robot_off() -> None:
     robot = Robot()
     robot.answers.set()
