@@ -341,7 +341,7 @@ async def test_leaving_in_mid_game_is_asked_and_logged(
         await pilot.press("escape")
         await pilot.pause()
         assert "Leave in the middle of the game?" in screen_text(pilot.app)
-        await pilot.press("full_stop")
+        await pilot.press("n")
         await pilot.pause()
         assert isinstance(pilot.app.screen, PlayScreen)
         assert pilot.app.screen.query_one(StatusLine).status.note == "x1"
