@@ -37,9 +37,6 @@ OWED_BY_PEOPLE = ("what was asked about", "request")
 no fault of the robot's."""
 
 
-AWAITED_SECONDS = 0.125
-"""s before the link counts as lost in which what is reached by it is waited for."""
-AWAITS_SECONDS = 0.1  # s, as long as a scanner's data may be older than the link's
 LATE = "WAITS"
 """How a robot is while the data of a device is late, and not lost."""
 OTHERS: Variable = "others' requests"
@@ -243,12 +240,14 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
     robot's that is not even mentioned is as silent as any.
     """
     found: dict[str, Fact] = {f"{name}.state": STALE for name in robot.devices}
-    awaited = _link_is_awaited(robot, health)
+    quiet = _link_is_quiet_for(robot, health)
     for reading in health:
         device = robot.devices.get(reading.device)
         state = lasting_state(device, reading)
-        just = device is not None and reading.age <= device.lost_after + AWAITS_SECONDS
-        found[f"{reading.device}.state"] = WARN if awaited and just and state == STALE else state
+        if state == STALE and quiet and device is not None:
+            grew_old = device.stale_after < reading.age <= device.lost_after + quiet
+            state = WARN if grew_old else state
+        found[f"{reading.device}.state"] = state
         if math.isfinite(reading.age):
             found[f"{reading.device}.age"] = reading.age
         if state != STALE:
@@ -257,17 +256,18 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
     return found
 
 
-def _link_is_awaited(robot: Robot, health: Health) -> bool:
-    """Say whether the link has been quiet for a while and is not silent yet.
+def _link_is_quiet_for(robot: Robot, health: Health) -> float:
+    """Return for how many s the link has been quiet, if that is long and it is not lost yet; or 0.
 
-    What is reached by a lost link may count as silent a moment before the link does itself; then
-    that moment is waited for, so that staff are not sent to the wrong cable.
+    All that is reached by a quiet link grows old with it, and what was older before, as pictures
+    are, may count as silent before the link does. It is judged by how old it was when the link was
+    heard last, so that staff are not sent to the wrong cable.
     """
     device = robot.devices.get(LINK)
     reading = next((one for one in health if one.device == LINK), None)
     if device is None or reading is None or lasting_state(device, reading) == STALE:
-        return False
-    return reading.age > device.lost_after - AWAITED_SECONDS
+        return 0.0
+    return reading.age if reading.age > device.stale_after else 0.0
 
 
 def symptoms(evidence: Evidence) -> set[str]:

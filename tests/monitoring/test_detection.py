@@ -189,18 +189,30 @@ def test_the_name_of_a_kind_may_be_written_in_capitals() -> None:
 def test_what_falls_silent_just_before_the_link_does_is_not_blamed() -> None:
     robot = load_robot()
 
-    def of(link: float, laser: float) -> Evidence:
-        ages = {"link": link, "laser": laser}
+    def of(link: float, laser: float, camera: float = 0.01) -> Evidence:
+        ages = {"link": link, "laser": laser, "camera": camera}
         health = tuple(Reading(name, ages.get(name, 0.01)) for name in robot.devices)
         return device_evidence(robot, health)
 
     lost = robot.devices["link"].lost_after
-    assert lost == robot.devices["laser"].lost_after
+    assert lost == robot.devices["laser"].lost_after == robot.devices["camera"].lost_after
     assert of(0.03, lost + 0.05)["laser.state"] == STALE  # the link is well: it is the scanner
     assert of(lost - 0.05, lost + 0.05)["laser.state"] != STALE  # that will be known in a moment
-    assert of(lost - 0.05, lost + 0.15)["laser.state"] == STALE  # that has been long enough
+    assert of(0.3, 0.3, lost + 0.25)["camera.state"] != STALE  # young enough when last heard of
+    assert of(0.3, 0.3, lost + 0.35)["camera.state"] == STALE  # lost before the link was quiet
+    assert of(lost - 0.4, lost - 0.4, lost + 0.01)["camera.state"] != STALE  # an older picture
     both = of(lost + 0.01, lost + 0.09)
     assert both["link.state"] == both["laser.state"] == STALE
+
+
+def test_a_scanner_that_says_itself_that_it_has_no_data_is_believed_on_a_quiet_link() -> None:
+    robot = load_robot()
+    ages = {"link": robot.devices["link"].lost_after - 0.05}
+    health = tuple(
+        Reading(name, ages.get(name, 0.01), STALE if name == "laser" else OK)
+        for name in robot.devices
+    )
+    assert device_evidence(robot, health)["laser.state"] == STALE
 
 
 def test_data_that_is_late_is_told_and_is_no_symptom_before_it_counts_as_lost() -> None:
