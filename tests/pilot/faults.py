@@ -7,6 +7,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen
@@ -69,6 +70,15 @@ async def asked(pilot: TangyPilot) -> AskingPanel:
     await until_shown(pilot, lambda: screen.query(AskingPanel))
     await until_shown(pilot, lambda: any(not bar.closed for bar in screen.query(CommandBar)))
     return screen.query_one(AskingPanel)
+
+
+async def sure(pilot: TangyPilot, key: str) -> None:
+    """Press a key that asks whether it is meant, and say yes."""
+    await pilot.press(key)
+    await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+    asked = pilot.app.screen
+    await pilot.press("y")
+    await until_shown(pilot, lambda: asked not in pilot.app.screen_stack)
 
 
 def kinds_of(fault: Fault) -> list[str]:

@@ -33,6 +33,7 @@ from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.interaction.gaps import learnt, otherwise, without
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, TangyPilot, screen_text
+from tests.pilot.faults import sure
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 
@@ -109,7 +110,7 @@ async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
         await answer(pilot)
         while screen.query_one(Transcript).count == count:
             await pilot.pause(0.02)
-        await pilot.press("e")
+        await sure(pilot, "E")
         await over(pilot, screen)
         said = " ".join(screen.query_one(LogView).sentences)
         assert "Learnt from ann: " in said
@@ -127,7 +128,7 @@ async def test_what_was_learnt_is_said_in_a_message(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy, speed=1), notifications=True) as pilot:
-        await pilot.press("e")
+        await sure(pilot, "E")
         screen = await asked(pilot)
         screen.skipping = False
         await answer(pilot)
@@ -179,7 +180,7 @@ async def test_keys_typed_ahead_answer_nothing(
         while screen.query_one(Transcript).count < 1:
             await pilot.press("full_stop")
             await pilot.pause()
-        pilot.type("n", *"xxx", "enter", "y")
+        pilot.type("full_stop", *"xxx", "enter", "y")
         screen = await asked(pilot)
         await pilot.pause()
         assert screen.query_one(CommandBar).text == ""
@@ -226,8 +227,9 @@ async def test_the_game_is_given_up_on_purpose(
             await pilot.press("escape", "escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, ConfirmDialog)
-        await pilot.press("full_stop")
+        await pilot.press("n")
         await pilot.pause()
+        assert not any(isinstance(s, ConfirmDialog) for s in pilot.app.screen_stack)
         assert screen.control.supervision.question is not None
         if way == "word":
             pilot.type(*"quit", "enter")
@@ -267,7 +269,7 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
         await pilot.press("escape", "p")
         await pilot.pause()
         assert "STOPPED" not in screen_text(pilot.app)
-        await pilot.press(*["backspace"] * len("ne:"))  # letters go to the line, also then
+        await pilot.press(*["backspace"] * len(".E:"))  # letters go to the line, also then
         await answer(pilot)
         while screen.control.supervision.question is not None:
             await pilot.pause(0.02)

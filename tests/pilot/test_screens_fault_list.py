@@ -28,6 +28,7 @@ from tests.pilot.faults import (
     playing,
     seen,
     sentences,
+    sure,
 )
 from tests.support.waiting import until_shown
 
@@ -48,13 +49,14 @@ async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
         assert "going on without" in line
         assert line.endswith("[a] seen")
         assert "robot WARN: An arm does not work" in pilot.lines()[0]
-        await pilot.press("a", "y")
+        await sure(pilot, "a")
         await pilot.pause()
         assert not banner.display
         assert game.faults[0].acknowledged
         assert "robot WARN" in pilot.lines()[0]
-        await pilot.press("a", "y")
+        await pilot.press("a")
         await pilot.pause()
+        assert pilot.app.screen is screen
         assert screen.query_one(LogView).sentences[-1] == NO_UNSEEN_FAULT
 
 
@@ -92,11 +94,11 @@ async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
         assert "robot WARN: Head camera covered" in pilot.lines()[0]
         assert room.size.height == height or size == MIDDLE  # where the list comes up as well
         assert not any("recovered" in said for said in sentences(screen))
-        await pilot.press("a", "y")
+        await sure(pilot, "a")
         await pilot.pause()
         assert not screen.query_one(FaultBanner).display
         assert NO_UNSEEN_FAULT not in sentences(screen)
-        await pilot.press("e")
+        await sure(pilot, "E")
         await until_shown(pilot, lambda: game.over)
         assert any("camera covered: recovered" in said for said in sentences(screen))
 

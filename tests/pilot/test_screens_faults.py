@@ -115,7 +115,7 @@ async def test_how_standing_still_looks(
 ) -> None:
     async with run(app=playing(workspace, policy), size=size) as pilot:
         await halting(pilot, "laser-disconnected")
-        await pilot.press("a", "y")
+        await pilot.press("a")
         await pilot.pause()
         looks(pilot.app)
 
