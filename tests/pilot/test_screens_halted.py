@@ -133,7 +133,7 @@ async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
         assert game.over
         assert kinds_of(dialog.fault)[-1] == "given up"
         assert "robot WARN: Emergency stop pressed, not cleared" in seen(pilot)
-        assert pilot.lines()[-1].strip().startswith("g plays again")
+        assert pilot.lines()[-1].strip().startswith("g play again")
         assert "pause" not in pilot.lines()[-1]
         assert "[a] seen" not in pilot.text()
         ended = workspace.store.last("game ended")
