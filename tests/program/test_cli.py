@@ -40,7 +40,7 @@ def test_the_story_taught_learnt_and_played_for_300_games(tangy: Tangy, tmp_path
     )
     assert list(played) == [
         "games", "steps", "behaviours", "rows", "interactions_per_user_game", "beliefs", "faults",
-        "finished", "stopped", "asked",
+        "finished", "stopped", "asked", "pauses",
     ]  # fmt: skip
     assert (played["games"], played["faults"]) == (300, [])
     assert (played["finished"], played["stopped"], played["asked"]) == (300, [], 0)
