@@ -19,7 +19,6 @@ from tangy_profiles.health import (
     OK,
     STALE,
     STATES,
-    WARN,
     Fact,
     Health,
     Reading,
@@ -246,7 +245,8 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
         state = lasting_state(device, reading)
         if state == STALE and quiet and device is not None:
             grew_old = device.stale_after < reading.age <= device.lost_after + quiet
-            state = WARN if grew_old else state
+            told = OK if reading.state == STALE else reading.state
+            state = told if grew_old else state  # as it was: a pause is no sign of anything
         found[f"{reading.device}.state"] = state
         if math.isfinite(reading.age):
             found[f"{reading.device}.age"] = reading.age

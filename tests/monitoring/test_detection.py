@@ -198,7 +198,7 @@ def test_what_falls_silent_just_before_the_link_does_is_not_blamed() -> None:
     assert lost == robot.devices["laser"].lost_after == robot.devices["camera"].lost_after
     assert of(0.03, lost + 0.05)["laser.state"] == STALE  # the link is well: it is the scanner
     assert of(lost - 0.05, lost + 0.05)["laser.state"] != STALE  # that will be known in a moment
-    assert of(0.3, 0.3, lost + 0.25)["camera.state"] != STALE  # young enough when last heard of
+    assert of(0.3, 0.3, lost + 0.25)["camera.state"] == OK  # young enough when last heard of
     assert of(0.3, 0.3, lost + 0.35)["camera.state"] == STALE  # lost before the link was quiet
     assert of(lost - 0.4, lost - 0.4, lost + 0.01)["camera.state"] != STALE  # an older picture
     both = of(lost + 0.01, lost + 0.09)
