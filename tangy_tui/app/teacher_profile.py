@@ -59,7 +59,7 @@ def checked(name: str) -> str:
     Raises:
         TangyError: it is none that may be kept.
     """
-    return read_name(name, "The name")
+    return read_name(name, "A teacher's name")
 
 
 def login_name() -> str:
