@@ -86,7 +86,7 @@ def with_mistakes(settings: Settings, case: Case) -> dict[str, Any]:
 def places(
     activity: Activity, shown: Sequence[Demonstration], rate: float, place: str, rng: Random
 ) -> set[int]:
-    """Choose the steps (ids) that are to be wrong.
+    """Choose the steps (ids) that are to be wrong, a share `rate` of them (0 to 1).
 
     On the commonest and the rarest, one situation after another gets one wrong answer, in the
     order of how often they came about, and again from the first, for as long as each keeps a

@@ -18,6 +18,7 @@ EVERYDAY = 3_000
 Of 75 other sentences, 9, 13 and 16 were taken for commands with 2,500, 1,000 and no such words.
 """
 DISCOUNT = 0.5  # probability mass that n-grams of phrases leave for sequences no phrase has
+LEAST_PROBABILITY = 1e-99  # below it a logarithm is none that a decoder reads
 GARBAGE = "_"  # begins the name of a phone among the words
 
 
@@ -90,12 +91,12 @@ def open_model(phrases: Sequence[str], everyday: Mapping[str, float], share: flo
     for line in unigrams.splitlines():
         score, word, backoff = line.split()
         own.add(word)
-        if word not in ("<s>", "</s>"):
+        if word != "<s>":  # which is never said; the end of a phrase shares with everyday words
             mixed = (1 - share) * 10 ** float(score) + share * everyday.get(word, 0.0) / whole
-            score = f"{math.log10(mixed):.4f}"
+            score = f"{math.log10(max(mixed, LEAST_PROBABILITY)):.4f}"
         lines.append(f"{score} {word} {backoff}")
     lines += [
-        f"{math.log10(share * probability / whole):.4f} {word} 0.0000"
+        f"{math.log10(max(share * probability / whole, LEAST_PROBABILITY)):.4f} {word} 0.0000"
         for word, probability in everyday.items()
         if word not in own and share > 0
     ]

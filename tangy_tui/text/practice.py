@@ -52,10 +52,7 @@ def _totals(practice: Practice) -> Iterator[str]:
 
 def _times(practice: Practice) -> Iterator[str]:
     median, late, worst = (round(1000 * seconds) for seconds in practice.latencies())
-    yield (
-        f"Result after the end of the sound: {median} ms (median), {late} ms (95 %), "
-        f"{worst} ms (worst)."
-    )
+    yield (f"Result after the sound: {median} ms (median), {late} ms (95 %), {worst} ms (worst).")
     sound = sum(row.seconds for row in practice.rows)
     if practice.cpu:
         yield f"A CPU second decodes {sound / practice.cpu:.1f} s of sound ({sound:.0f} s in all)."

@@ -72,7 +72,7 @@ def test_yes_in_full_is_taken_as_well(workspace: Workspace, yes: str) -> None:
 
 
 def test_help_at_the_question_says_what_can_be_answered(workspace: Workspace) -> None:
-    said = told(workspace, "tell everyone goodbye", "help", "n", "greet everyone", "?")
+    said = told(workspace, "goodbye number", "help", "n", "greet everyone", "?")
     at = said.index("Please answer Y to execute it, or N to give a new command.")
     assert [line.partition(":")[0] for line in said[at + 1 : at + 5]] == [
         "  y", "  n", "  1 to 2", "  quit",
@@ -119,14 +119,14 @@ def test_n_gives_the_words_back(workspace: Workspace) -> None:
 
 
 def test_alternatives_are_chosen_by_number_and_asked_about_again(workspace: Workspace) -> None:
-    said = told(workspace, "tell everyone goodbye", "9", "1", "1")
+    said = told(workspace, "goodbye number", "9", "2", "1")
     asked = [line.partition("?")[0] for line in said if line.startswith("Did you say: ")]
-    goodbye, joke = "Did you say: say goodbye", "Did you say: tell a joke"
-    assert asked == [goodbye, joke, goodbye], "nothing is executed unasked"
-    assert said[4].startswith("  heard 'tell everyone goodbye', ")
+    goodbye, call = "Did you say: say goodbye", "Did you say: call number"
+    assert asked == [goodbye, call, goodbye], "nothing is executed unasked"
+    assert said[4].startswith("  heard 'goodbye number', ")
     assert said[4].endswith("% sure")
     assert said[5:8] == [
-        "  1 instead: tell a joke", "  2 instead: greet everyone", "There is no choice 9.",
+        "  1 instead: ask to mark numbers", "  2 instead: call number", "There is no choice 9.",
     ]  # fmt: skip
     assert said[10] == "  1 instead: say goodbye"
 
