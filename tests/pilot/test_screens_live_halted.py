@@ -84,7 +84,7 @@ async def test_the_screen_lives_while_the_robot_process_is_started_again(
             await lives(pilot, link)
             await pilot.press("r")
             assert f"! {halts.wait_words(halts.RESTARTING)}" in seen(pilot)
-            assert "^x STOP" in pilot.text() and "c clear" not in pilot.text()
+            assert "^x STOP" in pilot.text() and "r all is well" not in pilot.text()
             await pilot.press("ctrl+x")
             assert link.told[-1] == "stop: staff stopped it" and "STOPPED" in pilot.lines()[0]
             link.told.append("another process")
@@ -92,7 +92,7 @@ async def test_the_screen_lives_while_the_robot_process_is_started_again(
             link.free = True
         await until_shown(pilot, lambda: f"{halts.RESTARTED} No expert is named" in seen(pilot))
         assert link.told[-1] == "stop: staff stopped it"  # the new process is told as well
-        assert "c clear" in pilot.text()
+        assert "r all is well" in pilot.text()
 
 
 async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(

@@ -139,8 +139,8 @@ class Menu(Widget, can_focus=True):
         return 2 if self.size.height >= 2 * len(self._choices) + 3 else 1
 
     def _first(self) -> int:
-        """Return the line of the first choice, with an empty one before it if that fits."""
-        return 3 if self.size.height >= len(self._choices) + 3 else 2
+        """Return the line of the first choice: what stands above it goes where room is scarce."""
+        return max(1, min(3, self.size.height - len(self._choices)))
 
     def _line(self, y: int) -> int | None:
         """Return which choice stands on line `y` of the content."""
@@ -150,7 +150,7 @@ class Menu(Widget, can_focus=True):
     def _heading(self, y: int) -> Row:
         if y == 0:
             return ((" ".join("TANGY"), "robot"),)
-        if y == 1:
+        if y == 1 < self._first():
             return ((TAGLINE, "dim"),)
         return ()
 
