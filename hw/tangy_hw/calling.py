@@ -53,7 +53,7 @@ def call(contact: Contact, message: Mapping[str, Any], seconds: float, told: Tol
             _by_post(contact.url, message, seconds, told)
         else:
             _by_topic(contact.url, message, seconds, told)
-    except Exception as error:  # whoever called must hear of it, whatever it was
+    except Exception as error:  # the caller has to hear of any failure
         told(CallNews("failed", _short(str(error) or type(error).__name__)))
 
 
@@ -153,7 +153,7 @@ def _by_topic(url: str, message: Mapping[str, Any], seconds: float, told: Told) 
 
 
 def _answer_in(said: bytes) -> str | None:
-    """Return what a reply says if it is somebody's answer, None if it is none."""
+    """Return the words of a reply if a person answered, else None."""
     text = said.decode("utf-8", "replace").strip()
     with suppress(ValueError, RecursionError):
         value = json.loads(text)

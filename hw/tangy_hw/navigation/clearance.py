@@ -76,7 +76,7 @@ def guarded(twist: Twist, points: Floats, around: Around, limits: MotionLimits) 
 
     Args:
         twist: what it is told.
-        points: what there is to run into (n, 2), in the robot's frame.
+        points: the obstacles, in metres (n, 2), in the robot's frame.
         around: what of that may be people.
         limits: how it may drive.
     """

@@ -31,10 +31,7 @@ from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine
 from tangy_tui.ui.screens import play_keys
-from tangy_tui.ui.screens.play_keys import (
-    faster,
-    keys,
-)
+from tangy_tui.ui.screens.play_keys import faster, keys
 from tangy_tui.ui.screens.play_staff import PlayStaff
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
