@@ -50,7 +50,9 @@ class OneStep:
 
 @dataclass(frozen=True, slots=True)
 class StopRobot:
-    """Stop the robot now, whatever it does."""
+    """Stop the robot now, whatever it does; `by` somebody else than who runs the games."""
+
+    by: str = ""
 
 
 @dataclass(frozen=True, slots=True)

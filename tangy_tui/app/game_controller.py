@@ -225,8 +225,8 @@ class GameController:
         if self.supervision.over and not isinstance(command, WITHOUT_GAME):
             return [StaffNote("no game")]
         match command:
-            case StopRobot():
-                return self._stop()
+            case StopRobot(by):
+                return self._stop(by)
             case Pause():
                 self.going = False
                 return [StaffNote("paused")]
@@ -259,10 +259,10 @@ class GameController:
             case forgotten:
                 assert_never(forgotten)
 
-    def note(self, what: str, taken_back: int = 0) -> None:
+    def note(self, what: str, taken_back: int = 0, by: str = "") -> None:
         """Log what staff did, unless the log is full."""
         with suppress(TangyError):
-            self.supervision.note(what, self.by, taken_back)
+            self.supervision.note(what, by or self.by, taken_back)
 
     @contextmanager
     def driving(self) -> Iterator[None]:
@@ -288,11 +288,11 @@ class GameController:
         self.supervision.stopped_by_staff()
         self.robot.stop(ENDED)
 
-    def _stop(self) -> list[Result]:
+    def _stop(self, by: str) -> list[Result]:
         self.stopped, self.going = True, False
         self.supervision.stopped_by_staff()
         self.robot.stop()
-        self.note("the robot was stopped")
+        self.note("the robot was stopped", by=by)
         return [StaffNote("stopped")]
 
     def _go_on(self) -> list[Result]:

@@ -76,6 +76,7 @@ class LiveGames:
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
         past, self._past = self._past, None
         control = GameController(game, SCRIPTED, robot=world, paced=False, past=past)
+        self._workspace.door.attach(control)
         events = control.begin()
         tell(events, self.take(events))
         since = world.link.time

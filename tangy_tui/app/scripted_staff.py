@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from tangy_profiles.past_game import PastGame
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import CallExpert, Clear, GoOn, StaffNote
+from tangy_tui.app.game_commands import CallExpert, Clear, EndGame, GoOn, StaffNote
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -38,6 +38,8 @@ def go_on_by_script(control: GameController, *, expert: bool) -> list[Event]:
         told = _clear(control) if expert else control.give_up()
     elif game.question is not None:
         told = _answer(control)
+    elif control.stopped:  # by somebody who looks on, and nobody is here to let it go on
+        told = control.apply(EndGame())
     else:
         if control.phase == "paused":  # as a game is that was interrupted
             control.apply(GoOn())

@@ -24,6 +24,7 @@ from tangy_profiles.store import Store
 from tangy_profiles.voice import VoicePreference
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
+from tangy_tui.app.session_door import SessionDoor
 from tangy_tui.app.teacher_profile import login_name, read_profile
 from tangy_tui.app.user_settings import read_settings
 from tangy_tui.language.commands import Phrasebook
@@ -85,6 +86,7 @@ class Workspace:
         if self.activity.teams:
             self._sample = tuple(Person(team, team) for team in self.activity.teams)
         self.store = Store.open(folder, write=write, now=now)
+        self.door = SessionDoor(folder)
         self._logging = ExitStack()
         if write:
             self._logging.enter_context(logging_to(folder))
@@ -97,7 +99,8 @@ class Workspace:
         return read_profile(self.store.folder).name or login_name()
 
     def close(self) -> None:
-        """Close the store, and the log of what the program decides."""
+        """Close the store, the door, and the log of what the program decides."""
+        self.door.close()
         self._logging.close()
         self.store.close()
 

@@ -37,12 +37,19 @@ def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> I
     if not replay.timed:
         yield "An older Tangy kept no times within a game: what is given is the time of day alone."
     for moment in replay.moments:
-        when = _when(moment, replay.timed)
-        first, *more = _moment_lines(moment, activity, name)
-        yield f"{when}  {first}"
-        for line in more:
-            yield f"{' ' * len(when)}  {line}"
+        yield from moment_lines(moment, replay.timed, activity, name)
     yield f"{counted(game.steps, 'step')}; {game.ending}"
+
+
+def moment_lines(
+    moment: Moment, timed: bool, activity: Activity | None, name: Name
+) -> Iterator[str]:
+    """Tell one moment of a game, with the time in the game, if it is `timed`, and on the clock."""
+    when = _when(moment, timed)
+    first, *more = _moment_lines(moment, activity, name)
+    yield f"{when}  {first}"
+    for line in more:
+        yield f"{' ' * len(when)}  {line}"
 
 
 def _when(moment: Moment, timed: bool) -> str:

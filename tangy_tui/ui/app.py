@@ -54,7 +54,7 @@ from tangy_tui.ui.keys import DEFAULT, bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
 from tangy_tui.ui.screen_diff import ScreenDiff, Written
-from tangy_tui.ui.terminal import TerminalKind
+from tangy_tui.ui.terminal import SERVED, TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
 from tangy_tui.ui.type_ahead_guard import Clock
 from tangy_tui.ui.writer import HeldWrites
@@ -128,7 +128,8 @@ class TangyApp(App[None]):
         """Whether the mouse is Tangy's; without it, text is selected and copied as usual."""
         self._first = first
         self._pictures = pictures
-        self._leaving = False
+        self.leaving = False
+        """Whether the program ends: what stops then, stops for that."""
         self._reader = KeyReader(self)
         self.frames = HeldWrites(lambda: None if self.is_headless else self._driver)
         self._shown = ScreenDiff()
@@ -206,9 +207,9 @@ class TangyApp(App[None]):
 
     def leave(self, code: int = 0, reason: str = "the program ends") -> None:
         """Say stop, let every screen act on it, and end with this exit status."""
-        if self._leaving:
+        if self.leaving:
             return
-        self._leaving = True
+        self.leaving = True
         self.stop(reason)
         waiting = len(self.screen_stack)
 
@@ -385,8 +386,9 @@ def _actions_provider() -> type[Provider]:
 
 def run_app(app: TangyApp, *, mouse: bool = True) -> int:
     """Run the program and return its exit status."""
-    for size in ("COLUMNS", "LINES"):  # exported, they hide the size of the window
-        os.environ.pop(size, None)
+    if SERVED not in os.environ:
+        for size in ("COLUMNS", "LINES"):  # exported, they hide the size of the window
+            os.environ.pop(size, None)
     app.mouse = mouse
     app.run(mouse=mouse)
     return app.return_code or 0

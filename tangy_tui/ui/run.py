@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tangy_profiles.store import Store
+from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
@@ -164,6 +167,27 @@ def run_sensors(workspace: Workspace, sensors: CameraHub, *, ascii_only: bool) -
         program.leave()
 
     return _run(workspace, start, ascii_only, sensors=sensors)
+
+
+def run_watching(folder: Path, *, who: str, note: str, ascii_only: bool) -> int:
+    """Open a second console on the games of a data folder; return the exit status."""
+    from tangy_tui.app.watching import Guest
+    from tangy_tui.ui.app import TangyApp
+    from tangy_tui.ui.screens.watch import WatchScreen
+
+    outlive_terminal()
+    read_replies()
+    settings = read_settings(folder)
+    with Store.open(folder, write=False) as store:
+        guest = Guest(folder)
+        app = TangyApp(
+            lambda: WatchScreen(guest, store, who=who, note=note),
+            kind=terminal_kind(ascii=True if ascii_only else None),
+            pictures=folder,
+            keymap=settings.keymap,
+            link=settings.link,
+        )
+        return run_app(app)
 
 
 def run_demo(workspace: Workspace, *, seed: int, ascii_only: bool, voice: bool = False) -> int:

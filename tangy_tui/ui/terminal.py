@@ -13,6 +13,9 @@ from tangy_tui.text.program import too_small_words
 MIN_WIDTH = 60
 MIN_HEIGHT = 18
 
+SERVED = "TEXTUAL_DRIVER"
+"""The variable by which a server that shows the program in a browser says so."""
+
 FEW_COLOURS = ("linux", "xterm", "screen", "ansi", "vt", "cons", "rxvt")
 """Terminals that Rich writes 16 colours to, unless their name or COLORTERM promises more."""
 
@@ -49,6 +52,8 @@ def terminal_kind(
         ascii: what the user asked for with `--ascii`; None decides by TERM and locale.
     """
     environ = os.environ if environ is None else environ
+    if environ.get(SERVED):
+        return TerminalKind(ascii=bool(ascii))
     term = environ.get("TERM", "")
     plain_text = ascii if ascii is not None else term == "linux" or not _speaks_utf8(environ)
     ansi = bool(environ.get("NO_COLOR")) or _few_colours(environ)

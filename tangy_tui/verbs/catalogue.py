@@ -42,6 +42,8 @@ VERBS = {
     "play": Verb("play", "play"),
     "demo": Verb("play", "demo"),
     "live": Verb("live", "live"),
+    "watch": Verb("watch", "watch"),
+    "serve": Verb("serve", "serve"),
     "drill": Verb("drill", "drill"),
     "listen": Verb("listen", "listen"),
     "say": Verb("say", "say"),

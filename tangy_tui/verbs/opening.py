@@ -37,6 +37,8 @@ def open_workspace(
     )
     try:
         say_notices(workspace.store.notices)
+        if write:
+            workspace.door.open()
         yield workspace
     finally:
         say_aside(workspace.store)
@@ -46,13 +48,33 @@ def open_workspace(
 def open_program(
     data: Path | None = None, *, robot: str = "tangy", ascii_only: bool = False
 ) -> int:
-    """Open the program at its first screen, and return its exit status."""
+    """Open the program at its first screen, and return its exit status.
+
+    Beside another program that runs in the same folder, it looks on.
+    """
+    from tangy_profiles.errors import StoreBusy
     from tangy_profiles.fault_file import load_faults
+    from tangy_tui.text.watching import RUNNING_HERE
     from tangy_tui.ui.run import run_program
 
-    with open_workspace(data, DEFAULT_ACTIVITY, 4, robot=robot) as workspace:
-        load_faults(workspace.robot)  # what is wrong with its file is said before a screen opens
-        return run_program(workspace, ascii_only=ascii_only)
+    try:
+        with open_workspace(data, DEFAULT_ACTIVITY, 4, robot=robot) as workspace:
+            load_faults(workspace.robot)  # what is wrong with its file is said before any screen
+            return run_program(workspace, ascii_only=ascii_only)
+    except StoreBusy:
+        return watch_program(data, note=RUNNING_HERE, ascii_only=ascii_only)
+
+
+def watch_program(
+    data: Path | None = None, *, who: str = "", note: str = "", ascii_only: bool = False
+) -> int:
+    """Open the program as a second console beside another one, and return its exit status."""
+    from tangy_tui.app.teacher_profile import login_name
+    from tangy_tui.app.workspace import data_folder
+    from tangy_tui.ui.run import run_watching
+
+    folder = data_folder(data)
+    return run_watching(folder, who=who or login_name(), note=note, ascii_only=ascii_only)
 
 
 def full_screen() -> bool:

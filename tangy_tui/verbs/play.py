@@ -220,6 +220,7 @@ def _play_headless(
     faults: list[dict[str, Any]] = []
     scores: list[GameScore] = []
     control = scripted_controller(supervision, past)
+    workspace.door.attach(control)
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with workspace.store.transaction():  # one commit a game: .1 ms a step instead of 4
             tally.add(control.begin())

@@ -167,6 +167,7 @@ def _lines(
     from tangy_tui.interaction.voiding import void_last
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.live_news import news_lines
+    from tangy_tui.text.watching import stopped_by_guest
 
     def void(person: str) -> bool:
         return void_last(workspace.store, supervision.game.game, person, teacher)
@@ -180,8 +181,10 @@ def _lines(
     def new(events: Sequence[Event]) -> list[str]:
         return [] if live is None else [*news_lines(live.take(events), workspace.name)]
 
+    control = GameController(supervision, teacher, robot=robot, void=void, past=past)
+    workspace.door.attach(control, lambda who: print_line(stopped_by_guest(who)))
     return StaffLines(
-        GameController(supervision, teacher, robot=robot, void=void, past=past),
+        control,
         workspace.name,
         lambda wanted: workspace.find_person(wanted).id,
         line_reader(None),

@@ -99,6 +99,7 @@ class PlayScreen(PlayStaff):
         """Show what is known, and begin."""
         loop = asyncio.get_running_loop()
         self.control.changed = lambda: loop.call_soon_threadsafe(self.nudge.set)
+        self._let_look_on()
         self.picture.begin()
         self._faults.begin()
         self._voice.begin(self.app)
@@ -177,12 +178,7 @@ class PlayScreen(PlayStaff):
         self._leaving = True
         going = self.control.going
         self._do(Pause())
-        dialog = ConfirmDialog(
-            text.LEAVE,
-            text.LEAVE_DETAIL,
-            yes="leave",
-            no="go on",
-        )
+        dialog = ConfirmDialog(text.LEAVE, text.LEAVE_DETAIL, yes="leave", no="go on")
         leaves = await self.app.push_screen_wait(dialog)
         self._leaving = False
         if leaves:
@@ -203,12 +199,16 @@ class PlayScreen(PlayStaff):
     def on_unmount(self) -> None:
         """End a game whose program is being left."""
         self.control.changed = lambda: None
+        self._workspace.door.detach(self.control)
         self._end_game()
         self._voice.hush()
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot: nothing more is executed until somebody lets it go on."""
         self.control.apply(StopRobot())  # before anything is drawn
+        self._show_stopped()
+
+    def _show_stopped(self) -> None:
         self.skipping = False
         self._voice.hush()
         self.nudge.set()

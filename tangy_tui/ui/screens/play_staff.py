@@ -21,6 +21,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.verification import Verified
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
+from tangy_tui.text.watching import stopped_by_guest
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.screens.play_panels import PlayPanels
@@ -44,6 +45,22 @@ class PlayStaff(PlayPanels):
     def show_status(self) -> None:
         """Show how things stand."""
         raise NotImplementedError
+
+    def _show_stopped(self) -> None:
+        """Show that the robot was stopped."""
+        raise NotImplementedError
+
+    def _let_look_on(self) -> None:
+        """Let others look on at these games from other consoles, and show who stops the robot."""
+        loop = asyncio.get_running_loop()
+
+        def stopped(guest: str) -> None:
+            self._write(stopped_by_guest(guest), "bad")
+            self._show_stopped()
+
+        self._workspace.door.attach(
+            self.control, lambda who: loop.call_soon_threadsafe(stopped, who)
+        )
 
     def action_pause(self) -> None:
         """Pause, or go on."""

@@ -1,0 +1,62 @@
+"""What others are shown of the game that a program runs, at one moment."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tangy_profiles.codec import Count, Sparse
+from tangy_profiles.game_world import GameWorld
+from tangy_profiles.scene import Scene
+from tangy_tui.app.game_commands import Phase
+
+if TYPE_CHECKING:
+    from tangy_tui.app.game_controller import GameController
+
+
+@dataclass(frozen=True, slots=True)
+class GameView:
+    """A game as it stands: who drives it, where it is played, and what there is to see.
+
+    `game` is its id in the log, `number` counts from 1 in this run, `robot` is the rolled-up state
+    of the robot with its `cause`, `pose` is where the robot is (m, m), if one is there.
+    """
+
+    driver: str
+    game: str
+    activity: str
+    world: GameWorld
+    number: Count
+    step: Count
+    phase: Phase
+    robot: str
+    cause: str
+    scene: Scene
+    pose: Sparse[tuple[float, float] | None] = None
+
+
+def view_of(control: GameController) -> GameView | None:
+    """Look at the game that a controller runs; None where none was begun yet, or it changes now."""
+    supervision = control.supervision
+    world = supervision.world
+    link = getattr(world, "link", None)
+    with suppress(RuntimeError, LookupError):  # the game's own thread was just changing it
+        if not supervision.games:
+            return None
+        robot, cause = supervision.status
+        pose = link.state.pose if link is not None and link.state.number else None
+        return GameView(
+            driver=control.by,
+            game=supervision.game.game,
+            activity=world.activity.name,
+            world=world.played_in,
+            number=supervision.games,
+            step=supervision.steps,
+            phase=control.phase,
+            robot=robot,
+            cause=cause,
+            scene=world.scene(),
+            pose=None if pose is None else (round(pose.x, 2), round(pose.y, 2)),
+        )
+    return None

@@ -1,0 +1,219 @@
+"""The door of a data folder through which others look on while one program runs its games.
+
+One JSON line each way: who comes in is told who drives and, whenever it changes, the view of the
+game (`game_view`). They may stop the robot, and nothing else. The log they read by themselves.
+Nothing is done while nobody looks on.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import selectors
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tangy_profiles.codec import written
+from tangy_profiles.reading import plain
+from tangy_tui.app.game_commands import StopRobot
+from tangy_tui.app.game_view import view_of
+
+if TYPE_CHECKING:
+    from tangy_tui.app.game_controller import GameController
+
+_LOG = logging.getLogger(__name__)
+
+FILE = "tangy.sock"
+LOOK_SECONDS = 0.2  # between two views
+MOST_GUESTS = 8
+LONGEST_LINE = 1000  # bytes that a guest may send before a line ends
+LONGEST_NAME = 40  # characters of a guest's name
+
+StoppedBy = Callable[[str], object]
+"""Is told, by the door's thread, the name of a guest who stopped the robot."""
+
+
+class SessionDoor:
+    """Lets others look on. `open` it once; `attach` each controller of games."""
+
+    def __init__(self, folder: Path) -> None:
+        """Name the door of a data folder; nobody comes in before `open`."""
+        self._folder = folder
+        self._control: GameController | None = None
+        self._stopped: StoppedBy = lambda guest: None
+        self._socket: socket.socket | None = None
+        self._ends = threading.Event()
+        self._wake: tuple[socket.socket, socket.socket] | None = None
+        self._thread: threading.Thread | None = None
+        self._guests: dict[socket.socket, bytes] = {}
+        self._shown = b""
+
+    def attach(self, control: GameController, stopped: StoppedBy = lambda guest: None) -> None:
+        """Show the games of a controller from now on.
+
+        Args:
+            control: of the games.
+            stopped: is told who stopped the robot, after it was stopped.
+        """
+        self._control, self._stopped = control, stopped
+
+    def detach(self, control: GameController) -> None:
+        """Show the games of a controller no more, if they are the ones that are shown."""
+        if self._control is control:
+            self._control, self._stopped = None, lambda guest: None
+
+    def open(self) -> None:
+        """Let others in, where the system has such doors; may be repeated."""
+        if self._thread is not None:
+            return
+        try:
+            self._socket = _listen(self._folder)
+        except OSError as error:
+            _LOG.warning("nobody can look on: %s", error)
+            return
+        self._wake = socket.socketpair()
+        self._thread = threading.Thread(target=self._run, name="door", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Show everybody out; may be repeated."""
+        thread, self._thread = self._thread, None
+        if thread is None or self._wake is None:
+            return
+        self._ends.set()
+        with suppress(OSError):  # it was awake, and has gone already
+            self._wake[1].send(b".")
+        thread.join()
+        with suppress(OSError):
+            (self._folder / FILE).unlink()
+
+    def _run(self) -> None:
+        assert self._socket is not None and self._wake is not None  # noqa: S101 - `open` made them
+        with selectors.DefaultSelector() as ready, self._socket, self._wake[0], self._wake[1]:
+            ready.register(self._socket, selectors.EVENT_READ)
+            ready.register(self._wake[0], selectors.EVENT_READ)
+            due = time.monotonic()
+            while not self._ends.is_set():
+                left = max(0.0, due - time.monotonic()) if self._guests else None
+                for key, _ in ready.select(left):
+                    if key.fileobj is self._socket:
+                        self._let_in(ready)
+                    elif isinstance(key.fileobj, socket.socket) and key.fileobj in self._guests:
+                        self._hear(key.fileobj, ready)
+                if self._guests and time.monotonic() >= due:
+                    due = time.monotonic() + LOOK_SECONDS
+                    self._show(ready)
+            for guest in self._guests:
+                guest.close()
+
+    def _let_in(self, ready: selectors.BaseSelector) -> None:
+        assert self._socket is not None  # noqa: S101 - it has just said that somebody is there
+        with suppress(OSError):
+            guest, _ = self._socket.accept()
+            guest.setblocking(False)
+            if len(self._guests) >= MOST_GUESTS:
+                guest.close()
+                return
+            self._guests[guest] = b""
+            ready.register(guest, selectors.EVENT_READ)
+            self._tell(guest, self._shown or self._look(), ready)
+
+    def _hear(self, guest: socket.socket, ready: selectors.BaseSelector) -> None:
+        """Take what a guest says; one who has gone, or says too much, is shown out."""
+        try:
+            said = guest.recv(LONGEST_LINE)
+        except BlockingIOError:
+            return
+        except OSError:
+            said = b""
+        *lines, rest = (self._guests[guest] + said).split(b"\n")
+        if not said or len(rest) > LONGEST_LINE:
+            self._show_out(guest, ready)
+            return
+        self._guests[guest] = rest
+        for line in lines:
+            if (name := _stops(line)) is not None:
+                self._stop(name)
+                self._tell(guest, _line({"stopped": self._control is not None}), ready)
+
+    def _stop(self, name: str) -> None:
+        control = self._control
+        if control is None:
+            return
+        control.apply(StopRobot(by=name))
+        self._stopped(name)
+
+    def _show(self, ready: selectors.BaseSelector) -> None:
+        view = self._look()
+        if view == self._shown:
+            return
+        self._shown = view
+        for guest in list(self._guests):
+            self._tell(guest, view, ready)
+
+    def _look(self) -> bytes:
+        control = self._control
+        view = None if control is None else view_of(control)
+        return _line({"pid": os.getpid(), "view": None if view is None else written(view)})
+
+    def _tell(self, guest: socket.socket, line: bytes, ready: selectors.BaseSelector) -> None:
+        """Tell a guest a line; one who does not listen is shown out, so that nobody waits."""
+        try:
+            whole = guest.send(line) == len(line)
+        except OSError:
+            whole = False
+        if not whole:
+            self._show_out(guest, ready)
+
+    def _show_out(self, guest: socket.socket, ready: selectors.BaseSelector) -> None:
+        if self._guests.pop(guest, None) is not None:
+            ready.unregister(guest)
+            guest.close()
+
+
+def _line(said: object) -> bytes:
+    return json.dumps(said, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
+
+
+def _stops(line: bytes) -> str | None:
+    """Return who stops the robot by a line, None if it says anything else."""
+    try:
+        said = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    name = said.get("stop") if isinstance(said, dict) else None
+    return plain(name)[:LONGEST_NAME] if isinstance(name, str) else None
+
+
+def _listen(folder: Path) -> socket.socket:
+    """Make the socket; one that a program left behind which was killed is in nobody's way."""
+    listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        with reachable(folder) as place:
+            path = Path(place) / FILE
+            path.unlink(missing_ok=True)
+            listening.bind(str(path))
+            path.chmod(0o600)
+        listening.listen(MOST_GUESTS)
+        listening.setblocking(False)
+    except BaseException:
+        listening.close()
+        raise
+    return listening
+
+
+@contextmanager
+def reachable(folder: Path) -> Iterator[str]:
+    """Give a short path of a folder: sockets may have some hundred characters only."""
+    opened = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        short = Path(f"/proc/self/fd/{opened}")
+        yield str(short if short.is_dir() else folder)
+    finally:
+        os.close(opened)

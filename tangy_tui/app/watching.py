@@ -1,0 +1,199 @@
+"""Looking on at the games that another program runs: its door, and the log."""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import socket
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tangy_profiles.activity import Activity, known_activities, load_activity
+from tangy_profiles.codec import Unreadable, read
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import MOST_PEOPLE, load_people
+from tangy_profiles.store import Store
+from tangy_tui.app.game_view import GameView
+from tangy_tui.app.session_door import FILE, reachable
+from tangy_tui.monitoring.games import Game, read_games
+from tangy_tui.monitoring.replay import GameReplay, Moment, read_replays
+
+LARGEST_VIEW = 1_000_000  # bytes
+CHUNK = 65_536
+PATIENCE_SECONDS = 1.0  # for the door to answer
+
+
+class NobodyThere(TangyError):
+    """No program runs games in this folder."""
+
+
+class Guest:
+    """Stands at the door of a data folder: sees the view of the game, and may stop the robot."""
+
+    def __init__(self, folder: Path) -> None:
+        """Name the folder; `look` goes to its door."""
+        self._folder = folder
+        self._socket: socket.socket | None = None
+        self._heard = b""
+        self.pid = 0
+        """The process that runs the games; 0: none that can be seen."""
+        self.view: GameView | None = None
+        """The game as it stands, None while there is none."""
+        self.stops = self.answers = 0
+        """How often the robot was stopped from here, and how often that was asked and answered."""
+
+    @property
+    def there(self) -> bool:
+        """Whether a program is there that shows its games."""
+        return self._socket is not None
+
+    def look(self) -> bool:
+        """Take what is new, and go to the door if nobody is there yet; say if all went well."""
+        if self._socket is None and not self._enter():
+            return False
+        assert self._socket is not None  # noqa: S101 - it was entered
+        while True:
+            try:
+                said = self._socket.recv(CHUNK)
+            except BlockingIOError:
+                break
+            except OSError:
+                said = b""
+            if not said or len(self._heard) > LARGEST_VIEW:
+                self.close()
+                return False
+            self._heard += said
+        *lines, self._heard = self._heard.split(b"\n")
+        for line in lines:
+            self._take(line)
+        return True
+
+    def stop(self, by: str) -> None:
+        """Stop the robot.
+
+        Args:
+            by: who does; stands in the log.
+
+        Raises:
+            NobodyThere: no program runs games in this folder.
+        """
+        said = json.dumps({"stop": by}).encode() + b"\n"
+        if self._socket is None and not self._enter():
+            raise NobodyThere("")
+        assert self._socket is not None  # noqa: S101 - it was entered
+        try:
+            self._socket.sendall(said)
+        except OSError:
+            self.close()
+            raise NobodyThere("") from None
+
+    def answered(self, seconds: float = 5.0) -> bool:
+        """Wait, for so many s at most, until a stop was answered; say if there was what to stop."""
+        until, before = time.monotonic() + seconds, self.stops
+        while self._socket is not None and time.monotonic() < until:
+            select.select([self._socket], [], [], 0.1)
+            answers = self.answers
+            self.look()
+            if self.answers > answers:
+                return self.stops > before
+        return False
+
+    def close(self) -> None:
+        """Leave; may be repeated."""
+        entered, self._socket = self._socket, None
+        self._heard, self.view, self.pid = b"", None, 0
+        if entered is not None:
+            entered.close()
+
+    def _enter(self) -> bool:
+        entered = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        entered.settimeout(PATIENCE_SECONDS)
+        try:
+            with reachable(self._folder) as place:
+                entered.connect(os.path.join(place, FILE))  # noqa: PTH118 - `/proc` is no folder
+        except OSError:
+            entered.close()
+            return False
+        entered.setblocking(False)
+        self._socket = entered
+        return True
+
+    def _take(self, line: bytes) -> None:
+        try:
+            said: Any = json.loads(line)
+            if "stopped" in said:
+                self.answers += 1
+                self.stops += bool(said["stopped"])
+                return
+            self.pid = int(said["pid"])
+            self.view = None if said["view"] is None else read(GameView, said["view"])
+        except (ValueError, TypeError, KeyError, RecursionError, Unreadable):
+            self.close()  # another version's
+
+
+@dataclass(frozen=True, slots=True)
+class News:
+    """What is new in the log: of which game, which moments, and whether that game has just begun.
+
+    `replay` is all of the game so far.
+    """
+
+    replay: GameReplay
+    moments: tuple[Moment, ...]
+    begun: bool
+    activity: Activity | None
+
+    @property
+    def game(self) -> Game:
+        """The game as the log has it."""
+        return self.replay.game
+
+
+class WatchedLog:
+    """Follows the newest game of a log. `news` gives what came since it was asked last."""
+
+    def __init__(self, store: Store) -> None:
+        """Follow a log that was opened for reading."""
+        self._store = store
+        self._read = 0
+        self._game = ""
+        self._told = 0
+        self.over = False
+        """Whether the newest game has an end in the log."""
+        self._known: dict[str, Activity | None] = {}
+        self.names: Mapping[str, str] = {}
+        """Of the people, by id."""
+
+    def news(self) -> News | None:
+        """Read what is new; None: nothing is."""
+        newest = max((event.seq for event in self._store.events(after=self._read)), default=0)
+        if newest <= self._read:
+            return None
+        self._read = newest
+        games = read_games(self._store)
+        if not games:
+            return None
+        game = games[-1]
+        begun = game.id != self._game
+        if begun:
+            self._game, self._told, self.over = game.id, 0, False
+            self.names = {p.id: p.name for p in load_people(MOST_PEOPLE)} | self._store.names()
+        activity = self._activity(game.activity)
+        known = {} if activity is None else {game.activity: activity}
+        (replay,) = read_replays(self._store, [game], known, self.names)
+        moments = tuple(replay.moments[self._told :])
+        ended = game.ended is not None and not self.over
+        if not (begun or moments or ended):
+            return None
+        self._told, self.over = len(replay.moments), game.ended is not None
+        return News(replay, moments, begun, activity)
+
+    def _activity(self, name: str) -> Activity | None:
+        if name not in self._known:
+            there = name in known_activities()
+            self._known[name] = load_activity(name) if there else None
+        return self._known[name]

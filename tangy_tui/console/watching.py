@@ -1,0 +1,92 @@
+"""Looking on by lines: what happens in a game that another program runs, as it happens."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from tangy_profiles.codec import written
+from tangy_profiles.reading import plain
+from tangy_profiles.store import Store
+from tangy_tui.app.watching import Guest, WatchedLog
+from tangy_tui.text import watching as text
+from tangy_tui.text.log import game_words, moment_lines
+
+LOOK_SECONDS = 0.2
+
+
+class WatchingLines:
+    """Tells a game by lines, or as JSON lines. `look` again and again, or `run`."""
+
+    def __init__(
+        self, folder: Path, store: Store, write: Callable[[str], None], *, as_json: bool = False
+    ) -> None:
+        """Look on at the games of a data folder.
+
+        Args:
+            folder: the data folder.
+            store: its log, opened for reading.
+            write: writes a line.
+            as_json: each line is a JSON document.
+        """
+        self.guest = Guest(folder)
+        self._log = WatchedLog(store)
+        self._write, self._as_json = write, as_json
+        self._said = ""
+        self._there = False
+
+    def run(self, ends: Callable[[], bool] = lambda: False) -> None:
+        """Tell what happens until `ends` says so, or the program that ran the games has gone."""
+        self._tell_first()
+        while not ends():
+            was = self._there
+            self.look()
+            if was and not self._there:
+                break
+            time.sleep(LOOK_SECONDS)
+        self.guest.close()
+
+    def look(self) -> None:
+        """Tell what is new."""
+        self._there = self.guest.look()
+        news = self._log.news()
+        if news is not None:
+            if self._as_json:
+                for moment in news.moments:
+                    when = {"seconds": moment.seconds, "step": moment.step, "at": moment.at}
+                    self._json({"game": news.game.id, **moment.to_json(), **when})
+            else:
+                if news.begun:
+                    self._write(plain(game_words(news.game)))
+                for moment in news.moments:
+                    for line in moment_lines(moment, news.replay.timed, news.activity, self._name):
+                        self._write(plain(line))
+                if news.game.ended is not None:
+                    self._write(plain(news.game.ending))
+        self._tell_phase()
+
+    def _tell_first(self) -> None:
+        self._there = self.guest.look()
+        if not self._as_json:
+            lines = text.view_lines(self.guest.view, None, self._name)
+            for line in lines if self._there else [text.NOBODY]:
+                self._write(plain(line))
+
+    def _tell_phase(self) -> None:
+        view = self.guest.view
+        said = "" if view is None else f"{view.game} {view.phase} {view.robot}"
+        if view is None or said == self._said:
+            return
+        self._said = said
+        if self._as_json:
+            self._json({"kind": "view", **written(view)})
+        else:
+            self._write(plain(f"-- {text.driver_words(view)}: {text.PHASES[view.phase]}"))
+
+    def _json(self, said: object) -> None:
+        self._write(json.dumps(said, ensure_ascii=False))
+
+    def _name(self, person: str) -> str:
+        return self._log.names.get(person, person)

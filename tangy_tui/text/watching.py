@@ -1,0 +1,77 @@
+"""What somebody reads who looks on at a game that another program runs."""
+
+from __future__ import annotations
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, GameWorld
+from tangy_tui.app.game_commands import Phase
+from tangy_tui.app.game_view import GameView
+from tangy_tui.text.situations import Name
+
+WORLDS: dict[GameWorld, str] = {
+    SIMULATED: "simulated",
+    BENCH: "on the bench",
+    LIVE: "live, with the robot",
+}
+"""Where a game is played, as it stands on screens and pages."""
+
+PHASES: dict[Phase, str] = {
+    "idle": "no game",
+    "running": "running",
+    "paused": "paused",
+    "stopped": "STOPPED",
+    "asking": "Tangy asks",
+    "halted": "HALTED",
+    "staff": "staff drive",
+}
+
+LAST_CALLS = 5
+
+READ_ONLY = "You look on: nothing you press changes the game, only STOP stops the robot."
+NOBODY = "No Tangy runs here. This screen shows a game as soon as one begins."
+NO_GAME = "Tangy is open here, and no game has begun yet."
+GONE = "The program that ran the game has ended."
+GOES_ON_LATER = "The game is not over: start Tangy again to go on with it."
+NOTHING_TO_STOP = "There is no game to stop: no Tangy shows one here."
+RUNNING_HERE = "Tangy is open in another window already, so you look on here."
+ASKED_TO_STOP = "STOP was sent."
+STOPPED_HERE = "You stopped the robot. Whoever drives lets it go on."
+HELP = (
+    "You see the game that somebody else runs, as they see it. Nothing that you press changes it. "
+    "STOP works here as well: it stops the robot at once, and the log says that it was you."
+)
+
+
+def stopped_by_guest(guest: str) -> str:
+    """Say that somebody who looks on has stopped the robot."""
+    return f"{guest} stopped the robot from another console."
+
+
+def driver_words(view: GameView) -> str:
+    """Say who drives, and where the game is played."""
+    return f"{view.driver} drives, {WORLDS[view.world]}"
+
+
+def called_words(view: GameView, activity: Activity | None) -> str:
+    """Say how much was called, and what last; "" where nothing was."""
+    called = view.scene.called
+    if not called:
+        return ""
+    label = str if activity is None else activity.deck.label
+    return f"Called so far: {len(called)}; the last: {', '.join(map(label, called[-LAST_CALLS:]))}."
+
+
+def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> list[str]:
+    """Say in lines how a game stands, for those who read lines."""
+    if view is None:
+        return [NO_GAME]
+    scene = view.scene
+    lines = [
+        f"{driver_words(view)}. Game {view.number}, step {view.step}: {PHASES[view.phase]}, "
+        f"robot {view.robot}{f' ({view.cause})' if view.cause else ''}."
+    ]
+    if scene.called:
+        lines.append(called_words(view, activity))
+    if scene.requests:
+        lines.append(f"Waiting for help: {', '.join(map(name, scene.requests))}.")
+    return lines

@@ -1,0 +1,194 @@
+"""A second console: the game that another program runs, as it is seen there, and STOP."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Horizontal, Vertical
+from textual.widgets import Static
+
+from tangy_profiles.activity import Activity, known_activities, load_activity
+from tangy_profiles.game_records import CallMade
+from tangy_profiles.person import Person
+from tangy_profiles.room import Point, load_room
+from tangy_profiles.store import Store
+from tangy_tui.app.game_view import GameView
+from tangy_tui.app.watching import Guest, NobodyThere, WatchedLog
+from tangy_tui.monitoring.fault import Diagnosed, Moved
+from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted
+from tangy_tui.text import watching as text
+from tangy_tui.text.log import game_words, moment_lines
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel
+from tangy_tui.ui.widgets.call_board import CallBoard
+from tangy_tui.ui.widgets.log_view import Kind, LogView
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+
+LOOK_SECONDS = 0.2
+ALARMS = ("stopped", "halted")
+KINDS: dict[type, Kind] = {Diagnosed: "warn", Moved: "dim", Noted: "dim", CallMade: "warn"}
+
+
+class WatchScreen(TangyScreen[None]):
+    """Looks on. Nothing here changes the game; STOP stops the robot."""
+
+    CSS_PATH = "watch.tcss"
+    HORIZONTAL_BREAKPOINTS = WIDE
+    VERTICAL_BREAKPOINTS = LOW
+    HELP = text.HELP
+    AUTO_FOCUS = "#log"
+    BINDINGS: ClassVar[list[BindingType]] = []
+
+    def __init__(self, guest: Guest, store: Store, *, who: str, note: str = "") -> None:
+        """Make the screen.
+
+        Args:
+            guest: at the door of the program that runs the games.
+            store: its log, opened for reading.
+            who: looks on; stands in the log where they stop the robot.
+            note: what is said first.
+        """
+        super().__init__()
+        self._guest, self._log = guest, WatchedLog(store)
+        self._who, self._note = who, note
+        self._view: GameView | None = None
+        self._there = False
+        self._shown: tuple[str, tuple[str, ...]] = ("", ())
+        self._activity: Activity | None = None
+
+    def compose(self) -> ComposeResult:
+        """Lay out the room and the board of calls, and what happens beside or below."""
+        yield StatusLine(Status(mode="watch"))
+        with Horizontal(id="body"):
+            with Vertical(id="left"):
+                yield Static("", id="called")
+            yield panel(LogView(id="log"))
+        yield KeyLine("filter", "zoom", "palette", "quit", "help")
+
+    def on_mount(self) -> None:
+        """Begin to look on."""
+        log = self.query_one(LogView)
+        for sentence in (self._note, text.READ_ONLY):
+            if sentence:
+                log.write(sentence, "dim")
+        self.look()
+        if not self._there:
+            log.write(text.NOBODY, "warn")
+        self.set_interval(LOOK_SECONDS, self.look)
+
+    def on_unmount(self) -> None:
+        """Leave the door."""
+        self._guest.close()
+
+    def on_stop(self, message: Stop) -> None:
+        """Stop the robot, before anything is drawn."""
+        if getattr(self.app, "leaving", False):
+            return  # who only looks on may leave, and the game goes on
+        log = self.query_one(LogView)
+        try:
+            self._guest.stop(self._who)
+        except NobodyThere:
+            log.write(text.NOTHING_TO_STOP, "bad")
+        else:
+            log.write(text.ASKED_TO_STOP, "bad")
+
+    def look(self) -> None:
+        """Show what is new."""
+        was, stops = self._there, self._guest.stops
+        self._there = self._guest.look()
+        self._tell_log()
+        if was and not self._there:
+            over = self._view is None or self._log.over
+            self.query_one(LogView).write(text.GONE, "warn")
+            if not over:
+                self.query_one(LogView).write(text.GOES_ON_LATER, "warn")
+        if self._guest.stops > stops:
+            self.query_one(LogView).write(text.STOPPED_HERE, "bad")
+        if self._guest.view != self._view:
+            self._view = self._guest.view
+            self._show_room()
+        self._show_status()
+
+    def _tell_log(self) -> None:
+        news = self._log.news()
+        if news is None:
+            return
+        log = self.query_one(LogView)
+        if news.begun:
+            log.write(game_words(news.game))
+        for moment in news.moments:
+            kind = _kind(moment)
+            for line in moment_lines(moment, news.replay.timed, news.activity, self._called):
+                log.write(line, kind)
+                kind = "text" if kind == "text" else "dim"
+            if isinstance(moment.what, Done) and moment.what.said:
+                for room in self.query(RoomView):
+                    room.say(moment.what.said)
+        if news.game.ended is not None:
+            log.write(news.game.ending, "good" if news.game.smooth else "bad")
+
+    def _show_room(self) -> None:
+        view = self._view
+        if view is None:
+            return
+        people = tuple(view.scene.doing)
+        if (view.activity, people) != self._shown:
+            self._shown = view.activity, people
+            self._lay_out(view, people)
+        for room in self.query(RoomView):
+            room.show(view.scene)
+            room.hold(view.phase in ALARMS)
+            if view.pose is not None:
+                room.track(Point(*view.pose), "", ())
+        for board in self.query(CallBoard):
+            board.show(view.scene.called)
+        self.query_one("#called", Static).update(text.called_words(view, self._activity))
+
+    def _lay_out(self, view: GameView, people: tuple[str, ...]) -> None:
+        """Make the room and the board anew, for the people and the activity of a game."""
+        left = self.query_one("#left", Vertical)
+        left.remove_children(".panel")
+        known = view.activity in known_activities()
+        self._activity = load_activity(view.activity) if known else None
+        room = load_room()
+        seated = room.placed([Person(one, self._called(one)) for one in people])
+        label = str if self._activity is None else self._activity.deck.label
+        left.mount(panel(RoomView(room, seated, label=label)), before="#called")
+        if self._activity is not None and self._activity.deck.columns:
+            left.mount(panel(CallBoard(self._activity.deck)))
+
+    def _show_status(self) -> None:
+        view = self._view if self._there else None
+        line = self.query_one(StatusLine)
+        if view is None:
+            line.show(replace(line.status, robot="", note="", alarm=False, step=None, game=None))
+            return
+        alarm = view.phase in ALARMS or view.robot not in ("OK", "WARN")
+        line.show(
+            Status(
+                mode="watch",
+                robot=text.PHASES[view.phase] if view.phase in ALARMS else view.robot,
+                game=view.number,
+                step=view.step,
+                note=text.driver_words(view),
+                alarm=alarm,
+            )
+        )
+
+    def _called(self, person: str) -> str:
+        return self._log.names.get(person, person)
+
+
+def _kind(moment: Moment) -> Kind:
+    match moment.what:
+        case Diagnosed(fault):
+            return "bad" if fault.critical else "warn"
+        case AnsweredRequest(complied=complied):
+            return "good" if complied else "dim"
+        case what:
+            return KINDS.get(type(what), "text")

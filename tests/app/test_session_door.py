@@ -1,0 +1,174 @@
+"""Others look on at games through the door of the data folder, and can stop the robot."""
+
+from __future__ import annotations
+
+import os
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.game_records import StaffAction
+from tangy_profiles.store import Store
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.session_door import FILE, LONGEST_LINE, MOST_GUESTS, reachable
+from tangy_tui.app.watching import Guest, NobodyThere, WatchedLog
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policy import Policy
+from tests.support.waiting import wait_until
+
+
+@pytest.fixture
+def data_folder(taught: Path) -> Path:
+    """A folder in which three demonstrations were given and learnt from."""
+    return taught
+
+
+@pytest.fixture
+def control(workspace: Workspace, learnt: Policy) -> Iterator[GameController]:
+    """A game that others can look on at, after five steps."""
+    control = scripted_controller(workspace.supervision(learnt, 5))
+    control.begin()
+    while control.supervision.steps < 5:
+        go_on_by_script(control, expert=False)
+    workspace.door.attach(control)
+    workspace.door.open()
+    yield control
+
+
+@pytest.fixture
+def guest(control: GameController, data_folder: Path) -> Iterator[Guest]:
+    """Somebody who looks on."""
+    guest = Guest(data_folder)
+    yield guest
+    guest.close()
+
+
+def seen(guest: Guest) -> Guest:
+    wait_until(lambda: guest.look() and guest.view is not None, "the game is seen")
+    return guest
+
+
+def test_a_guest_sees_who_drives_and_what_there_is_to_see(
+    guest: Guest, control: GameController
+) -> None:
+    view = seen(guest).view
+    assert view is not None
+    assert (view.driver, view.world, view.step, view.phase) == (
+        "scripted",
+        "simulated",
+        5,
+        "running",
+    )
+    assert view.scene == control.supervision.world.scene()
+    assert guest.pid == os.getpid()
+
+
+def test_a_guest_sees_what_changes(guest: Guest, control: GameController) -> None:
+    seen(guest)
+    go_on_by_script(control, expert=False)
+    wait_until(lambda: guest.look() and guest.view is not None and guest.view.step == 6)
+
+
+def test_a_guest_stops_the_robot_and_the_log_says_who(
+    guest: Guest, control: GameController, workspace: Workspace
+) -> None:
+    told: list[str] = []
+    workspace.door.attach(control, told.append)
+    guest.stop("Bea")
+    assert guest.answered()
+    assert (control.phase, told) == ("stopped", ["Bea"])
+    (action,) = (e.record for e in workspace.store.events(StaffAction))
+    assert action.by == "Bea"
+
+
+def test_nothing_is_stopped_where_no_game_is_shown(
+    guest: Guest, control: GameController, workspace: Workspace
+) -> None:
+    workspace.door.detach(control)
+    guest.stop("Bea")
+    assert not guest.answered()
+    assert control.phase == "running"
+
+
+def test_where_nobody_is_there_it_is_said(tmp_path: Path) -> None:
+    guest = Guest(tmp_path)
+    assert not guest.look()
+    with pytest.raises(NobodyThere):
+        guest.stop("Bea")
+
+
+def test_a_guest_notices_that_the_program_has_ended(guest: Guest, workspace: Workspace) -> None:
+    seen(guest)
+    workspace.door.close()
+    wait_until(lambda: not guest.look())
+    assert not (workspace.store.folder / FILE).exists()
+
+
+def test_what_a_killed_program_left_is_in_nobodys_way(workspace: Workspace) -> None:
+    left = socket.socket(socket.AF_UNIX)
+    with reachable(workspace.store.folder) as place:
+        left.bind(f"{place}/{FILE}")
+    left.close()
+    workspace.door.open()
+    guest = Guest(workspace.store.folder)
+    assert guest.look()
+    guest.close()
+
+
+def test_only_the_user_may_come_in(control: GameController, data_folder: Path) -> None:
+    assert (data_folder / FILE).stat().st_mode & 0o777 == 0o600
+
+
+def test_a_folder_far_down_has_a_door_as_well(tmp_path: Path) -> None:
+    deep = tmp_path / ("far" * 30) / ("down" * 20)
+    workspace = Workspace(deep)
+    workspace.door.open()
+    guest = Guest(deep)
+    assert guest.look()
+    guest.close()
+    workspace.close()
+
+
+@pytest.mark.parametrize(
+    "said", [b"\xff\x00\n", b"[" * 900 + b"\n", b'{"stop": 5}\n', b"x" * (LONGEST_LINE + 5), b"\n"]
+)
+def test_nothing_but_a_stop_does_anything(
+    said: bytes, control: GameController, guest: Guest, data_folder: Path
+) -> None:
+    with socket.socket(socket.AF_UNIX) as strange, reachable(data_folder) as place:
+        strange.connect(f"{place}/{FILE}")
+        strange.sendall(said)
+        seen(guest)
+    assert control.phase == "running"
+
+
+def test_guests_who_do_not_listen_hold_up_nobody(
+    control: GameController, guest: Guest, data_folder: Path
+) -> None:
+    deaf = []
+    with reachable(data_folder) as place:
+        for _ in range(MOST_GUESTS - 1):
+            deaf.append(socket.socket(socket.AF_UNIX))
+            deaf[-1].connect(f"{place}/{FILE}")
+    seen(guest)
+    guest.stop("Bea")
+    assert guest.answered()
+    for one in deaf:
+        one.close()
+
+
+def test_the_log_is_told_once_as_it_grows(control: GameController, data_folder: Path) -> None:
+    with Store.open(data_folder, write=False) as store:
+        log = WatchedLog(store)
+        first = log.news()
+        assert first is not None and first.begun
+        steps = [moment.step for moment in first.moments]
+        assert log.news() is None
+        go_on_by_script(control, expert=False)
+        more = log.news()
+        assert more is not None and not more.begun
+        assert [moment.step for moment in more.moments if moment.step > max(steps)]
+        assert more.replay.moments[: len(first.moments)] == list(first.moments)

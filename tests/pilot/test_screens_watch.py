@@ -1,0 +1,101 @@
+"""A second console shows the game that another program runs, and stops the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.game_records import StaffAction
+from tangy_profiles.store import Store
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.watching import Guest
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.screens.watch import WatchScreen
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.status_line import StatusLine
+from tests.pilot.conftest import LARGE, SMALL, Run
+from tests.support.waiting import until
+
+
+@pytest.fixture
+def data_folder(taught: Path) -> Path:
+    """A folder in which three demonstrations were given and learnt from."""
+    return taught
+
+
+@pytest.fixture
+def control(workspace: Workspace, learnt: Policy) -> GameController:
+    """A game after five steps, at whose door others may look on."""
+    control = scripted_controller(workspace.supervision(learnt, 5))
+    control.begin()
+    while control.supervision.steps < 5:
+        go_on_by_script(control, expert=False)
+    workspace.door.attach(control)
+    workspace.door.open()
+    return control
+
+
+@pytest.fixture
+def screen(control: GameController, data_folder: Path) -> Iterator[WatchScreen]:
+    """The second console."""
+    with Store.open(data_folder, write=False) as store:
+        yield WatchScreen(Guest(data_folder), store, who="Bea")
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE])
+async def test_it_shows_the_room_the_calls_and_who_drives(
+    control: GameController, screen: WatchScreen, run: Run, size: tuple[int, int]
+) -> None:
+    async with run(screen, size=size) as pilot:
+        await until(lambda: screen.query(RoomView))
+        await pilot.pause()
+        scene = control.supervision.world.scene()
+        assert screen.query_one(RoomView).scene == scene
+        assert "scripted" in screen.query_one(StatusLine).status.note
+        label = control.supervision.world.activity.deck.label(scene.called[-1])
+        assert label in pilot.text()
+
+
+async def test_it_follows_the_game(control: GameController, screen: WatchScreen, run: Run) -> None:
+    async with run(screen):
+        await until(lambda: screen.query_one(StatusLine).status.step == 5)
+        told = len(screen.query_one(LogView).sentences)
+        go_on_by_script(control, expert=False)
+        await until(lambda: screen.query_one(StatusLine).status.step == 6)
+        await until(lambda: len(screen.query_one(LogView).sentences) > told)
+
+
+async def test_stop_stops_the_robot_and_says_who_did(
+    control: GameController, screen: WatchScreen, run: Run, workspace: Workspace
+) -> None:
+    async with run(screen) as pilot:
+        await until(lambda: screen.query_one(StatusLine).status.step == 5)
+        await pilot.press("ctrl+x")
+        await until(lambda: control.phase == "stopped")
+        await until(lambda: screen.query_one(StatusLine).status.alarm)
+    assert [event.record.by for event in workspace.store.events(StaffAction)] == ["Bea"]
+
+
+async def test_who_leaves_stops_nothing(
+    control: GameController, screen: WatchScreen, run: Run
+) -> None:
+    async with run(screen) as pilot:
+        await until(lambda: screen.query_one(StatusLine).status.step == 5)
+        await pilot.press("ctrl+c")
+        await until(lambda: not pilot.app.is_running)
+    assert control.phase == "running"
+
+
+async def test_no_other_key_changes_the_game(
+    control: GameController, screen: WatchScreen, run: Run
+) -> None:
+    async with run(screen) as pilot:
+        await until(lambda: screen.query_one(StatusLine).status.step == 5)
+        await pilot.press(*"pEgcodhiaer.<>", "f2", "enter")
+        await pilot.pause()
+    assert (control.phase, control.supervision.steps) == ("running", 5)

@@ -1,0 +1,65 @@
+"""`tangy watch` and `tangy serve` on the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+from aiohttp import web
+from aiohttp.test_utils import TestClient, TestServer
+
+from tangy_tui.app.serving import COOKIE, TOKEN, address, new_token, only_known
+
+Tangy = Callable[..., CompletedProcess[str]]
+
+
+def test_there_is_nothing_to_stop_where_no_game_runs(tangy: Tangy, tmp_path: Path) -> None:
+    done = tangy("watch", "--stop", "--data", tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert not list(tmp_path.iterdir()), "who only looks makes nothing"
+
+
+def test_no_page_is_served_at_all_addresses_at_once(tangy: Tangy) -> None:
+    assert tangy("serve", "--host", "0.0.0.0").returncode == 2  # noqa: S104
+
+
+@pytest.mark.parametrize(
+    ("headers", "query", "cookie", "status"),
+    [
+        ({}, "", False, 403),
+        ({}, f"?{TOKEN}=wrong", False, 403),
+        ({}, "", True, 200),
+        ({"Host": "evil.example"}, "", True, 421),
+        ({"Origin": "http://evil.example"}, "", True, 403),
+    ],
+)
+async def test_only_who_knows_the_token_comes_in(
+    headers: dict[str, str], query: str, cookie: bool, status: int
+) -> None:
+    token, allowed = new_token(), set[str]()
+
+    async def page(request: web.Request) -> web.Response:
+        return web.Response(text="in")
+
+    app = web.Application(middlewares=[only_known(token, allowed)])
+    app.add_routes([web.get("/", page)])
+    async with TestClient(TestServer(app)) as client:
+        allowed.add(f"{client.host}:{client.port}")
+        cookies = {COOKIE: token} if cookie else {}
+        got = await client.get(f"/{query}", headers=headers, cookies=cookies)
+        assert got.status == status
+
+
+async def test_the_token_is_kept_out_of_the_address_once_it_was_given() -> None:
+    token, allowed = new_token(), set[str]()
+    app = web.Application(middlewares=[only_known(token, allowed)])
+    async with TestClient(TestServer(app)) as client:
+        allowed.add(f"{client.host}:{client.port}")
+        place = address("x", 1, token).partition("/?")[2]
+        got = await client.get(f"/?{place}", allow_redirects=False)
+        assert (got.status, got.headers["Location"]) == (303, "/")
+        kept = got.cookies[COOKIE]
+        assert (kept.value, kept["httponly"], kept["samesite"]) == (token, True, "Strict")
