@@ -44,7 +44,7 @@ class Tracker:
         self._openers = [r.behaviour for r in activity.stage_rules if r.condition == "before"]
         self._reading = {r.stage for r in activity.stage_rules if r.condition in READS}
         self._attending = {r.stage for r in activity.stage_rules if r.condition in ATTENDS}
-        self._settled = activity.card_states[-1].name
+        self._settled = activity.user_states[-1].name
         self._situations: dict[tuple[str, str, str], Situation] = {
             s: s for s in activity.situations
         }
@@ -83,6 +83,11 @@ class Tracker:
             return False
         self.queue.append(person)
         return True
+
+    def withdraw(self, person: str) -> None:
+        """A person who asked does not ask any more, although nobody has helped."""
+        if person in self.queue:
+            self.queue.remove(person)
 
     def arrive(self, place: str) -> None:
         """The robot has arrived at a place; whatever card it saw before is out of sight."""

@@ -37,6 +37,7 @@ from tangy_tui.app.game_commands import (
     StopRobot,
     TakeBackCall,
     TakeOver,
+    Tell,
     VoidResponse,
 )
 from tangy_tui.app.keymap import ACTIONS
@@ -150,6 +151,8 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("call again", "says the last number once more"),
     ("take back", "the last number counts as not called"),
     ("ask for NAME", "asks for help for somebody who cannot"),
+    ("NAME: B", "tells what a person answers or does, in an activity of questions or the like"),
+    ("answer: B", "the same, of the person whom the game waits for"),
     ("void NAME", "the last response of somebody does not count"),
     ("drive left 2", "drives by hand for 2 s: forward, back, left, right"),
     ("where, why", "says what Tangy sees, and why it does the next thing"),
@@ -164,6 +167,8 @@ NEAR = 0.75  # likeness from which a word may have been meant: some of them move
 _AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
+_TOLD = re.compile(r"(.{1,60}?)(:| says| answers| answered) (\S.*)", re.I)
+_ANSWER = re.compile(r"(?:answer:|the answer is) (\S.*)", re.I)
 _DIAL = re.compile(r"autonomy (\w+)")
 
 
@@ -195,6 +200,8 @@ def read_command(
         person = find_person(about[2])
         voids = about[1].casefold().startswith("void")
         return VoidResponse(person) if voids else AskFor(person)
+    if told := _read_told(said, find_person):
+        return told
     if drive := _DRIVE.fullmatch(words):
         direction = next((one for one in DIRECTIONS if one == drive[1]), None)
         if direction is None:
@@ -204,6 +211,23 @@ def read_command(
         if seconds > LONGEST_DRIVE:
             raise TangyError(f"One line drives for {LONGEST_DRIVE:g} s at most.")
         return Drive(direction, seconds)
+    return None
+
+
+def _read_told(said: str, find_person: Callable[[str], str]) -> Tell | None:
+    """Return what is told of a person, None where nothing is.
+
+    Raises:
+        TangyError: a name stands before a colon that nobody has; one sentence.
+    """
+    if answer := _ANSWER.fullmatch(said):
+        return Tell(None, answer[1])
+    if told := _TOLD.fullmatch(said):
+        try:
+            return Tell(find_person(told[1]), told[3])
+        except TangyError:
+            if told[2] == ":":
+                raise
     return None
 
 

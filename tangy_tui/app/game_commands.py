@@ -92,6 +92,14 @@ class AskFor:
 
 
 @dataclass(frozen=True, slots=True)
+class Tell:
+    """Tell what a person, by id, says or does; None: the one whom the game waits for."""
+
+    person: str | None
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
 class VoidResponse:
     """Let the last response of a person, by id, not count: it was otherwise than it was seen."""
 
@@ -156,6 +164,7 @@ GameCommand: TypeAlias = (
     | CallAgain
     | TakeBackCall
     | AskFor
+    | Tell
     | VoidResponse
     | Drive
     | Confirm
@@ -167,7 +176,7 @@ GameCommand: TypeAlias = (
     | EndGame
 )
 
-AT_ONCE = (StopRobot, Pause, GoOn, OneStep, TakeOver, GiveBack, SetAutonomy, AskFor, Confirm)
+AT_ONCE = (StopRobot, Pause, GoOn, OneStep, TakeOver, GiveBack, SetAutonomy, AskFor, Tell, Confirm)
 """What does not wait for its turn."""
 
 
@@ -185,6 +194,7 @@ NoteKind = Literal[
     "call again",
     "call taken back",
     "asked for",
+    "told",
     "voided",
     "driven",
     "ended",
@@ -197,6 +207,8 @@ NoteKind = Literal[
     "no game",
     "no robot",
     "nothing called",
+    "not told",
+    "nothing to tell",
     "called since",
     "nothing to void",
     "not halted",
@@ -215,6 +227,8 @@ class StaffNote:
 
     kind: NoteKind
     about: str = ""
+    words: str = ""
+    """Words of the activity that it quotes."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,6 +45,7 @@ from tangy_tui.app.game_commands import (
     StopRobot,
     TakeBackCall,
     TakeOver,
+    Tell,
     VoidResponse,
 )
 from tangy_tui.app.robot_controls import ENDED, RobotControls
@@ -244,7 +245,7 @@ class GameController:
                 return [StaffNote("autonomy", level)]
             case Confirm(yes):
                 return self._confirm(yes=yes)
-            case AskFor():
+            case AskFor() | Tell():
                 return [self.robot.do(command)]
             case TakeBackCall():
                 return [self.robot.do(command)]

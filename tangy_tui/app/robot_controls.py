@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tangy_hw.robot_process.stop_latch import STAFF
+from tangy_profiles.declared.told import sayable
 from tangy_tui.app.game_commands import (
     LONGEST_DRIVE,
     TWISTS,
@@ -15,6 +16,7 @@ from tangy_tui.app.game_commands import (
     Drive,
     StaffNote,
     TakeBackCall,
+    Tell,
 )
 from tangy_tui.learning.policy import Decision
 
@@ -79,7 +81,7 @@ class RobotControls:
         behaviour = self._robot.activity.behaviours[decision.behaviour]
         return behaviour.effect == "draw" and self._robot.calls_in > 0
 
-    def do(self, command: CallAgain | TakeBackCall | AskFor | Drive) -> StaffNote:
+    def do(self, command: CallAgain | TakeBackCall | AskFor | Tell | Drive) -> StaffNote:
         """Do what only a robot that is there can do.
 
         Raises:
@@ -93,6 +95,8 @@ class RobotControls:
                 robot.requests.ask_for(person)
                 self._note(f"staff asked for help for {person}")
                 return StaffNote("asked for", person)
+            case Tell():
+                return self._tell(robot, command)
             case Drive():
                 return self._drive(robot, command)
         if not robot.called:
@@ -107,6 +111,18 @@ class RobotControls:
         number = robot.calls.take_back()
         self._note(f"staff took a call back: {label}", number or 0)
         return StaffNote("call taken back", label)
+
+    def _tell(self, robot: LiveWorld, command: Tell) -> StaffNote:
+        """Let a game that is declared by facts know what a person says or does."""
+        from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
+
+        if not isinstance(robot, DeclaredLiveWorld):
+            return StaffNote("nothing to tell")
+        said = command.words
+        if not robot.tell(command.person, said):
+            return StaffNote("not told", words=", ".join(sayable(robot.game)))
+        self._note(f"staff told of {command.person or 'the group'}: {said}")
+        return StaffNote("told", command.person or "", said)
 
     def _drive(self, robot: LiveWorld, command: Drive) -> StaffNote:
         """Drive by hand for a while; a STOP, which waits for nothing, ends it."""

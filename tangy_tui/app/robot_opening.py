@@ -10,13 +10,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
 from tangy_hw.robot_client.live_world import FACING, PACE_SECONDS, LiveWorld
 from tangy_hw.robot_setup import RobotSetup
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.health import Health
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
 from tangy_sim.worlds.injection import Injection
+from tangy_tui.app.declared_bench_world import BenchedDeclaredWorld
 from tangy_tui.app.device_simulator import DeviceSimulator
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 
@@ -58,6 +61,7 @@ def opening_of(
     def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
         told: dict[str, Any] = {"book": load_faults(workspace.robot), "cancellation": cancellation}
         if bench:
+            told["kind"] = BenchedDeclaredWorld if _is_declared(workspace) else BenchedWorld
             return open_bench(workspace, stepped=stepped, injections=injections, **told, **both)
         return open_robot(workspace, **told, **(own or {}), **both)
 
@@ -201,12 +205,18 @@ def open_robot(
         log=str(workspace.store.folder / LOG),
         pairing=keep_pairing(workspace.store.folder).to_json(),
     )
+    kind = DeclaredLiveWorld if _is_declared(workspace) else LiveWorld
     linked = _linked(
-        LiveWorld, setup, workspace, seed=seed, pace=pace, book=book, cancellation=cancellation
+        kind, setup, workspace, seed=seed, pace=pace, book=book, cancellation=cancellation
     )
     with linked as world:
         world.cards.dealt.deal(cards or {})
         yield world
+
+
+def _is_declared(workspace: Workspace) -> bool:
+    """Say whether what is played is declared by facts, so that there are no cards."""
+    return isinstance(workspace.activity, DeclaredActivity)
 
 
 @contextmanager

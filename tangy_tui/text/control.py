@@ -75,6 +75,8 @@ REFUSALS: tuple[NoteKind, ...] = (
     "nothing called",
     "called since",
     "nothing to void",
+    "not told",
+    "nothing to tell",
     "not acceptable",
     "cannot",
 )
@@ -116,6 +118,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"{about} counts as not called; say so to the group."
         case "asked for":
             return f"{name(about)} asks for help."
+        case "told":
+            return f"Noted of {name(about)}: {noted.words}." if about else f"Noted: {noted.words}."
         case "voided":
             return f"{name(about)}'s last response does not count any more."
         case "driven":
@@ -134,6 +138,11 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return "There is no game now."
         case "no robot":
             return "That needs a robot, or the bench: this game is simulated."
+        case "not told":
+            goes_by = f" It goes by: {noted.words}." if noted.words else ""
+            return f"The game does not go by that.{goes_by}"
+        case "nothing to tell":
+            return "In this activity Tangy sees for itself what people do."
         case "nothing called":
             return "No number was called yet."
         case "called since":

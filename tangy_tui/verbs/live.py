@@ -141,7 +141,6 @@ def live(
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens in a live game on the screen; there is none here.")
     with open_workspace(data, activity, users, robot=robot) as workspace:
-        workspace.activity.need_cards()
         need_policy(workspace.store, workspace.activity, policy)
         world = BENCH if bench else LIVE
         past = past_game(workspace, world, resume=resume, discard=discard, asks=screen)

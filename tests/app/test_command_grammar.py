@@ -32,6 +32,7 @@ from tangy_tui.app.game_commands import (
     SetAutonomy,
     StopRobot,
     TakeBackCall,
+    Tell,
     VoidResponse,
 )
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
@@ -60,6 +61,12 @@ def read(text: str) -> GameCommand | None:
         ("ask for Rosa", AskFor("user2")),
         ("help for rosa", AskFor("user2")),
         ("void Rosa", VoidResponse("user2")),
+        ("Rosa: B", Tell("user2", "B")),
+        ("rosa says the honey", Tell("user2", "the honey")),
+        ("nobody here says honey", None),
+        ("answer: honey", Tell(None, "honey")),
+        ("the answer is honey", Tell(None, "honey")),
+        ("answer the question", None),
         ("drive left", Drive("left", 1.0)),
         ("drive forward 2.5 s", Drive("forward", 2.5)),
         ("autonomy each", SetAutonomy("each")),
@@ -80,7 +87,7 @@ def test_what_is_a_command_as_it_stands_is_read_as_that(words: str) -> None:
 def test_every_command_has_words_and_is_in_the_help() -> None:
     typed = {type(command) for command in FIXED.values()} | {
         type(read(text)) for text in ("stop", "autonomy each", "ask for Rosa", "void Rosa",
-                                      "drive left")
+                                      "Rosa: B", "drive left")
     }  # fmt: skip
     assert typed == set(get_args(GameCommand)) - {Confirm}  # which is answered by Y or N
     helped = " ".join(key for key, _ in MEANINGS)

@@ -61,9 +61,7 @@ def test_a_file_that_is_there_is_not_written_over(tangy: Tangy, tmp_path: Path) 
     assert (tmp_path / "poems.csv").read_text(encoding="utf-8") == "mine"
 
 
-@pytest.mark.parametrize(
-    "words", [("live", "--bench", "--headless"), ("drill",), ("cards", "list")]
-)
+@pytest.mark.parametrize("words", [("drill",), ("cards", "list")])
 def test_what_needs_cards_says_so_of_an_activity_without(
     words: tuple[str, ...], tangy: Tangy, tmp_path: Path
 ) -> None:

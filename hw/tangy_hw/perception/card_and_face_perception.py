@@ -149,7 +149,7 @@ class CardAndFacePerception:
         from tangy_hw.perception.faces.reader import open_reader
 
         cv2.setNumThreads(1)
-        if self._reader is None:
+        if self._reader is None and self._activity.deck.numbers:
             self._reader = CardReader(self._activity.deck, self._deck_seed)
         if self._face_reader is None:
             self._face_reader = open_reader(self._models)

@@ -120,5 +120,5 @@ class HelpRequestTracker:
             if person in asking or person == tracker.place:
                 self._without_sign.pop(person, None)
             elif now - self._without_sign.setdefault(person, now) > WITHDRAWN_SECONDS:
-                tracker.queue.remove(person)
+                tracker.withdraw(person)
                 del self._without_sign[person]

@@ -64,7 +64,7 @@ class RecoveryActions:
             case "do without":
                 commands.do("relax")
             case "set aside" | "leave to staff" if person is not None and person in tracker.queue:
-                tracker.queue.remove(person)
+                tracker.withdraw(person)
                 world.requests.set_aside(person)
                 commands.do("answered", seat=world.people.index(person) + 1)
                 if person == tracker.place:

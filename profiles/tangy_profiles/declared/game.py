@@ -255,6 +255,11 @@ class DeclaredGame:
                 self._change(effect, whom, invited)
         return Execution(True, tuple(invited))
 
+    def failed(self) -> None:
+        """Count a behaviour that was begun and could not be carried out: nothing is changed."""
+        self.closed = None
+        self.step += 1
+
     def _change(
         self, effect: Effect, whom: str | None, invited: list[tuple[str, str, str]]
     ) -> None:

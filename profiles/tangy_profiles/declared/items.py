@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
 from pathlib import Path
 
+from tangy_profiles.declared.model import Items
 from tangy_profiles.declared.source import SourceText
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.given_file import read_given
@@ -59,3 +61,18 @@ def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[
                 source.wrong(key, f"{plain(path.name)}: row {number} cannot be shown")
                 return []
     return rows
+
+
+def order_of(items: Items, uniform: Callable[[], float]) -> list[int]:
+    """Return the rows of a game's items in their order (Fisher and Yates where shuffled).
+
+    Args:
+        items: the items, with how many rounds a game has.
+        uniform: draws from 0 to 1.
+    """
+    order = list(range(len(items.rows)))
+    if items.order == "shuffled":
+        for end in range(len(order) - 1, 0, -1):
+            pick = int(uniform() * (end + 1))
+            order[end], order[pick] = order[pick], order[end]
+    return order[: items.rounds]

@@ -37,6 +37,26 @@ def filled(game: DeclaredGame, template: str, whom: str | None) -> str:
     return "" if empty else text
 
 
+def words(
+    game: DeclaredGame, before: DeclaredGame, behaviour: str, strategy: str, whom: str | None
+) -> tuple[str, str]:
+    """Return what a behaviour says and shows, by the facts that it leaves.
+
+    Args:
+        game: the game after the behaviour.
+        before: the game before it.
+        behaviour: its name.
+        strategy: the way of asking.
+        whom: the player whom it is for, None for the group.
+    """
+    declared = game.declaration.behaviours[behaviour]
+    texts = declared.says.get(strategy) or next(iter(declared.says.values()), ())
+    times = before.executed.get(behaviour, 0)
+    in_turn = [texts[(times + n) % len(texts)] for n in range(len(texts))]
+    spoken = (filled(game, text, whom) for text in in_turn)
+    return next((text for text in spoken if text), ""), filled(game, declared.image, whom)
+
+
 def empty_slots(game: DeclaredGame, template: str, whom: str | None) -> list[str]:
     """Return the slots of a text that would be empty now."""
     return [slot for slot in SLOT.findall(template) if not _value(game, slot, whom)]

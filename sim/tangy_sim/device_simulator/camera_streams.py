@@ -83,7 +83,7 @@ class Film:
                 if game != self._world.games:
                     game = self._world.games
                     people = self._world.people.sitters.values()
-                    ahead = list(enumerate(sitter.card for sitter in people))
+                    ahead = [(n, one.card) for n, one in enumerate(people) if one.card]
                 elif ahead:  # one between two frames, so that the stream never stands still
                     who, card = ahead.pop(0)
                     await loop.run_in_executor(self._thread, self._head.prepare, game, who, card)

@@ -3,8 +3,7 @@
 They play as those of `tangy_sim.worlds.world` do, by the same rates, but in continuous time: what
 they do, they do some seconds after they had reason to. Rates are per call; how long a robot takes
 for a call is its own business, so people's time goes on with what they hear: by one call for each
-behaviour before the group, by `away_calls` for each at somebody's seat. Random streams are seeded
-apart, as in the world: cards, users, compliance, and the moments at which things are done.
+behaviour before the group, by `away_calls` for each at somebody's seat. Random streams are apart.
 """
 
 from __future__ import annotations
@@ -71,6 +70,8 @@ class GameProgress:
     responses: list[Response] = field(default_factory=list)
     spoken: list[str] = field(default_factory=list)
     """Who said aloud that they would like help, because signs cannot be seen."""
+    acts: list[tuple[str, str, str]] = field(default_factory=list)
+    """What no sensor sees: the fact, who, and what they said or showed."""
 
 
 class People:
@@ -105,7 +106,6 @@ class People:
 
     def begin(self, now: float) -> None:
         """Deal other cards and begin a game at a time in s; nobody asks before it is opened."""
-        activity = self.activity
         self.now = now
         self.game = GameProgress()
         self._agenda.clear()
@@ -115,20 +115,21 @@ class People:
         self._driven_to = ""
         self._speak = False  # whether people were asked to say that they would like help
         self.place = FRONT
-        dealt: list[int] = []
+        self.sitters = self._seat()
+        for sitter in self.sitters.values():
+            sitter.player.slips_at = waiting_calls(self._uniform, self.users.slip)
+
+    def _seat(self) -> dict[str, Sitter]:
+        """Let people sit down, each with another card."""
+        deck, dealt = self.activity.deck, list[int]()
         while len(dealt) < len(self.ids):
             card = 1 + int(self._cards() * LAST_CARD)
             if card not in dealt:
                 dealt.append(card)
-        self.sitters = {
-            person: Sitter(
-                SimulatedUser(person, activity.deck, numbers_of(activity.deck, card, USUAL_SEED)),
-                card,
-            )
+        return {
+            person: Sitter(SimulatedUser(person, deck, numbers_of(deck, card, USUAL_SEED)), card)
             for person, card in zip(self.ids, dealt, strict=True)
         }
-        for sitter in self.sitters.values():
-            sitter.player.slips_at = waiting_calls(self._uniform, self.users.slip)
 
     @property
     def asking(self) -> tuple[str, ...]:

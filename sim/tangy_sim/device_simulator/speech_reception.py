@@ -33,6 +33,8 @@ class Heard:
     person: str = ""
     numbers: tuple[int, ...] = ()
     fault: str = ""
+    rows: tuple[int, ...] = ()
+    """The rows of an activity's items that it can be about."""
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
+from tangy_sim.device_simulator.declared_people import DeclaredPeople
+from tangy_sim.device_simulator.declared_reception import DeclaredReception
 from tangy_sim.device_simulator.drive import RADIUS, Odometer, SimulatedWheels, moved
 from tangy_sim.device_simulator.faults import COMES_BACK, Faults
 from tangy_sim.device_simulator.floor import Floor, FloorPose
@@ -85,8 +88,14 @@ class BenchWorld:
         self.lidar = Lidar()
         self.joints = Joints(robot)
         self.faults = Faults()
-        self.people = People(activity, people, self.faults, seed=seed, users=users)
-        self._hearing = SpeechReception(activity, robot, people)
+        self.people: People
+        self._hearing: SpeechReception | DeclaredReception
+        if isinstance(activity, DeclaredActivity):
+            self.people = DeclaredPeople(activity, people, self.faults, seed=seed)
+            self._hearing = DeclaredReception(activity, people)
+        else:
+            self.people = People(activity, people, self.faults, seed=seed, users=users)
+            self._hearing = SpeechReception(activity, robot, people)
         self._speech: deque[str] = deque()
         self._silent_from = 0.0  # when what is being said has been said
         self.said: list[str] = []
@@ -105,7 +114,8 @@ class BenchWorld:
         self._speech.clear()
         self.people.begin(self.now)
         self.people.place = self.nearest() or ""
-        return {person: sitter.card for person, sitter in self.people.sitters.items()}
+        cards = {person: sitter.card for person, sitter in self.people.sitters.items()}
+        return {person: card for person, card in cards.items() if card}
 
     def step(self, seconds: float) -> None:
         """Let s pass."""
@@ -216,6 +226,8 @@ class BenchWorld:
             return HeadScene("room", heading=5 * round(pose.heading * 36 / pi))
         if self.joints.angle(NOD) > LOOKS_DOWN:
             return HeadScene("face", sitter.id)
+        if not sitter.card:
+            return HeadScene("room", heading=5 * round(pose.heading * 36 / pi))
         return HeadScene(
             "card",
             sitter.id,
@@ -325,6 +337,7 @@ class BenchWorld:
                 for name, fault in self.faults.present.items()
             ],
             "responses": [list(response) for response in people.game.responses],
+            "acts": [list(act) for act in people.game.acts],
             "people": {
                 person: {
                     "card": sitter.card,

@@ -6,7 +6,7 @@ act. Streams for items, people and compliance are seeded apart; only `Random.ran
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from random import Random
 
 from tangy_profiles.activity import Activity
@@ -14,9 +14,9 @@ from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.acts import Act, acts, take_in
 from tangy_profiles.declared.game import DeclaredGame, Execution
+from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
-from tangy_profiles.declared.model import Items
-from tangy_profiles.declared.speech import filled
+from tangy_profiles.declared.speech import words
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import SIMULATED, GameWorld
@@ -92,7 +92,11 @@ class DeclaredWorld:
         before, behaviour = game.copy(), action.behaviour.name
         whom = None if action.target in (None, EVERYBODY) else action.target
         done = game.execute(behaviour, whom)
-        speech, image = self._words(before, action, whom) if done.completed else ("", "")
+        speech, image = (
+            words(self.game, before, action.behaviour.name, action.strategy, whom)
+            if done.completed
+            else ("", "")
+        )
         seconds = 1.0 + SECONDS_A_WORD * len(speech.split())
         self._did.clear()
         response = self._respond(done, action)
@@ -123,15 +127,6 @@ class DeclaredWorld:
         """Do nothing, in 0 s: here is nothing that could be mended."""
         return 0.0
 
-    def _words(self, before: DeclaredGame, action: Action, whom: str | None) -> tuple[str, str]:
-        """Return what is said and shown, by the facts that a behaviour leaves."""
-        declared = self._declaration.behaviours[action.behaviour.name]
-        texts = declared.says.get(action.strategy) or next(iter(declared.says.values()), ())
-        times = before.executed.get(declared.name, 0)
-        in_turn = [texts[(times + n) % len(texts)] for n in range(len(texts))]
-        spoken = (filled(self.game, text, whom) for text in in_turn)
-        return next((text for text in spoken if text), ""), filled(self.game, declared.image, whom)
-
     def _respond(self, done: Execution, action: Action) -> Response | None:
         """Let those who were invited do what they were asked to, or not."""
         response: Response | None = None
@@ -157,18 +152,3 @@ class DeclaredWorld:
         if take_in(self.game, act) and act.who is not None:
             asks = act.fact == ASKING
             self._did[act.who] = "asks for help" if asks else f"{act.fact}: {act.value}"
-
-
-def order_of(items: Items, uniform: Callable[[], float]) -> list[int]:
-    """Return the rows of a game's items in their order (Fisher and Yates where shuffled).
-
-    Args:
-        items: the items, with how many rounds a game has.
-        uniform: draws from 0 to 1.
-    """
-    order = list(range(len(items.rows)))
-    if items.order == "shuffled":
-        for end in range(len(order) - 1, 0, -1):
-            pick = int(uniform() * (end + 1))
-            order[end], order[pick] = order[pick], order[end]
-    return order[: items.rounds]

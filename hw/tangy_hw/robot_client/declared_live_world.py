@@ -1,0 +1,256 @@
+"""The real world in a game of an activity that is declared by facts.
+
+The interpreter keeps the facts, as it does in the simulated room. They change by what is observed:
+signs that ask, what staff tell of people, what is heard; and by what the robot has carried out.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, NamedTuple
+
+from tangy_hw.device_protocols import DeviceError, Picture
+from tangy_hw.robot_client.declared_tracker import DeclaredTracker
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.behaviour import Action
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.game import DeclaredGame, Execution
+from tangy_profiles.declared.items import order_of
+from tangy_profiles.declared.joint_state import joint_state
+from tangy_profiles.declared.judging import CERTAIN
+from tangy_profiles.declared.speech import with_names, words
+from tangy_profiles.declared.told import Telling, meant
+from tangy_profiles.declared.vocabulary import ASKING
+from tangy_profiles.past_game import NotResumable, PastGame
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import EVERYBODY, FRONT, ActivityState, Outcome, Response
+
+if TYPE_CHECKING:
+    from typing import Any
+
+PAUSE_SECONDS = 8.0
+"""After a behaviour, in which people can act: the next one follows as soon as somebody does."""
+LOOK_SECONDS = 0.5  # between two looks at what people do
+PATIENCES = 2.0  # windows of patience after which it is taken that a person does not do it
+
+
+class Observed(NamedTuple):
+    """Something that was observed of a person: what was told, how sure that is, and by what."""
+
+    told: Telling
+    certainty: float
+    source: str
+
+
+class DeclaredLiveWorld(LiveWorld):
+    """A room with a robot and people in it, who play an activity that is declared by facts."""
+
+    activity: DeclaredActivity
+    game: DeclaredGame
+    sees_all = False
+    """Whether everything that people do is told: then nothing told means nothing done."""
+
+    def __init__(self, activity: DeclaredActivity, *both: Any, **named: Any) -> None:
+        """Make the world of a robot that is switched on, as `LiveWorld` does."""
+        self._told: deque[Observed] = deque()
+        self.unsure: Observed | None = None
+        """What was observed last and not sure enough to be judged: the person is asked again."""
+        super().__init__(activity, *both, **named)
+
+    def _begin(self) -> None:
+        super()._begin()
+        declaration = self.activity.declaration
+        order = order_of(declaration.items, self._order.random)
+        self.game = DeclaredGame(declaration, self.people, order)
+        self.tracker = DeclaredTracker(self.activity, self.game)
+        self._started = self.link.time
+        self._did: dict[str, str] = {}
+        self._told.clear()
+        self.unsure = None
+
+    def resume(self, past: PastGame) -> ActivityState:
+        """Refuse: what people did in the game before it was interrupted is known to nobody.
+
+        Raises:
+            NotResumable: always.
+        """
+        raise NotResumable("what people answered in it is not known any more")
+
+    # ------------------------------------------------------------------------ what is observed
+
+    def tell(
+        self, who: str | None, said: str, certainty: float = 1.0, source: str = "staff"
+    ) -> bool:
+        """Take in what somebody says of a person, or what a person says or shows.
+
+        It counts with the next look at the game, so that it never changes what is being done.
+
+        Args:
+            who: the player; None where nobody is named.
+            said: the words.
+            certainty: how sure they are, as a probability.
+            source: what tells it, for the log.
+
+        Returns:
+            Whether they say anything of a fact.
+        """
+        found = None if self.over else meant(self.game, who, said)
+        if found is None:
+            return False
+        self.take(Observed(found, certainty, source))
+        return True
+
+    def take(self, observed: Observed) -> None:
+        """Take in what was observed of a fact; it counts with the next look at the game."""
+        self._told.append(observed)
+
+    def observe(self) -> ActivityState:
+        """Return the joint state as it is known now."""
+        if not self.over:
+            self._listen()
+            self._take_in()
+            self.requests.tell(self.tracker)
+        return joint_state(self.game)
+
+    def look_again(self) -> ActivityState:
+        """Return the joint state a moment later: there is nothing to be read again."""
+        return self.observe()
+
+    def read_card(self, person: str, after: float = 0.0) -> None:
+        """Do nothing: there are no cards."""
+
+    def _listen(self) -> None:
+        """Hear what people have done since, where something tells it."""
+
+    def _take_in(self) -> None:
+        """Let what was told since count, each with its certainty."""
+        while self._told:
+            observed = self._told.popleft()
+            fact, who, raw = observed.told
+            self.game.now = self.link.time - self._started
+            if observed.certainty < CERTAIN:
+                self.unsure = observed
+                continue
+            if fact == ASKING and who is not None:
+                self.requests.ask_for(who)
+            if self.game.observe(fact, who, raw, observed.certainty) and who is not None:
+                self._did[who] = f"{fact}: {raw}"
+
+    # ------------------------------------------------------------------------ behaviours
+
+    def execute(self, action: Action) -> Outcome:
+        """Let the robot carry out an action, and let people act; it can be broken off."""
+        began = self.link.time
+        if self.over:
+            return Outcome(False, 0.0, (), None)
+        name, game = action.behaviour.name, self.game
+        whom = None if action.target in (None, EVERYBODY) else action.target
+        game.now = self.link.time - self._started
+        speech = image = self.broken = ""
+        response: Response | None = None
+        done = Execution(False)
+        try:
+            if game.allows(name, whom):
+                speech, image = self._perform(action, whom)
+                done = self._count(name, whom)
+                response = self._watch(done, action)
+        except DeviceError as error:
+            self.broken = str(error)
+        if not done.completed:
+            game.failed()
+        self.over = game.over
+        self.commands.settle()
+        if not self.broken and not self.over:
+            self._let_people_act()
+        seconds = max(0.0, self.link.time - began)
+        return Outcome(done.completed, seconds, (), response, speech, image)
+
+    def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
+        """Say, show, gesture and drive; return what was said and shown.
+
+        Raises:
+            DeviceError: it had to be broken off.
+        """
+        behaviour, game = action.behaviour, self.game
+        drives = behaviour.effect in ("go to user", "go to front")
+        if not drives and not self.lost:
+            self._remedies.go_back(knows_place=True)  # staff may have driven it
+        after = game.copy()
+        after.execute(behaviour.name, whom)
+        speech, image = words(after, game, behaviour.name, action.strategy, whom)
+        picture = Picture(with_names(image, self.name_of), asks=self.name_of(whom))
+        self.say(with_names(speech, self.name_of), picture, self._robot.postures[action.posture])
+        if drives and not self._arrives(after.place):
+            raise DeviceError("The robot did not get there.")
+        return speech, image
+
+    def _arrives(self, place: str) -> bool:
+        """Drive to a place, and see who sits there; say whether the robot has arrived."""
+        if not self.drive(place):
+            return False
+        if place != FRONT and self.knows_faces:
+            self._see_who(place)
+        return True
+
+    def _count(self, name: str, whom: str | None) -> Execution:
+        """Let a behaviour count that was carried out, and have signs taken down that it settled."""
+        asked = list(self.game.queue)
+        done = self.game.execute(name, whom)
+        self._did.clear()
+        for person in asked:
+            if person in self.game.queue or self.game.over:
+                continue
+            try:
+                is_down = self.requests.answered(person)
+            except DeviceError:
+                continue
+            if not is_down:  # it still asks: nothing that was done has ended that
+                self.tracker.ask(person)
+                self.game.closed = None
+        return done
+
+    def _watch(self, done: Execution, action: Action) -> Response | None:
+        """Watch whether a person does what they were invited to; None where that is not known."""
+        asked = next(((who, fact, value) for who, fact, value in done.invited if who), None)
+        if asked is None:
+            return None
+        who, fact, value = asked
+        began = before = self.link.time
+        patience = self.activity.patience
+        while True:
+            self.commands.wait(LOOK_SECONDS)
+            self._hear()
+            now = self.link.time
+            seconds = (before + now) / 2 - began  # it was done between two looks
+            if self.game.value(fact, who) == value:
+                return Response(who, action.strategy, True, seconds <= patience, seconds)
+            if now - began > PATIENCES * patience:
+                missed = Response(who, action.strategy, False, False, now - began)
+                return missed if self.sees_all else None
+            before = now
+
+    def _let_people_act(self) -> None:
+        """Wait until people have changed what the policy sees, but no longer than the pause."""
+        seen, until = self.game.seen(), self.link.time + PAUSE_SECONDS
+        try:
+            while self.link.time < until and self.game.seen() == seen:
+                self.commands.wait(LOOK_SECONDS, asks=True)
+                self._hear()
+        except DeviceError:  # what keeps it from waiting is seen by what devices report
+            return
+
+    def _hear(self) -> None:
+        """See what people do now, where the robot's time stands still meanwhile as well."""
+        self.commands.settle()
+        self.game.now = self.link.time - self._started
+        self._listen()
+        self._take_in()
+        self.requests.tell(self.tracker)
+
+    # ------------------------------------------------------------------------ what is there
+
+    def scene(self) -> Scene:
+        """Return what there is to see, for a screen to draw."""
+        asking = tuple(self.game.queue)
+        doing = {p: "asks for help" if p in asking else "watches" for p in self.people}
+        return Scene(self.link.state.going or self.game.place, asking, doing | self._did, (), None)

@@ -1,0 +1,117 @@
+"""What somebody tells of a person in a game: which fact it is about, and what it says of it.
+
+Staff type or say it, in words of the activity's file: an answer ("B", "honey"), a value ("match"),
+a fact ("tired", "not tired"), or a fact with its value ("mood sad").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.judging import judged, plain_words
+from tangy_profiles.declared.model import Fact
+from tangy_profiles.declared.vocabulary import ASKING, NO, YES
+
+ASKS = ("asks", "asks for help", "asking", "help")
+NEGATIONS = ("not", "no", "does not", "is not", "no longer")
+BETWEEN = ("is", "has", "gives")
+"""Words that may stand before a fact or a value, and add nothing."""
+
+
+class Telling(NamedTuple):
+    """What was told: the fact, whose (None: the group's), and what is to be observed of it."""
+
+    fact: str
+    who: str | None
+    raw: str
+
+
+def can_be_told(game: DeclaredGame) -> tuple[Fact, ...]:
+    """Return the facts that people bring about, in the order of the file."""
+    return tuple(one for one in game.declaration.facts.values() if one.sources)
+
+
+def meant(game: DeclaredGame, who: str | None, words: str) -> Telling | None:
+    """Return what words say of a player, or of the group (None).
+
+    An option of the present item goes before a value, a value before a fact, and all of them before
+    a free answer, which may be any words.
+
+    Args:
+        game: the game, with its present item.
+        who: the player they are about, None where nobody is named.
+        words: what was typed or heard.
+
+    Returns:
+        What is to be observed; None where the words say nothing of any fact.
+    """
+    said = plain_words(words)
+    if not said:
+        return None
+    if said in ASKS and who is not None:
+        return Telling(ASKING, who, YES)
+    facts = can_be_told(game)
+    for fact, raw in (*_answers(game, facts, words), *_values(facts, said)):
+        whose = who if fact.per_player else None
+        if fact.per_player and whose is None:
+            whose = about(game)
+        if whose is not None or not fact.per_player:
+            return Telling(fact.name, whose, raw)
+    return None
+
+
+def sayable(game: DeclaredGame) -> list[str]:
+    """Return words that say something now: the options, and values or names of facts."""
+    found: list[str] = []
+    for fact in can_be_told(game):
+        if fact.checks:
+            items = game.declaration.items
+            found += [one for c in fact.options if (one := items.value(game.row, c))]
+        elif fact.kind == "choice":
+            found += fact.values[1:]
+        else:
+            found.append(fact.name)
+    return found
+
+
+def about(game: DeclaredGame) -> str | None:
+    """Return whom words that name nobody are about: as the stage is, or whose turn it is."""
+    person = game.stage()[1]
+    return person if person is not None else game.players[game.turn]
+
+
+def _answers(game: DeclaredGame, facts: tuple[Fact, ...], words: str) -> Iterator[tuple[Fact, str]]:
+    items = game.declaration.items
+    for fact in facts:
+        if fact.options and judged(fact, items, game.row, words, 1.0) is not None:
+            yield fact, words
+
+
+def _values(facts: tuple[Fact, ...], said: str) -> Iterator[tuple[Fact, str]]:
+    for fact in facts:
+        if (value := _value_of(fact, said)) is not None:
+            yield fact, value
+    for fact in facts:
+        if fact.checks and not fact.options:
+            yield fact, said
+
+
+def _value_of(fact: Fact, said: str) -> str | None:
+    """Return the value of a fact that words name, with the fact's name or without it."""
+    words, negated = said.split(), False
+    while words and words[0] in (*BETWEEN, *NEGATIONS):
+        negated |= words.pop(0) in NEGATIONS
+    name = plain_words(fact.name).split()
+    values = {plain_words(value): value for value in fact.values}
+    if words[: len(name)] == name:
+        rest = " ".join(one for one in words[len(name) :] if one not in BETWEEN)
+        if fact.kind == "count" and not rest:
+            return YES
+        if fact.kind == "flag":
+            given = YES if rest in ("", YES) else NO if rest in NEGATIONS else None
+            return given if not negated or given is None else NO
+        return values.get(rest) if not fact.checks else None
+    usable = fact.kind == "choice" and not fact.checks and not negated
+    return values.get(" ".join(words)) if usable else None

@@ -1,0 +1,116 @@
+"""The bench's people in an activity that is declared by facts.
+
+They follow the game by what the robot says, with the same interpreter, and do things some seconds
+after it has spoken, by the chances of the activity's file. The wish for help is a sign; what else
+they do is told to whoever is with them (`acts`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from random import Random
+
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.acts import Act, acts, raw
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.vocabulary import ASKING, NO, YES
+from tangy_profiles.person import Person
+from tangy_sim.device_simulator.faults import Faults
+from tangy_sim.device_simulator.people import CLEAR, TURNS_DOWN, People, Sitter
+from tangy_sim.device_simulator.speech_reception import Heard
+from tangy_sim.worlds.compliance import respond
+from tangy_sim.worlds.users import SimulatedUser
+
+ACTS = (1.0, 6.0)  # s after a sentence in which somebody does something about it
+
+
+class DeclaredPeople(People):
+    """The group of such an activity: nobody has a card, and all follow the game by ear."""
+
+    def __init__(
+        self, activity: DeclaredActivity, people: Sequence[Person], faults: Faults, *, seed: int
+    ) -> None:
+        self._declaration = activity.declaration
+        self._draw = Random(f"{seed}/people").random
+        super().__init__(activity, people, faults, seed=seed)
+
+    def begin(self, now: float) -> None:
+        """Begin a game at a time in s."""
+        super().begin(now)
+        self._began = now
+        self.known = DeclaredGame(self._declaration, self.ids)
+        """The game as the people at the table understand it."""
+
+    def _seat(self) -> dict[str, Sitter]:
+        deck = self.activity.deck
+        return {person: Sitter(SimulatedUser(person, deck, ()), 0) for person in self.ids}
+
+    def judged(self, person: str) -> str:
+        """Return the user activity state of somebody without a card."""
+        return self.activity.unread
+
+    # -------------------------------------------------------------- what the robot does
+
+    def step(self, now: float) -> None:
+        """Let time pass until `now`, in s."""
+        self.known.now = now - self._began
+        super().step(now)
+
+    def hear(self, heard: Heard) -> None:
+        """Understand a sentence of the robot, now that it was said, and act on it."""
+        if heard.fault:
+            self._asked_to_help(heard)
+            return
+        behaviour, game = heard.behaviour, self.known
+        if behaviour is None or self.game.over:
+            return
+        declared = game.declaration.behaviours[behaviour.name]
+        named = (game.whom(one) for one in declared.to)
+        whom = heard.person or next((one for one in named if one is not None), None)
+        whom = None if not heard.person and "group" in declared.to[:1] else whom
+        done = game.execute(behaviour.name, whom)
+        if heard.rows and game.row not in heard.rows and game.row >= 0:
+            order = list(game.order)
+            order[game.round - 1] = heard.rows[0]
+            game.order = tuple(order)
+        self.game.opened = True
+        self.game.over = game.over
+        for person in self.asking:
+            if person not in game.queue:
+                self._after(TURNS_DOWN, partial(self._closed, self.sitters[person]))
+        for who, fact, value in done.invited:
+            for one in (who,) if who else self.ids:
+                self._invited(Act(fact, one, value), heard.strategy)
+        if not game.over:
+            for act in acts(game, drawn=self._draw):
+                self._after(ACTS, partial(self._acts, act))
+
+    def ask(self, person: str) -> None:
+        """Let somebody raise the sign now, who is told to."""
+        self._acts(Act(ASKING, person, YES))
+
+    def _invited(self, act: Act, strategy: str) -> None:
+        """Let somebody do what they were asked, in time or late, or not at all."""
+        patience, who = self.activity.patience, act.who or ""
+        response = respond(self.preferences, who, strategy, patience, self._compliance)
+        self.game.responses.append(response)
+        if response.complied:
+            seconds = response.seconds * (patience - CLEAR) / patience
+            self._agenda.at(self.now + seconds, partial(self._acts, act))
+
+    def _acts(self, act: Act) -> None:
+        """Let somebody do something, if there is still a reason to."""
+        game = self.known
+        fact = game.declaration.facts[act.fact]
+        said = act.value if act.fact == ASKING else raw(game, fact, act.value)
+        if self.game.over or not game.observe(act.fact, act.who, said):
+            return
+        if act.fact == ASKING and act.who is not None:
+            self.sitters[act.who].asks_since = self.now
+        else:
+            self.game.acts.append((act.fact, act.who or "", said))
+
+    def _turn_down(self, sitter: Sitter) -> None:
+        super()._turn_down(sitter)
+        self.known.observe(ASKING, sitter.id, NO)

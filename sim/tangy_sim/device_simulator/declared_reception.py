@@ -1,0 +1,103 @@
+"""What people make of the robot's words in an activity that is declared by facts.
+
+They know its sentences, and the rows of its items: by a question they know which row it is.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.model import Items
+from tangy_profiles.declared.speech import SLOT
+from tangy_profiles.person import Person
+from tangy_sim.device_simulator.speech_reception import Heard
+
+
+class _Sentence(NamedTuple):
+    pattern: re.Pattern[str]
+    columns: tuple[str, ...]
+    """The columns of the items in it, each as often as it stands there."""
+    letters: int
+    """How many letters are no slot's."""
+    behaviour: Behaviour
+    strategy: str
+
+
+class DeclaredReception:
+    """The ears of a group that plays such an activity with a robot."""
+
+    def __init__(self, activity: DeclaredActivity, people: Sequence[Person]) -> None:
+        self._items: Items = activity.declaration.items
+        self._people = {_plain(person.name): person.id for person in reversed(people)}
+        names = "|".join(re.escape(one) for one in sorted(self._people, key=len, reverse=True))
+        cells = {column: _cells(self._items, column) for column in self._items.columns}
+        sentences = [
+            _sentence(text, names, cells, activity.behaviours[name], strategy)
+            for name, one in activity.declaration.behaviours.items()
+            for strategy, texts in one.says.items()
+            for text in texts
+        ]
+        self._sentences = sorted(sentences, key=lambda one: -one.letters)
+
+    def hear(self, text: str) -> Heard | None:
+        """Understand a sentence; None: it is none that people know."""
+        plain = _plain(text)
+        for one in self._sentences:
+            found = one.pattern.fullmatch(plain)
+            if found is None:
+                continue
+            rows = self._rows(one.columns, found.groupdict())
+            if one.columns and not rows:
+                continue
+            person = self._people.get(found.groupdict().get("name") or "", "")
+            return Heard(one.behaviour, one.strategy, person, rows=tuple(rows))
+        return None
+
+    def _rows(self, columns: tuple[str, ...], said: Mapping[str, str]) -> list[int]:
+        """Return the rows of the items that have in their columns what was said."""
+        return [
+            row
+            for row in range(len(self._items.rows) if columns else 0)
+            if all(
+                _plain(self._items.value(row, column).split("|")[0]) == said[f"s{place}"]
+                for place, column in enumerate(columns)
+            )
+        ]
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.casefold().split())
+
+
+def _cells(items: Items, column: str) -> str:
+    """Return a pattern of what can be said of a column, the longest first."""
+    said = {_plain(items.value(row, column).split("|")[0]) for row in range(len(items.rows))}
+    return "|".join(re.escape(one) for one in sorted(said, key=len, reverse=True) if one)
+
+
+def _sentence(
+    text: str, names: str, cells: Mapping[str, str], behaviour: Behaviour, strategy: str
+) -> _Sentence:
+    pattern, used, letters, begin, named = "", list[str](), 0, 0, False
+    plain = _plain(text)
+    for slot in SLOT.finditer(plain):
+        between = plain[begin : slot.start()]
+        pattern += re.escape(between)
+        letters, begin = letters + len(between), slot.end()
+        name = next((one for one in cells if one.casefold() == slot[1]), "")
+        if slot[1] == "name":
+            pattern += "(?P=name)" if named else f"(?P<name>{names})"
+            named = True
+        elif name:
+            pattern += f"(?P<s{len(used)}>{cells[name]})"
+            used.append(name)
+        else:
+            pattern += ".+?"
+    pattern += re.escape(plain[begin:])
+    return _Sentence(
+        re.compile(pattern), tuple(used), letters + len(plain) - begin, behaviour, strategy
+    )

@@ -1,0 +1,36 @@
+"""A game on the bench of an activity that is declared by facts: its people are listened to."""
+
+from __future__ import annotations
+
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
+from tangy_profiles.behaviour import Action
+from tangy_profiles.declared.told import Telling
+from tangy_profiles.state import ActivityState
+from tangy_sim.worlds import injection
+from tangy_sim.worlds.injection import Kind
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+
+WITH_CARDS = {injection.LOOKING, injection.ASKING, injection.CLOSING, injection.MOVING_ON}
+"""When faults show that have to do with a card."""
+
+
+class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
+    """Such a game, in which scripted staff pass on what the bench's people say and do."""
+
+    sees_all = True
+
+    def begin(self) -> ActivityState:
+        """Begin a game on the bench."""
+        self._passed_on = 0
+        return super().begin()
+
+    def can_show(self, kind: Kind, action: Action) -> bool:
+        """Say whether a fault of a kind would be seen if it came with an action."""
+        return kind.shows not in WITH_CARDS and super().can_show(kind, action)
+
+    def _listen(self) -> None:
+        """Hear what people of the bench have done since."""
+        acts = self.truth()["acts"]
+        for fact, who, raw in acts[self._passed_on :]:
+            self.take(Observed(Telling(fact, who or None, raw), 1.0, "staff"))
+        self._passed_on = len(acts)

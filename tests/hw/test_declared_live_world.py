@@ -1,0 +1,181 @@
+"""A live game that is declared by facts: who acts, what is told, what the robot has done count."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.declared_live_world import PAUSE_SECONDS, DeclaredLiveWorld, Observed
+from tangy_profiles.declared.acts import Act, acts, raw
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.told import Telling
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_profiles.state import Outcome
+from tests.hw.links import FakeLink
+from tests.support.declared import DECLARED, declared
+
+PEOPLE = ("user1", "user2", "user3")
+NAMES = {"user1": "Ann", "user2": "Ben", "user3": "Cleo"}
+
+
+def world_of(link: FakeLink, name: str = "trivia") -> DeclaredLiveWorld:
+    world = DeclaredLiveWorld(
+        declared(name),
+        PEOPLE,
+        cast(RobotLink, link),
+        load_robot(),
+        load_room(),
+        seed=1,
+        names=NAMES,
+    )
+    world.begin()
+    return world
+
+
+@pytest.fixture
+def link() -> FakeLink:
+    return FakeLink(PEOPLE)
+
+
+@pytest.fixture
+def world(link: FakeLink) -> DeclaredLiveWorld:
+    return world_of(link)
+
+
+def do(world: DeclaredLiveWorld, name: str, target: str | None = None) -> Outcome:
+    activity = world.activity
+    return world.execute(activity.action(activity.behaviour(name), target, None))
+
+
+def asked(world: DeclaredLiveWorld) -> DeclaredLiveWorld:
+    do(world, "welcome everyone")
+    do(world, "ask question", "user1")
+    return world
+
+
+def right(world: DeclaredLiveWorld) -> str:
+    items = world.activity.declaration.items
+    return items.value(world.game.row, "right")
+
+
+def test_people_are_spoken_to_by_their_names(world: DeclaredLiveWorld, link: FakeLink) -> None:
+    asked(world)
+    assert link.said[-1].startswith("Ann, question 1: ")
+    (picture,) = [w["picture"] for d, w in link.done if d == "perform" and "Ann" in w["text"]]
+    assert right(world) in picture["text"] and picture["asks"] == "Ann"
+
+
+def test_what_is_told_counts_with_the_next_look(world: DeclaredLiveWorld) -> None:
+    asked(world)
+    assert world.tell(None, right(world))
+    assert world.observe().stage == "judge"
+    assert dict(world.observe().facts)["answer"] == "right"
+
+
+def test_what_is_no_answer_is_refused(world: DeclaredLiveWorld) -> None:
+    asked(world)
+    assert not world.tell("user1", "something else")
+    assert world.observe().stage == "listen"
+
+
+def test_an_answer_that_is_not_sure_is_not_judged(world: DeclaredLiveWorld) -> None:
+    asked(world)
+    world.tell("user1", right(world), certainty=0.5, source="speech")
+    assert world.observe().stage == "listen"
+    assert world.unsure is not None and world.unsure.told.who == "user1"
+
+
+def test_the_pause_ends_when_somebody_answers(world: DeclaredLiveWorld, link: FakeLink) -> None:
+    asked(world)
+    began = link.time
+    do(world, "allow time")
+    assert link.time - began >= PAUSE_SECONDS
+
+    def meanwhile(what: str, time: float) -> None:
+        if what == "wait" and world.game.value("answer", "user1") != "right":
+            world.tell("user1", right(world))
+
+    link.meanwhile, began = meanwhile, link.time
+    do(world, "allow time")
+    assert link.time - began < PAUSE_SECONDS
+
+
+def test_a_sign_that_is_up_asks_and_comes_down_when_it_was_answered(
+    world: DeclaredLiveWorld, link: FakeLink
+) -> None:
+    asked(world)
+    link.sign(3)
+    state = world.observe()
+    assert (state.stage, state.attended) == ("repeat", "user3")
+
+    def meanwhile(what: str, time: float) -> None:
+        if what == "answered":
+            link.sign()
+
+    link.meanwhile = meanwhile
+    do(world, "repeat question", "user3")
+    assert world.observe().stage == "listen" and world.observe().closed == "user3"
+
+
+def test_a_behaviour_that_was_broken_off_changes_no_fact(
+    world: DeclaredLiveWorld, link: FakeLink
+) -> None:
+    do(world, "welcome everyone")
+    before = world.observe()
+    link.breaks["perform"] = "emergency stop is pressed"
+    outcome = do(world, "ask question", "user1")
+    assert not outcome.completed and world.broken
+    after = world.observe()
+    assert (after.facts, after.situation) == (before.facts, before.situation)
+    assert after.step == before.step + 1
+
+
+def test_who_does_what_they_were_invited_to_has_complied(link: FakeLink) -> None:
+    world = world_of(link, "exercises")
+    do(world, "welcome everyone")
+    do(world, "show movement")
+
+    def meanwhile(what: str, time: float) -> None:
+        if what == "wait":
+            world.tell("user2", "joins")
+
+    link.meanwhile = meanwhile
+    response = do(world, "encourage person", "user2").response
+    assert response is not None and response.complied and response.person == "user2"
+
+
+def test_nothing_told_is_not_taken_for_a_refusal(link: FakeLink) -> None:
+    world = world_of(link, "exercises")
+    do(world, "welcome everyone")
+    do(world, "show movement")
+    assert do(world, "encourage person", "user2").response is None
+
+
+@pytest.mark.parametrize("name", DECLARED)
+@given(data=st.data())
+def test_the_same_observations_give_the_same_facts_as_in_the_simulated_room(
+    name: str, data: Any
+) -> None:
+    world = world_of(FakeLink(PEOPLE), name)
+    game = DeclaredGame(world.activity.declaration, PEOPLE, world.game.order)
+    for _ in range(data.draw(st.integers(1, 8), "steps")):
+        behaviours = [b for b in world.activity.behaviours if b in game.declaration.behaviours]
+        chosen = data.draw(st.sampled_from(behaviours), "behaviour")
+        selector = data.draw(st.sampled_from((None, *PEOPLE)), "whom")
+        do(world, chosen, selector)
+        game.execute(chosen, selector)
+        game.now = world.game.now
+        could = list(acts(game.copy()))
+        if could and not world.over:
+            act: Act = data.draw(st.sampled_from(could), "act")
+            said = raw(game, game.declaration.facts[act.fact], act.value)
+            game.observe(act.fact, act.who, said)
+            world.take(Observed(Telling(act.fact, act.who, said), 1.0, "staff"))
+        world.observe()
+        assert (world.game.values, world.game.seen()) == (game.values, game.seen())
+        assert world.game.queue == game.queue

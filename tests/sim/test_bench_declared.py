@@ -1,0 +1,57 @@
+"""The bench's people follow a game that is declared by facts by what the robot says."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.declared.speech import with_names
+from tangy_profiles.declared.whom import first_addressee
+from tangy_profiles.person import load_people
+from tangy_sim.device_simulator.declared_people import DeclaredPeople
+from tangy_sim.device_simulator.declared_reception import DeclaredReception
+from tangy_sim.device_simulator.faults import Faults
+from tangy_sim.worlds.declared_world import DeclaredWorld
+from tests.support.declared import DECLARED, declared
+
+PEOPLE = load_people(3)
+NAMES = {person.id: person.name for person in PEOPLE}
+
+
+@pytest.mark.parametrize("name", DECLARED)
+@pytest.mark.parametrize("seed", range(3))
+def test_people_understand_every_sentence_and_which_item_it_is_about(name: str, seed: int) -> None:
+    activity = declared(name)
+    world = DeclaredWorld(activity, tuple(NAMES), seed=seed)
+    ears = DeclaredReception(activity, PEOPLE)
+    heard = 0
+    while not world.over:
+        state = world.observe()
+        behaviour = activity.behaviours[activity.expected[state.situation]]
+        selector = activity.whom_expected(state.situation)
+        whom = dict(state.whom).get(selector or "", first_addressee(behaviour, state))
+        outcome = world.execute(activity.action(behaviour, whom, None))
+        found = ears.hear(with_names(outcome.speech, lambda id: NAMES[id]))
+        assert found is not None and found.behaviour == behaviour
+        assert not found.rows or world.game.row in found.rows
+        assert found.person in ("", whom)
+        heard += len(found.rows) == 1
+    assert heard
+
+
+def test_people_act_only_where_the_game_gives_them_reason_to() -> None:
+    activity = declared("trivia")
+    people = DeclaredPeople(activity, PEOPLE, Faults(), seed=1)
+    ears = DeclaredReception(activity, PEOPLE)
+    sentences = ("Welcome to the quiz!", "Which planet do we live on? Mars, Earth or Saturn?")
+    answered = 0
+    for _ in range(50):
+        people.begin(people.now)
+        for text in (sentences[0], f"User 1, question 1: {sentences[1]}"):
+            assert not people.game.acts
+            found = ears.hear(text)
+            assert found is not None
+            people.hear(found)
+            people.step(people.now + 20)
+        assert {act[:2] for act in people.game.acts} <= {("answer", "user1")}
+        answered += len(people.game.acts)
+    assert 5 < answered < 45
