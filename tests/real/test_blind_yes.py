@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-import random
-import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.support.asking import (
+    ASKED,
+    FROM_HERE,
+    SSH,
+    answered,
+    ask,
+    ask_blindly,
+    blind,
+    steps,
+    yes_of,
+)
 from tests.support.link import Answerer, FarTerminal, Link
 from tests.support.terminal import TANGY, Terminal
-
-ASKED = "Did you say: call number?"
-REMARKED = "esc go on"
-SSH = {"SSH_CONNECTION": "192.0.2.1 50000 192.0.2.2 22"}
-FROM_HERE = {"SSH_CONNECTION": "", "SSH_TTY": "", "SSH_CLIENT": "", "TMUX": "", "STY": ""}
 
 Start = Callable[..., FarTerminal]
 
@@ -37,63 +41,6 @@ def start(tmp_path: Path) -> Iterator[Start]:
     yield begin
     for terminal in started:
         terminal.end()
-
-
-def ask(far: FarTerminal) -> None:
-    """Give a command, and wait for its question; what is remarked on the last step comes first."""
-    if REMARKED in far.text:
-        far.type("\x1b")
-        far.until(lambda: REMARKED not in far.text)
-        far.rest()
-    far.type("call number\r")
-    far.until(lambda: ASKED in far.text)
-
-
-def ask_blindly(far: FarTerminal, key: str, wait: float) -> None:
-    """Give a command, press a key before its question can be seen, and wait for all of it."""
-    assert ASKED not in far.text
-    far.type("call number\r")
-    far.run(wait)
-    if ASKED not in far.text:
-        far.type(key)
-    far.until(lambda: ASKED in far.text)
-    far.rest()
-
-
-def steps(far: FarTerminal) -> int:
-    found = re.search(r"step (\d+)", far.text)
-    assert found is not None
-    return int(found[1])
-
-
-def refuse(far: FarTerminal) -> None:
-    """Say no, and empty the line."""
-    far.type("n")
-    far.until(lambda: ASKED not in far.text)
-    far.type("\x15")
-    far.rest()
-
-
-def yes_of(far: FarTerminal) -> str:
-    """Read which key says yes."""
-    found = re.search(r"(\S) yes, do it", far.text)
-    assert found is not None
-    return found[1]
-
-
-def blind(far: FarTerminal, key: str, times: int, longest: float) -> int:
-    """Count how often a key that was pressed blindly was taken for a yes."""
-    rng = random.Random(7)
-    taken = 0
-    for _ in range(times):
-        before = steps(far)
-        ask_blindly(far, key, rng.uniform(0, longest))
-        if ASKED not in far.text:
-            taken += 1
-        else:
-            refuse(far)
-        assert taken or steps(far) == before
-    return taken
 
 
 def test_a_yes_before_its_question_was_seen_is_told_to_be_too_early(start: Start) -> None:
@@ -150,16 +97,5 @@ def test_beside_the_machine_y_is_the_yes_whatever_answers(start: Start) -> None:
 def test_no_blind_yes_is_taken(start: Start, link: Link) -> None:
     far = start(link, **SSH)
     assert blind(far, "y", 12, 2 * link.delay + link.jitter + 0.05) == 0
-    taken = 0
-    for _ in range(12):
-        before = steps(far)
-        ask(far)
-        # The terminal is asked behind the question, and jitter may hold up what asks it.
-        far.run(0.3 + link.jitter)
-        far.type("y")
-        far.rest()
-        if taken_now := steps(far) == before + 1:
-            taken += taken_now
-        else:
-            refuse(far)
-    assert taken >= 11
+    # The terminal is asked behind the question, and jitter may hold up what asks it.
+    assert answered(far, 12, 0.3 + link.jitter) >= 11

@@ -54,6 +54,8 @@ class FarTerminal:
         self._moving: list[tuple[float, int, str, bytes]] = []
         self._free = {"out": 0.0, "in": 0.0}
         self._moved = 0
+        self.arrived = b""
+        """Everything that has arrived at the person's terminal."""
         columns, lines = 80, 24
         far, near = answerer == "far", answerer == "near"
         self._screen = Answering(columns, lines, self.type if far else lambda text: None)
@@ -94,6 +96,7 @@ class FarTerminal:
                 _, _, way, data = heapq.heappop(self._moving)
                 self._moved += 1
                 if way == "out":
+                    self.arrived += data
                     self._stream.feed(data)
                 else:
                     os.write(self._terminal.parent, data)
