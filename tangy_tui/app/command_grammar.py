@@ -93,8 +93,25 @@ class Perform:
     on: bool | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class TeachAs:
+    """Somebody says what they are called."""
+
+    name: str
+
+
 TeachingWord: TypeAlias = (
-    Undo | Redo | Next | Discard | Finish | AgainFrom | Leave | StopCommand | Perform | Inquiry
+    Undo
+    | Redo
+    | Next
+    | Discard
+    | Finish
+    | AgainFrom
+    | Leave
+    | StopCommand
+    | TeachAs
+    | Perform
+    | Inquiry
 )
 
 TEACHING: dict[str, TeachingWord] = {
@@ -112,13 +129,14 @@ TEACHING: dict[str, TeachingWord] = {
     **dict.fromkeys(("pause listening", "stop listening"), Perform("listen", on=False)),
     **dict.fromkeys(("listen", "listen again"), Perform("listen", on=True)),
     "guided game": Perform("guided"),
+    **dict.fromkeys(("my name", "change my name", "who am i"), Perform("name")),
 }
 """What may be typed while teaching; beside it, the word of every action of the keymap."""
 
 PERFORMED = frozenset(
     {
         *("palette", "draw", "talk", "listen", "zoom", "picture", "mouse", "voice"),
-        *("learn", "library", "guided", "filter", "quit"),
+        *("learn", "library", "guided", "filter", "quit", "name"),
     }
 )
 """Actions of the keymap whose words do on the teaching screen what their keys do elsewhere."""
@@ -166,6 +184,7 @@ MEANINGS: tuple[tuple[str, str], ...] = (
 NEAR = 0.75  # likeness from which a word may have been meant: some of them move the robot
 _AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
+_CALLED = re.compile(r"(?:my name is|my name's|i am called) (\S.*)", re.I)
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
 _TOLD = re.compile(r"(.{1,60}?)(:| says| answers| answered) (\S.*)", re.I)
 _ANSWER = re.compile(r"(?:answer:|the answer is) (\S.*)", re.I)
@@ -243,6 +262,8 @@ def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
     words = " ".join(text.split()).casefold()
     if words == "stop" or stops(text, game):
         return StopCommand(text)
+    if called := _CALLED.fullmatch(" ".join(text.split()).rstrip(".!")):
+        return TeachAs(called[1])
     if again := _AGAIN.fullmatch(words):
         number = again[1]
         return AgainFrom(int(number) if number and number.isdecimal() else None)

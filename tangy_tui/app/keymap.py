@@ -47,6 +47,7 @@ ACTIONS: tuple[KeyAction, ...] = (
     _line("draw", ("ctrl+l",), "draw again"),
     _line("talk", ("ctrl+t", "t"), "talk"),
     _line("listen", ("f9",), "pause listening"),
+    _line("name", ("ctrl+n",), "name"),
     KeyAction("command", ("colon",), "command"),
     KeyAction("filter", ("slash",), "filter"),
     KeyAction("zoom", ("plus",), "enlarge"),

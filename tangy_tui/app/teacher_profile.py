@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tangy_profiles.errors import TangyError
@@ -51,6 +51,17 @@ def save_profile(folder: Path, profile: TeacherProfile) -> None:
         new.replace(folder / FILE)
     except OSError as error:
         raise TangyError(plain(f"{folder / FILE}: cannot be written: {error.strerror}.")) from None
+
+
+def change_name(folder: Path, name: str) -> str:
+    """Keep another name of the teacher, and return it.
+
+    Raises:
+        TangyError: it is none that may be kept, or it cannot be written.
+    """
+    name = checked(name)
+    save_profile(folder, replace(read_profile(folder), name=name))
+    return name
 
 
 def checked(name: str) -> str:

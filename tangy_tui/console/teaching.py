@@ -19,15 +19,18 @@ from tangy_tui.app.command_grammar import (
     Inquiry,
     Leave,
     Perform,
+    TeachAs,
     read_answer,
     read_settling,
     read_teaching,
 )
+from tangy_tui.app.tour import Tour
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
+    Discard,
     Executed,
     Finished,
     StepUndone,
@@ -59,6 +62,8 @@ from tangy_tui.text.teaching_commands import (
     left_after,
     next_or_quit,
 )
+from tangy_tui.text.tour import tour_line
+from tangy_tui.text.who import renamed_teacher, teaches_as
 
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
@@ -76,6 +81,7 @@ MEANINGS = (
     ("seen", "say which situations nobody has shown yet"),
     ("why", "say what Tangy would do here by what it has learnt, and why"),
     ("next", "begin another demonstration"),
+    ("my name is ROSA", "teach by another name"),
     ("quit", "leave; what you confirmed is kept"),
 )
 
@@ -102,6 +108,8 @@ class TeachingLines:
         resume: str = "tangy teach",
         learn: str = "tangy learn",
         yes: TypedYes | None = None,
+        rename: Callable[[str], str] | None = None,
+        tour: bool = False,
     ) -> None:
         """Make the session.
 
@@ -116,6 +124,8 @@ class TeachingLines:
             resume: the command that goes on with this demonstration.
             learn: the command that learns from it.
             yes: how a yes is typed.
+            rename: keeps another name of the teacher, and returns it.
+            tour: show a new teacher around.
         """
         self._together = ears is not None and ears.live and not scripted
         self._teaching = teaching
@@ -127,6 +137,8 @@ class TeachingLines:
         self._resume = resume
         self._learn = learn
         self._yes = yes or TypedYes()
+        self._rename = rename
+        self._tour = Tour() if tour else None
         self._kept = False  # something of the present demonstration is in the log
         self._complete = False  # a demonstration was completed in this session
         self._spoken: asyncio.Future[Heard | None] | None = None
@@ -151,6 +163,7 @@ class TeachingLines:
         write(f"Teaching {teaching.activity.title}. {HELP}")
         self._tell(teaching.begin(resume=resume))
         self._where()
+        self._tell_of_tour()
         while (line := await self._next_line()) is not None:
             command = self._command(line) if isinstance(line, str) else line
             if isinstance(command, Leave):
@@ -235,6 +248,8 @@ class TeachingLines:
 
     def _command(self, line: str) -> TeacherCommand | StopCommand | Leave | None:
         text = line.strip()
+        if self._tour is not None and self._tours(text):
+            return None
         if not text or text.startswith("#"):
             return None
         word = read_teaching(text, self._teaching.phrasebook.game)
@@ -258,6 +273,8 @@ class TeachingLines:
             self._write(NO_QUESTION)
         elif isinstance(word, str):
             self._inquire(word)
+        elif isinstance(word, TeachAs) or word == Perform("name"):
+            self._write(self._named(word.name if isinstance(word, TeachAs) else ""))
         elif isinstance(word, Perform):
             self._write(ON_THE_SCREEN)
         elif isinstance(word, AgainFrom):
@@ -267,6 +284,38 @@ class TeachingLines:
         else:
             return word
         return None
+
+    def _tours(self, text: str) -> bool:
+        """Go on with the tour, or end it, where a line says so."""
+        tour, skips = self._tour, text.casefold() == "skip"
+        if tour is None or tour.at is None or not (skips or (tour.waits and not text)):
+            return False
+        if skips:
+            tour.skip()
+        else:
+            tour.go_on()
+        self._tell_of_tour()
+        return True
+
+    def _tell_of_tour(self) -> None:
+        teaching = self._teaching
+        if self._tour is not None and self._tour.at is not None:
+            phrase = next(iter(teaching.sayable), "")
+            words = tour_line(self._tour.at, teaching.teacher, teaching.activity.title, phrase)
+            self._write(words)
+
+    def _named(self, name: str) -> str:
+        """Let somebody else teach, or say who does where no name was given."""
+        teaching = self._teaching
+        if not name or self._rename is None:
+            return teaches_as(teaching.teacher)
+        try:
+            teaching.teach_as(self._rename(name))
+        except TangyError as error:
+            return str(error)
+        if not teaching.demonstration.steps:
+            self._tell(teaching.apply(Discard()))
+        return renamed_teacher(teaching.teacher, teaching.demonstration.teacher)
 
     def _inquire(self, what: Inquiry) -> None:
         match what:
@@ -327,6 +376,8 @@ class TeachingLines:
                 self._write(next_or_quit(self._learn))
             if isinstance(event, Executed | StepUndone) and not self._teaching.world.over:
                 self._where()
+        if self._tour is not None and self._tour.follow(events):
+            self._tell_of_tour()
 
 
 def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:

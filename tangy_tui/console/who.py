@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.teacher_profile import checked, login_name, read_profile, save_profile
+from tangy_tui.app.teacher_profile import change_name, login_name, read_profile
 from tangy_tui.text.who import TYPE_NAME, WHO, WHO_DETAIL
 
 
-def ask_who(folder: Path, read: Callable[[], str | None], write: Callable[[str], None]) -> str:
-    """Return who teaches; asked where nobody has said so yet, and kept.
+def ask_who(
+    folder: Path, read: Callable[[], str | None], write: Callable[[str], None]
+) -> tuple[str, bool]:
+    """Return who teaches, and whether they have said so only now; it is kept.
 
     Args:
         folder: the data folder.
@@ -21,17 +22,14 @@ def ask_who(folder: Path, read: Callable[[], str | None], write: Callable[[str],
     """
     profile, usual = read_profile(folder), login_name()
     if profile.name:
-        return profile.name
+        return profile.name, False
     write(f"{WHO} {WHO_DETAIL}")
     while True:
         write(TYPE_NAME.format(usual))
         line = read()
         if line is None:
-            return usual
+            return usual, False
         try:
-            name = checked(line.strip() or usual)
+            return change_name(folder, line.strip() or usual), True
         except TangyError as error:
             write(str(error))
-        else:
-            save_profile(folder, replace(profile, name=name))
-            return name

@@ -26,6 +26,7 @@ NAMES: Mapping[str, Named] = MappingProxyType(
         "draw": Named("Draw the screen again", "draw again"),
         "talk": Named("Talk to Tangy, or end what you say", "talk"),
         "listen": Named("Stop listening, or listen again", "listening"),
+        "name": Named("Who teaches: change your name", "your name"),
         "command": Named("Type a command", "type"),
         "filter": Named("Show only lines with some words", "filter"),
         "zoom": Named("Enlarge the panel", "enlarge"),

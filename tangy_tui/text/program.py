@@ -20,6 +20,9 @@ COMPARE_POLICIES = ("Compare policies", "Teacher against teacher, before against
 PHRASES = ("Phrases", f"{ALL_PHRASES}, and how it is said")
 VOICE = ("Voice on or off", "Tangy speaks what it says")
 """What the command palette offers, and what each does."""
+NOT_POSSIBLE, NOT_YET = "Not possible", "Not yet"
+"""Heads of dialogs that say why something cannot be done."""
+
 LEARNING = "Tangy is learning ..."
 PREPARING_DRILL = "Tangy is preparing the drill ..."
 RECALLING_BOTH = "Tangy is recalling both ..."

@@ -8,6 +8,15 @@ NAME_KEYS = "enter keeps the name   esc not now"
 TYPE_NAME = "Type your name and press Enter, or just Enter to be called {}."
 
 
-def renamed_teacher(name: str) -> str:
-    """Say who teaches from now on."""
-    return f"You teach as {name} from now on."
+HOW_TO_RENAME = "To change that, type: my name is Rosa."
+
+
+def renamed_teacher(name: str, present: str) -> str:
+    """Say who teaches from now on; `present` is whose game the present one stays."""
+    first = "" if present == name else f" This game stays {present}'s; the next one is yours."
+    return f"You teach as {name} from now on.{first}"
+
+
+def teaches_as(name: str) -> str:
+    """Say by lines who teaches, and how that is changed."""
+    return f"You teach as {name}. {HOW_TO_RENAME}"

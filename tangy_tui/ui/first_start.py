@@ -1,13 +1,12 @@
-"""The first start: who teaches is asked once, before anything else is opened."""
+"""The first start: who teaches is asked once, and a new teacher is shown around."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.teacher_profile import read_profile, save_profile
+from tangy_tui.app.teacher_profile import change_name, read_profile
 from tangy_tui.text.who import renamed_teacher
 
 if TYPE_CHECKING:
@@ -20,26 +19,53 @@ async def first_start(
     *,
     asks: bool,
 ) -> None:
-    """Ask who teaches, where nobody has said so yet, and do what comes first."""
+    """Ask who teaches, where nobody has said so yet, and do what comes first.
+
+    Who has just given a name is shown around; where nothing else comes first, in a guided game.
+    """
     if asks and not read_profile(program.workspace.store.folder).name:
-        await ask_name(program)
+        program.new_teacher = await ask_name(program) is not None
     if start is not None:
         await start(program)
+    elif program.new_teacher:
+        program.teach(program.workspace.teaching(program.workspace.teacher, None, guided=True))
 
 
-async def ask_name(program: Program, *, again: bool = False) -> None:
-    """Ask who teaches, and keep the answer."""
+async def ask_name(program: Program) -> str | None:
+    """Ask who teaches, and keep the answer; None: it is left as it is."""
     from tangy_tui.ui.dialogs.name import NameDialog
 
-    workspace = program.workspace
-    name = await program.push_screen_wait(NameDialog(workspace.teacher))
-    if name is None:
-        return
-    folder = workspace.store.folder
+    name = await program.push_screen_wait(NameDialog(program.workspace.teacher))
+    return name if name is not None and _keep(program, name) else None
+
+
+async def change_teacher(program: Program) -> None:
+    """Ask for another name, and let what is taught from now on be theirs."""
+    if (name := await ask_name(program)) is not None:
+        _tell(program, name)
+
+
+def rename_teacher(program: Program, name: str) -> None:
+    """Do so with a name that was given."""
+    if _keep(program, name):
+        _tell(program, read_profile(program.workspace.store.folder).name)
+
+
+def _keep(program: Program, name: str) -> bool:
     try:
-        save_profile(folder, replace(read_profile(folder), name=name))
+        change_name(program.workspace.store.folder, name)
     except TangyError as error:
         program.say(str(error), bad=True)
-        return
-    if again:
-        program.say(renamed_teacher(name))
+        return False
+    return True
+
+
+def _tell(program: Program, name: str) -> None:
+    """Say who teaches, and hand over a game of which nothing was shown yet."""
+    from tangy_tui.ui.screens.teach import TeachScreen
+
+    for screen in program.screen_stack:
+        if isinstance(screen, TeachScreen):
+            screen.teaches_as(name)
+            return
+    program.say(renamed_teacher(name, name))

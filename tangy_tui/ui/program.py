@@ -15,15 +15,17 @@ from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning import library, policies
 from tangy_tui.text import program as text
+from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
-from tangy_tui.ui.first_start import ask_name, first_start
+from tangy_tui.ui.first_start import change_teacher, first_start, rename_teacher
 from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.messages import OpenStep
 from tangy_tui.ui.policy_comparison import compare_policies
 from tangy_tui.ui.progress_summary import how_far
 from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.showing_again import show_again
 from tangy_tui.ui.sounding import SoundingApp
 
 if TYPE_CHECKING:
@@ -61,6 +63,8 @@ class Program(SoundingApp):
         super().__init__(self._home, pictures=pictures, activity=workspace.activity, **settings)
         self.workspace = workspace
         self._start, self._asks_name = start, asks_name
+        self.new_teacher = False
+        """Whether the one who teaches has given a name only now, and so is to be shown around."""
         self.eyes = CameraSession(workspace, sensors, live=live)
         self._busy = False
         self._opening = False
@@ -118,7 +122,7 @@ class Program(SoundingApp):
             case "demo":
                 self._open(tell_story_aside(self))
             case "name":
-                self._open(ask_name(self, again=True))
+                self._open(change_teacher(self))
             case "live":
                 self._open(self.live())
 
@@ -138,7 +142,16 @@ class Program(SoundingApp):
         """Open the teaching screen."""
         from tangy_tui.ui.screens.teach import TeachScreen
 
-        self.push_screen(TeachScreen(self.workspace, teaching))
+        tour, self.new_teacher = self.new_teacher, False
+        self.push_screen(TeachScreen(self.workspace, teaching, tour=tour))
+
+    def action_name(self) -> None:
+        """Change the name of the one who teaches."""
+        self.run_worker(change_teacher(self))
+
+    def rename_teacher(self, name: str) -> None:
+        """Let somebody teach who has said so."""
+        rename_teacher(self, name)
 
     def on_open_step(self, event: OpenStep) -> None:
         """Show a step where it was demonstrated."""
@@ -147,26 +160,8 @@ class Program(SoundingApp):
         self.push_screen(DemonstrationScreen(self.workspace, event.demonstration, event.number))
 
     async def show_again(self, id: str, kept: int) -> None:
-        """Let a demonstration be shown again after its first `kept` steps.
-
-        A teaching session that is open takes it over: two of them would write one game.
-        """
-        from tangy_tui.learning.teaching_events import Again
-        from tangy_tui.ui.screens.teach import TeachScreen
-
-        open_one = next((s for s in self.screen_stack if isinstance(s, TeachScreen)), None)
-        if open_one is not None:
-            while self.screen is not open_one:
-                await self.screen.dismiss(None)
-            open_one.again(id, kept)
-            return
-        teaching = self.workspace.teaching(self.workspace.teacher, None, again=Again(id, kept))
-        try:
-            begun = teaching.begin()
-        except TangyError as error:
-            await self._tell(str(error), title="Not possible")
-            return
-        self.push_screen(TeachScreen(self.workspace, teaching, begun=begun))
+        """Let a demonstration be shown again after its first `kept` steps."""
+        await show_again(self, id, kept)
 
     def people(self) -> None:
         """Open the people screen."""
@@ -181,7 +176,7 @@ class Program(SoundingApp):
         try:
             screen = SensorsScreen(self.workspace, self.eyes.sensors())
         except TangyError as error:
-            await self._tell(str(error), title="Not possible")
+            await self.tell(str(error), title=NOT_POSSIBLE)
             return
         await self.push_screen_wait(screen)
 
@@ -371,7 +366,8 @@ class Program(SoundingApp):
             policies.keep_policy(workspace.store, policy)
         return answer != "back"
 
-    async def _tell(self, text: str, title: str) -> None:
+    async def tell(self, text: str, title: str) -> None:
+        """Say something in a dialog, and wait until it was read."""
         from tangy_tui.ui.dialogs.message import MessageDialog
 
         await self.push_screen_wait(MessageDialog(text, title=title))
@@ -393,7 +389,7 @@ class Program(SoundingApp):
             if not isinstance(failed.error, TangyError):
                 raise
             self.clear_notifications()
-            await self._tell(str(failed.error), title="Not yet")
+            await self.tell(str(failed.error), title=NOT_YET)
             return None
         finally:
             self._busy = False

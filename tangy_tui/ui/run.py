@@ -61,8 +61,9 @@ def run_teaching(
         pace = speed if teaching.teacher == SCRIPTED else None
         for number in range(games if pace else 1):
             screen = TeachScreen(
-                workspace, teaching, resume=resume, another=number > 0, scripted=pace
-            )
+                workspace, teaching, resume=resume, another=number > 0, scripted=pace,
+                tour=program.new_teacher,
+            )  # fmt: skip
             complete = await program.push_screen_wait(screen)
             if pace and not complete:
                 break

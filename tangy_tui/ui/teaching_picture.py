@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from textual.screen import Screen
 from textual.widgets import Static
 
 from tangy_profiles.state import ActivityState
+from tangy_tui.app.tour import Tour, TourStop
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, missing_words
 from tangy_tui.learning.teaching_events import (
@@ -28,10 +29,16 @@ from tangy_tui.learning.teaching_events import (
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text import teaching as text
 from tangy_tui.text.coach import arranged_words, coach_words, unseen_words
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.remarks import remark_words, settled_words
 from tangy_tui.text.situations import step_words
+from tangy_tui.text.tour import tour_words
+from tangy_tui.ui.keys import keymap_of
+from tangy_tui.ui.panels import KeyLine
+from tangy_tui.ui.screens.teach_keys import TOUR_KEYS
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.call_board import CallBoard
+from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -48,12 +55,19 @@ class TeachingPicture:
     """Puts what happens in a session on the widgets of its screen."""
 
     def __init__(
-        self, screen: Screen[Any], workspace: Workspace, teaching: TeachingSession
+        self,
+        screen: Screen[Any],
+        workspace: Workspace,
+        teaching: TeachingSession,
+        keys: Callable[[], Sequence[str]] = tuple,
     ) -> None:
-        self._screen = screen
+        """Make it; `keys` are those of the foot when no tour is on."""
+        self._screen, self._keys = screen, keys
         self._workspace = workspace
         self._teaching = teaching
         self._shown = ShownSoFar(workspace, teaching)
+        self.tour: Tour | None = None
+        """The tour, while a new teacher is shown around."""
 
     def tell(self, event: TeachingEvent) -> None:
         """Show what followed from a command."""
@@ -127,7 +141,7 @@ class TeachingPicture:
                 stage=state.stage if not teaching.world.over else "over",
                 seen=f"{len(found.seen)}/{len(found.times)}",
                 step=len(shown.steps),
-                note=f"game {shown.seed}, {teaching.teacher}",
+                note=f"game {shown.seed}, {shown.teacher}",
             )
         )
         self._now(text.OVER if teaching.world.over else self._coach(state))
@@ -142,7 +156,42 @@ class TeachingPicture:
         return coach_words(teaching.activity, state, teaching.world.scene(), teaching.name)
 
     def _now(self, words: str) -> None:
-        self._screen.query_one("#now", Static).update(f"Now: {words}")
+        """Say what is going on; while the tour lasts, what it shows."""
+        at = None if self.tour is None else self.tour.at
+        now = self._screen.query_one("#now", Static)
+        now.set_class(at is not None, "-tour")
+        now.update(f"Now: {words}" if at is None else self._tour_words(at))
+        if self.tour is not None:
+            keys = self._keys() if at is None else TOUR_KEYS
+            self._screen.query_one(KeyLine).show(*keys, typing=True)
+
+    def tours(self, *, skip: bool) -> bool:
+        """Say whether a tour goes on that could be skipped, or whose next stop Enter leads to."""
+        if self.tour is None or self.tour.at is None:
+            return False
+        return skip or (
+            self.tour.waits and not any(bar.text for bar in self._screen.query(CommandBar))
+        )
+
+    def go_on_tour(self, *, skip: bool = False) -> None:
+        """Go on to the tour's next stop, or end it."""
+        if self.tour is not None:
+            if skip:
+                self.tour.skip()
+            else:
+                self.tour.go_on()
+            self.state()
+
+    def follow_tour(self, events: Sequence[TeachingEvent]) -> None:
+        """Go on with the tour as the teacher does what it shows."""
+        if self.tour is not None and self.tour.follow(events):
+            self.state()
+
+    def _tour_words(self, at: TourStop) -> str:
+        teaching = self._teaching
+        phrase = next(iter(teaching.sayable), "")
+        words = tour_words(at, teaching.teacher, teaching.activity.title, phrase)
+        return with_keys(words, keymap_of(self._screen.app), typing=True)
 
     def _scene(self, came_from: str) -> None:
         room = self._screen.query_one(RoomView)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -99,11 +100,14 @@ def teach(
             )  # fmt: skip
             raise typer.Exit(status)
         else:
+            new_teacher = False
             if teacher is None and is_typed(script) and not as_json:
-                teaching.teach_as(
-                    ask_who(workspace.store.folder, line_reader(None), common.print_line)
-                )
-            _teach_by_lines(workspace, teaching, script, ears, as_json, resume=not new)
+                read = line_reader(None)
+                who, new_teacher = ask_who(workspace.store.folder, read, common.print_line)
+                teaching.teach_as(who)
+            _teach_by_lines(
+                workspace, teaching, script, ears, as_json, resume=not new, tour=new_teacher
+            )
 
 
 def _again(wanted: str | None) -> Again | None:
@@ -149,7 +153,9 @@ def _teach_by_lines(
     as_json: bool,
     *,
     resume: bool,
+    tour: bool,
 ) -> None:
+    from tangy_tui.app.teacher_profile import change_name
     from tangy_tui.app.workspace import data_folder
     from tangy_tui.console.inputs import is_typed, line_reader
     from tangy_tui.console.teaching import TeachingLines, command_line
@@ -175,6 +181,8 @@ def _teach_by_lines(
         resume=command_line("teach", teacher=who, **options),
         learn=command_line("learn", **options),
         yes=TypedYes(terminal=is_typed(script), setting=workspace.settings.question),
+        rename=partial(change_name, folder),
+        tour=tour,
     )
     asyncio.run(lines.run(resume=resume))
     if as_json:

@@ -40,7 +40,7 @@ def test_what_works_while_one_types_has_a_key_that_no_line_takes() -> None:
     ("written", "id", "keys"),
     [
         ('undo = "f12"', "undo", ("f12",)),
-        ('undo = ["F12", "ctrl+n"]', "undo", ("f12", "ctrl+n")),
+        ('undo = ["F12", "ctrl+b"]', "undo", ("f12", "ctrl+b")),
         ('pause = ";"', "pause", ("semicolon",)),
         ('drive = "p"\npause = "d"', "drive", ("p",)),
         ('stop = "f12"', "stop", ("ctrl+x", "f12")),

@@ -23,7 +23,7 @@ def ask(folder: Path, *typed: str) -> tuple[str, list[str]]:
     """Ask by lines, and return the name and what was said."""
     lines = iter(typed)
     said: list[str] = []
-    return ask_who(folder, lambda: next(lines, None), said.append), said
+    return ask_who(folder, lambda: next(lines, None), said.append)[0], said
 
 
 def test_a_name_is_asked_once_and_kept(tmp_path: Path) -> None:

@@ -184,6 +184,7 @@ class HomeScreen(TangyScreen[None]):
         *bind("guided", "app.guided"),
         *bind("library", "app.library"),
         *bind("learn", "app.learn"),
+        *bind("name", "app.name"),
     ]
 
     class Chosen(Message):

@@ -15,6 +15,7 @@ from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.command_grammar import Perform, read_settling, read_teaching
+from tangy_tui.app.tour import Tour
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.teaching_events import (
     Again,
@@ -40,8 +41,8 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.text import teaching as text
 from tangy_tui.text.questions import REJECTED, not_understood_words
+from tangy_tui.text.who import renamed_teacher
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.dialogs.remark import remark_dialog
@@ -51,6 +52,7 @@ from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel, room_panel
 from tangy_tui.ui.screens import teach_keys
 from tangy_tui.ui.screens.teach_hearing import TeachHearing
 from tangy_tui.ui.screens.teach_keys import NOT_WATCHING, WATCHING
+from tangy_tui.ui.screens.teach_letters import type_letter
 from tangy_tui.ui.screens.teach_scripted import follow_script
 from tangy_tui.ui.screens.teach_why import TeachWhy
 from tangy_tui.ui.screens.teach_words import follow_word
@@ -71,8 +73,7 @@ T = TypeVar("T")
 class TeachScreen(TangyScreen[bool]):
     """One teacher's session. Dismissed with True when the wanted demonstrations are complete.
 
-    Commands are typed, or heard through the ears of the program. A command that is spoken leaves
-    the keys where they are.
+    Commands are typed, or heard; one that is spoken leaves the keys where they are.
     """
 
     CSS_PATH = "teach.tcss"
@@ -91,6 +92,7 @@ class TeachScreen(TangyScreen[bool]):
         another: bool = False,
         scripted: float | None = None,
         begun: Sequence[TeachingEvent] = (),
+        tour: bool = False,
     ) -> None:
         """Make the screen.
 
@@ -101,6 +103,7 @@ class TeachScreen(TangyScreen[bool]):
             another: the session has begun already; begin its next demonstration.
             scripted: let a scripted teacher give the demonstration, this many steps a second.
             begun: the session has begun already, and this is what followed.
+            tour: show a new teacher around.
         """
         super().__init__()
         self._workspace = workspace
@@ -109,8 +112,9 @@ class TeachScreen(TangyScreen[bool]):
         self._scripted = scripted
         self._another = another
         self._begun = list(begun)
-        self._picture = TeachingPicture(self, workspace, teaching)
         self._listener = TeachHearing(self, workspace, teaching, self._apply)
+        self._picture = TeachingPicture(self, workspace, teaching, lambda: self._listener.keys)
+        self._picture.tour = Tour() if tour else None
         self._why = TeachWhy(self, workspace, teaching)
 
     def compose(self) -> ComposeResult:
@@ -191,29 +195,16 @@ class TeachScreen(TangyScreen[bool]):
         """Leave a scripted teacher alone: who watches can only look, leave or stop."""
         if action == "think_no_more":
             return self._why.thinks
+        if action == "tour":
+            return self._picture.tours(skip="skip" in parameters)
         if action == "talk":
             return self._listener.by_key
         return self._scripted is None or action not in NOT_WATCHING
 
     def take_letter(self, event: events.Key | events.Paste) -> bool:
         """Type letters into the line, wherever the keys are: no letter does anything here."""
-        bar = next(iter(self.query(CommandBar)), None)
-        if isinstance(event, events.Paste):
-            lines = event.text.strip().splitlines()
-            known = clean(lines[0]) if lines else None
-        else:
-            known = event.character if event.is_printable else None
-        filtering = getattr(self.focused, "filtering", False)
-        if bar is None or known is None or filtering or bar.has_keys or self._scripted is not None:
-            return False
-        if (
-            known == ":"  # to type
-            or (known == "?" and not bar.text)  # for help
-            or (known == "t" and self._listener.by_key)  # to talk
-        ):
-            return False
-        bar.type(known)
-        return True
+        by_key = self._listener.by_key
+        return self._scripted is None and type_letter(self, event, push_to_talk=by_key)
 
     async def action_talk(self) -> None:
         """Push to talk: begin, or end what is being said."""
@@ -279,6 +270,17 @@ class TeachScreen(TangyScreen[bool]):
         self._why.cancel()
         self._log.write("Cancelled.", "dim")
 
+    def teaches_as(self, name: str) -> None:
+        """Go on as another teacher; a game that was begun stays whose it is."""
+        self.teaching.teach_as(name)
+        if not self.teaching.demonstration.steps:
+            self._apply(Discard())
+        self._log.write(renamed_teacher(name, self.teaching.demonstration.teacher), "good")
+
+    def action_tour(self, way: str) -> None:
+        """Go on with the tour, or end it."""
+        self._picture.go_on_tour(skip=way == "skip")
+
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Tell why, for the step that was chosen with Enter."""
         event.stop()
@@ -335,12 +337,11 @@ class TeachScreen(TangyScreen[bool]):
             self._listener.follow(events)
             self._tell(events)
 
-    # -------------------------------------------------------------------------------- events
-
     def _tell(self, events: Sequence[TeachingEvent]) -> None:
         if not self.query(StatusLine):
             return  # the screen is going, and its panels go before its session does
         bar = self.query_one(CommandBar)
+        self._picture.follow_tour(events)
         undone = [event for event in events if isinstance(event, StepUndone)]
         for event in events:
             match event:

@@ -5,11 +5,15 @@ from __future__ import annotations
 from textual.binding import Binding, BindingType
 
 from tangy_tui.text.teaching import CANCEL, CHOOSE_STEP, LEAVE
+from tangy_tui.text.tour import SKIP_TOUR, TOUR_ON
 from tangy_tui.ui.keys import bind
 
 KEYS = ("undo", "redo", "why", "learn", "next", "shown", "again", "library", "back:home", "help")
 HEARING_KEYS = ("talk", "undo", "redo", "why", "learn", "next", "listen", "back:home", "help")
 """The same where there is a microphone."""
+
+TOUR_KEYS = ("open:go on", "undo", "redo", "back:skip the tour", "help")
+"""The same while a new teacher is shown around."""
 
 NOT_WATCHING = ("undo", "redo", "again", "next", "discard", "perform")
 """What only the teacher does."""
@@ -38,8 +42,11 @@ BINDINGS: list[BindingType] = [
     *bind("again"),
     *bind("shown", "coverage"),
     *bind("listen", "app.listen"),
+    *bind("name", "perform('name')"),
     Binding("up", "choose(-1)", CHOOSE_STEP, show=False, id="up"),
     Binding("down", "choose(1)", CHOOSE_STEP, show=False, id="down"),
     *bind("back", "leave", name=LEAVE),
     Binding("escape", "think_no_more", CANCEL, show=False, priority=True, id="back"),
+    Binding("escape", "tour('skip')", SKIP_TOUR, show=False, priority=True, id="back"),
+    Binding("enter", "tour('on')", TOUR_ON, show=False, priority=True, id="open"),
 ]

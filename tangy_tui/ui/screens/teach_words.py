@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from tangy_tui.app.command_grammar import AgainFrom, Leave, Perform, TeachingWord
+from tangy_tui.app.command_grammar import AgainFrom, Leave, Perform, TeachAs, TeachingWord
 from tangy_tui.learning.teaching_events import Discard, Finish, Next, Redo, Undo
 from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.ui.performing import perform
@@ -27,6 +27,10 @@ def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> N
             screen.action_discard()
         case Leave():
             screen.close(False)
+        case TeachAs(name):
+            screen.query_one(CommandBar).ready()
+            app: Any = screen.app
+            app.rename_teacher(name)
         case AgainFrom(step):
             screen.again_from(step)
         case "why":

@@ -1,0 +1,81 @@
+"""The tour goes from stop to stop by what a new teacher does, and one real step is taught in it."""
+
+from __future__ import annotations
+
+import asyncio
+
+from tangy_tui.app.tour import Tour, TourStop
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.teaching import TeachingLines
+from tangy_tui.learning.teaching_session import TeachingSession
+from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.text.tour import tour_line, tour_words
+
+
+def begun(workspace: Workspace) -> tuple[Tour, TeachingSession]:
+    teaching = workspace.teaching("Ada", 1)
+    teaching.begin()
+    return Tour(), teaching
+
+
+def test_a_command_its_question_and_its_answer_lead_on(workspace: Workspace) -> None:
+    tour, teaching = begun(workspace)
+    tour.go_on()
+    assert (tour.at, tour.waits) == (TourStop.COMMAND, False)
+    tour.follow(teaching.apply(Say(teaching.sayable[0])))
+    assert (tour.at, tour.waits) == (TourStop.QUESTION, False)
+    tour.follow(teaching.apply(Reply(yes=False)))
+    assert (tour.at, tour.waits) == (TourStop.COMMAND, False)
+    tour.follow(teaching.apply(Say(teaching.sayable[0])))
+    tour.follow(teaching.apply(Reply(yes=True)))
+    assert (tour.at, tour.waits) == (TourStop.STEP, True)
+    for _ in range(3):
+        tour.go_on()
+    assert tour.at is None
+
+
+def test_who_teaches_at_once_is_met_where_they_are(workspace: Workspace) -> None:
+    tour, teaching = begun(workspace)
+    for command in (Say(teaching.sayable[0]), Reply(yes=True)):
+        tour.follow(teaching.apply(command))
+    assert tour.at is TourStop.STEP
+
+
+def test_nothing_leads_back_into_a_tour_that_was_skipped(workspace: Workspace) -> None:
+    tour, teaching = begun(workspace)
+    tour.skip()
+    assert not tour.follow(teaching.apply(Say(teaching.sayable[0])))
+    tour.go_on()
+    assert tour.at is None
+
+
+def test_each_stop_has_its_words_in_two_lines_of_a_small_screen() -> None:
+    for stop in TourStop:
+        words = tour_words(stop, "Rosa-Maria", "Bingo", "greet everyone")
+        assert len(words) < 2 * 78 - 14, stop  # breaking at spaces costs some
+        assert tour_line(stop, "Rosa", "Bingo", "greet everyone")
+
+
+def lines(workspace: Workspace, *typed: str) -> list[str]:
+    given = iter(typed)
+    said: list[str] = []
+    teaching = workspace.teaching("Ada", 1)
+    session = TeachingLines(teaching, lambda: next(given, None), said.append, tour=True)
+    asyncio.run(session.run())
+    return said
+
+
+def place(said: list[str], stop: TourStop) -> int:
+    return said.index(tour_line(stop, "Ada", "Bingo", "greet everyone"))
+
+
+def test_by_lines_the_tour_teaches_one_step(workspace: Workspace) -> None:
+    said = lines(workspace, "", "greet everyone", "y", "", "", "", "call number", "y")
+    places = [place(said, stop) for stop in TourStop]
+    assert places == sorted(places)
+
+
+def test_by_lines_a_word_skips_it(workspace: Workspace) -> None:
+    said = lines(workspace, "skip", "", "greet everyone", "y", "")
+    told = [stop for stop in TourStop if tour_line(stop, "Ada", "Bingo", "greet everyone") in said]
+    assert told == [TourStop.ROOM]

@@ -1,0 +1,105 @@
+"""A new teacher is shown around once, in a game of their own, and can leave that at any time."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_tui.app.teacher_profile import TeacherProfile, save_profile
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.teach import TeachScreen
+from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
+
+
+def program(workspace: Workspace) -> Program:
+    return Program(workspace, asks_name=True, clock=StillClock())
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE])
+async def test_a_new_teacher_gives_one_real_command_and_answers_its_question(
+    run: Run, workspace: Workspace, size: tuple[int, int]
+) -> None:
+    async with run(app=program(workspace), size=size) as pilot:
+        await pilot.pause()
+        await pilot.press(*"Ada", "enter")
+        await pilot.pause()
+        assert "Welcome, Ada." in screen_text(pilot.app)
+        await pilot.press("enter")
+        assert "Try it: type greet everyone" in screen_text(pilot.app)
+        await pilot.press(*"greet everyone", "enter")
+        await pilot.pause()
+        assert "Tangy does nothing before you say yes." in screen_text(pilot.app)
+        await pilot.press("y")
+        await pilot.pause()
+        assert "That is your first step" in screen_text(pilot.app)
+        await pilot.press("enter", "enter", "enter")
+        await pilot.pause()
+        assert "Now: " in screen_text(pilot.app)
+        shown = read_demonstrations(workspace.store, workspace.activity.name)[-1]
+        assert shown.teacher == "Ada"
+        assert shown.guided
+        assert [step.behaviour for step in shown.steps] == ["greeting"]
+
+
+async def test_escape_skips_the_tour_and_stays_where_one_teaches(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await pilot.pause()
+        await pilot.press(*"Ada", "enter")
+        await pilot.pause()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        assert "Now: " in screen_text(pilot.app)
+        assert "Welcome" not in screen_text(pilot.app)
+
+
+async def test_the_tour_does_not_come_again(run: Run, workspace: Workspace) -> None:
+    save_profile(workspace.store.folder, TeacherProfile("Ada"))
+    async with run(app=program(workspace)) as pilot:
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        await pilot.press("t", "enter")
+        await pilot.pause()
+        assert "Welcome" not in screen_text(pilot.app)
+
+
+async def teach_one_step(workspace: Workspace, run: Run, *renames: str) -> list[str]:
+    """Teach a step, do something about the name, and return whose games there are then."""
+    save_profile(workspace.store.folder, TeacherProfile("Ada"))
+    async with run(app=program(workspace)) as pilot:
+        await pilot.pause()
+        await pilot.press("t", "enter")
+        await pilot.pause()
+        await pilot.press(*renames)
+        await pilot.pause()
+        await pilot.press(*"greet everyone", "enter")
+        await pilot.pause()
+        await pilot.press("y")
+        await pilot.pause()
+    return [shown.teacher for shown in read_demonstrations(workspace.store, "bingo")]
+
+
+@pytest.mark.parametrize(
+    "renames", [("ctrl+n", *"Bea", "enter"), (*"my name is Bea", "enter")], ids=["key", "words"]
+)
+async def test_the_name_is_changed_while_one_teaches(
+    run: Run, workspace: Workspace, renames: tuple[str, ...]
+) -> None:
+    assert await teach_one_step(workspace, run, *renames) == ["Bea"]
+    assert workspace.teacher == "Bea"
+
+
+async def test_a_game_that_was_begun_stays_its_teachers(run: Run, workspace: Workspace) -> None:
+    assert await teach_one_step(workspace, run) == ["Ada"]
+    async with run(app=program(workspace)) as pilot:
+        await pilot.pause()
+        await pilot.press("t", "enter")
+        await pilot.pause()
+        await pilot.press(*"my name is Bea", "enter")
+        await pilot.pause()
+        assert "This game stays Ada's" in screen_text(pilot.app)
+        assert read_demonstrations(workspace.store, "bingo")[-1].teacher == "Ada"
