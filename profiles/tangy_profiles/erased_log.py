@@ -9,10 +9,12 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from tangy_profiles.erasure import NameEraser
 from tangy_profiles.queries import fetch
+
+if TYPE_CHECKING:
+    from tangy_profiles.erasure import NameEraser
 
 WINDOW = 4096  # events at a time
 GUARD = "unchanged"

@@ -69,8 +69,11 @@ def read_persuading(table: Table) -> PersuasionConfig:
     Raises:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
+    method = table.text("method", PAPER.method)
+    if not is_method(method):
+        table.choice("method", known_methods())  # refuses it
     chosen = PersuasionConfig(
-        table.choice("method", known_methods(), PAPER.method),
+        method,
         table.choice("prior", PRIORS, PAPER.prior),
         table.number("forgetting", LEAST_KEPT, 1, PAPER.forgetting),
         table.choice("forgetting_per", PERIODS, PAPER.forgetting_per),

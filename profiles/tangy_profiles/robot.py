@@ -7,14 +7,17 @@ from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.body import BodyProfile, read_body
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, read_contact
 from tangy_profiles.contacts import Contact as Contact
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.liveness import PAUSING, Liveness, read_liveness
 from tangy_profiles.reading import Table, nearest, plain, read_toml
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
 
 LOOKS_AT = ("cards",)
 """What the profile can say that a camera looks at."""

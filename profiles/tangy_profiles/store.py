@@ -17,11 +17,10 @@ from contextlib import contextmanager, nullcontext, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import RLock
-from typing import Any, Self, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Self, TypeVar, overload
 
 from tangy_profiles.codec import Unreadable
 from tangy_profiles.erased_log import count_left, erase_from_log
-from tangy_profiles.erasure import NameEraser
 from tangy_profiles.errors import ProfileError, StoreError
 from tangy_profiles.events import EventRecord, read_record
 from tangy_profiles.log_file import FILE, NAMING, LogFile
@@ -36,6 +35,9 @@ from tangy_profiles.rows import LARGEST_BODY, BadRow, are_text, left_out, read_r
 from tangy_profiles.rows import Event as Event
 from tangy_profiles.seal import Seal
 from tangy_profiles.voice import VoicePreference
+
+if TYPE_CHECKING:
+    from tangy_profiles.erasure import NameEraser
 
 R = TypeVar("R", bound=EventRecord)
 
@@ -296,19 +298,16 @@ class Store:
             )
             for table in NAMING:
                 self._write(f"DELETE FROM {table} WHERE person = ?", (person,))  # noqa: S608
-            changed = self._erase(eraser) if eraser else 0
+            changed = 0
+            if eraser and (db := self.file.db):
+                with self.file.in_words():
+                    changed = erase_from_log(db, eraser)
             if there or changed:
                 self.append(PersonForgotten(texts=changed), person=person)
         if eraser:
             with self._lock, self.file.in_words():
                 self.file.compact()
         return there, changed
-
-    def _erase(self, eraser: NameEraser) -> int:
-        if self.file.db is None:
-            raise self.file.wrong("is closed")
-        with self.file.in_words():
-            return erase_from_log(self.file.db, eraser)
 
     def count_left(self, eraser: NameEraser) -> int:
         """Count the events in which a name still stands after it was erased from their words."""

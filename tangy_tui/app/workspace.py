@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import replace
 from datetime import datetime
+from functools import cached_property
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -21,24 +22,24 @@ from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
-from tangy_profiles.voice import VoicePreference
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 from tangy_tui.app.session_door import SessionDoor
 from tangy_tui.app.teacher_profile import login_name, read_profile
 from tangy_tui.app.user_settings import read_settings
-from tangy_tui.language.commands import Phrasebook
-from tangy_tui.language.intents import Intents
 
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.health import Health
+    from tangy_profiles.voice import VoicePreference
     from tangy_tui.interaction.facilitation import Facilitation
     from tangy_tui.interaction.forgetting import Forgotten
     from tangy_tui.interaction.memory import PersonModels
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.interaction.record import Record
+    from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.language.intents import Intents
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_events import Again
     from tangy_tui.learning.teaching_session import TeachingSession
@@ -81,7 +82,6 @@ class Workspace:
         self.robot: Robot = load_robot(robot)
         self.robot.check(self.activity)
         self.room: Room = load_room()
-        self.intents = Intents()
         self._sample = load_people(users)
         if self.activity.teams:
             self._sample = tuple(Person(team, team) for team in self.activity.teams)
@@ -165,7 +165,9 @@ class Workspace:
         self.store.rename(person.id, name)
         self.read_people()
         if self.name(person.id) != old:
-            _forget_spoken()
+            from tangy_hw.audio.synthesis import clear_cache
+
+            clear_cache()
 
     def pronounce(self, person: Person, phones: str | None) -> None:
         """Note how a person's name is pronounced (ARPAbet, a comma between words); None: no more.
@@ -212,7 +214,9 @@ class Workspace:
 
         forgotten = forget_person(self.store, self.activity, self.people, person, also)
         self.read_people()
-        _forget_spoken()
+        from tangy_hw.audio.synthesis import clear_cache
+
+        clear_cache()
         return forgotten
 
     @property
@@ -220,8 +224,17 @@ class Workspace:
         """The names of those who take part, by id."""
         return {person.id: person.name for person in self.people}
 
+    @cached_property
+    def intents(self) -> Intents:
+        """What was learnt of how people ask for the behaviours of an activity."""
+        from tangy_tui.language.intents import Intents
+
+        return Intents()
+
     def phrasebook(self) -> Phrasebook:
         """Make what is understood of those who take part, said or typed."""
+        from tangy_tui.language.commands import Phrasebook
+
         return Phrasebook(self.activity, self.people, self.intents.model)
 
     def teaching(
@@ -383,13 +396,3 @@ class Workspace:
         from tangy_tui.interaction.record import read_records
 
         return read_records(self.store, self.memory(world), people or self.people)
-
-
-def _forget_spoken() -> None:
-    """Empty the cache of spoken lines, if there is one; a name is not kept back by it."""
-    from tangy_hw.audio.synthesis import Synthesiser, VoiceError, cache_folder
-
-    folder = cache_folder()
-    with suppress(OSError, VoiceError):
-        if folder.is_dir():
-            Synthesiser(folder).clear()

@@ -14,7 +14,6 @@ import platform
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from importlib.metadata import PackageNotFoundError, version
 from math import isclose
 from pathlib import Path
 from typing import Any
@@ -100,6 +99,8 @@ def _key(
 
 def _versions() -> list[str]:
     """Return the versions that a forest depends on, without loading the libraries."""
+    from importlib.metadata import PackageNotFoundError, version  # brings the e-mail package along
+
     found = [platform.python_version()]
     for library in ("numpy", "scikit-learn"):
         try:

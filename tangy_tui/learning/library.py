@@ -11,12 +11,9 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, assert_never
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Origin, Step
 from tangy_profiles.errors import TangyError
-from tangy_profiles.events import EventRecord
 from tangy_profiles.reading import plain
-from tangy_profiles.store import Event, Store
 from tangy_profiles.teaching_records import (
     Deletion,
     DemonstrationBegun,
@@ -36,6 +33,9 @@ from tangy_profiles.teaching_records import (
 from tangy_tui.learning.conflicts import Conflict, Resolution, find_conflicts, joined
 
 if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.events import EventRecord
+    from tangy_profiles.store import Event, Store
     from tangy_tui.learning.effects import Effects
     from tangy_tui.learning.policy import Policy
 

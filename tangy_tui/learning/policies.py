@@ -8,17 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
-from tangy_profiles.state import Situation
-from tangy_profiles.store import Store
 from tangy_profiles.teaching_records import PolicyLearnt
 from tangy_tui.learning.forest_cache import ForestCache
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE, Decision, Grow, Policy, all_situations, learn_policy
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.state import Situation
+    from tangy_profiles.store import Store
 
 ASKS = "to ask"
 """What a policy does where it is not sure."""

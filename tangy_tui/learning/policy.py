@@ -16,16 +16,18 @@ from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from itertools import product
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.declared.whom import Whom, learn_whom
-from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FACTS, Situation
 from tangy_profiles.teaching_records import ForestSettings as ForestSettings
 from tangy_profiles.teaching_records import LearntRow, PolicyLearnt
 from tangy_tui.learning.conflicts import Resolution, find_conflicts, training_rows
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.demonstration import Demonstration
 
 SURE = 0.7
 """The vote share below which a decision is called unsure."""

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from tangy_profiles.activity import Activity
-from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import EVERYBODY, ActivityState
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
 from tangy_tui.language.stop_sentence import stops
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.behaviour import Behaviour
 
 ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
 LEAVE = "leave without executing it"

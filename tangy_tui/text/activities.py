@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity
-from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.declared.checking import ActivityFlaw
-from tangy_profiles.declared.model import Effect, Fact, FactCondition
-from tangy_profiles.declared.search import Reach
 from tangy_profiles.declared.situations import seen_facts
 from tangy_profiles.state import EVERYBODY, ActivityState
-from tangy_tui.learning.policy import Policy
 from tangy_tui.text.numbers import counted
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.declared.activity import DeclaredActivity
+    from tangy_profiles.declared.checking import ActivityFlaw
+    from tangy_profiles.declared.model import Effect, Fact, FactCondition
+    from tangy_profiles.declared.search import Reach
+    from tangy_tui.learning.policy import Policy
 
 
 def finding_words(source: str, found: ActivityFlaw) -> str:

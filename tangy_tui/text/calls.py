@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact
 from tangy_profiles.reading import plain
-from tangy_profiles.robot import Robot
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_tui.monitoring.calls import CallState
-from tangy_tui.monitoring.supervision import Supervision
+
+if TYPE_CHECKING:
+    from tangy_profiles.robot import Robot
+    from tangy_tui.monitoring.calls import CallState
+    from tangy_tui.monitoring.supervision import Supervision
 
 SIMULATED = "The simulated expert has looked at it."
 CALLS_NOBODY = "Tangy calls nobody itself."

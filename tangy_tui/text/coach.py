@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity, StageRule
-from tangy_profiles.scene import Arranged, Scene
 from tangy_profiles.state import FRONT, ActivityState, Situation
 from tangy_tui.text.situations import card_words
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity, StageRule
+    from tangy_profiles.scene import Arranged, Scene
 
 Name = Callable[[str], str]
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.state import FRONT
-from tangy_tui.app.game_commands import Autonomy, NoteKind, Proposal, StaffNote
+
+if TYPE_CHECKING:
+    from tangy_tui.app.game_commands import Autonomy, NoteKind, Proposal, StaffNote
 
 HELD = {
     "slow": "Something is near: Tangy drives slowly.",

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity
-from tangy_tui.learning.conflicts import Shown
-from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.policy import SURE
 from tangy_tui.text.numbers import listed
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_tui.learning.conflicts import Shown
+    from tangy_tui.learning.explanation import Why
 
 
 def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:

@@ -4,25 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from tangy_profiles.activity import Activity
-from tangy_profiles.demonstration import Demonstration
-from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.feedback import FeedbackEntry
-from tangy_tui.interaction.record import Record
-from tangy_tui.learning.comparison import SituationComparison
-from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.coverage import coverage
 from tangy_tui.learning.coverage_proof import prove_coverage
-from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.library import effects_of, read_library
-from tangy_tui.learning.online_learning import Lesson
-from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.reachable import joint_states
 from tangy_tui.text.decisions import why_words
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.people import prior_words, sentence
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.demonstration import Demonstration
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.interaction.feedback import FeedbackEntry
+    from tangy_tui.interaction.record import Record
+    from tangy_tui.learning.comparison import SituationComparison
+    from tangy_tui.learning.conflicts import Conflict, Shown
+    from tangy_tui.learning.explanation import Why
+    from tangy_tui.learning.online_learning import Lesson
+    from tangy_tui.learning.policy import Decision, Policy
 
 
 def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
-from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.health import OK
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
-from tangy_tui.monitoring.drill_rounds import Round, Tabletop
 from tangy_tui.monitoring.evidence import STATES
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import state_words
+
+if TYPE_CHECKING:
+    from tangy_profiles.drill_sheet import AnsweredRound, Sheet
+    from tangy_tui.monitoring.drill_rounds import Round, Tabletop
 
 Told = tuple[str, str]
 """How a line is written (by an ink of the screens: text, dim, strong, ...), and the line."""

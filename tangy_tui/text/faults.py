@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
-from tangy_profiles.game_records import MoveKind
 from tangy_profiles.health import ERROR, STALE, Fact, Health
-from tangy_profiles.robot import DeviceProfile, Robot
 from tangy_tui.monitoring.detection import LATE
 from tangy_tui.monitoring.diagnosis import narrows
 from tangy_tui.monitoring.evidence import STATES, mismatch_words, written
@@ -22,10 +20,14 @@ from tangy_tui.monitoring.fault import (
     FaultEvent,
     RecoveryEvent,
 )
-from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.numbers import listed, ordinal
 from tangy_tui.text.times import clock
+
+if TYPE_CHECKING:
+    from tangy_profiles.game_records import MoveKind
+    from tangy_profiles.robot import DeviceProfile, Robot
+    from tangy_tui.monitoring.supervision import Supervision
 
 Name = Callable[[str], str]
 """Gives a person's name for an id."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from tangy_profiles.beliefs import Beta, probability_best
 from tangy_profiles.demonstration import Demonstration
-from tangy_profiles.state import Response
 from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
@@ -19,12 +19,15 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.learning.explanation import explain
 from tangy_tui.monitoring.fault import Diagnosed, Moved
-from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.decisions import why_words
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import Name, once_words
+
+if TYPE_CHECKING:
+    from tangy_profiles.state import Response
+    from tangy_tui.monitoring.supervision import Event, Supervision
 
 Demonstrations = Callable[[], Sequence[Demonstration]]
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tangy_profiles.contacts import EXPERT
-from tangy_tui.monitoring.fault import Fault, RecoveryEvent
-from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text.calls import expert_words
 from tangy_tui.text.faults import kind_words, mark_of, move_words
 from tangy_tui.text.times import clock
+
+if TYPE_CHECKING:
+    from tangy_tui.monitoring.fault import Fault, RecoveryEvent
+    from tangy_tui.monitoring.supervision import Supervision
 
 SEEN_FIRST = "Press {acknowledge} first to say that you have seen this."
 SEEN = "You have seen it. Press {expert} to see whom to call, or {accept} when all is well."

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt
-from tangy_tui.app.card_news import CardNote
-from tangy_tui.app.live_games import News
 from tangy_tui.app.seats import Seated
 from tangy_tui.interaction.game_events import Acted, GameEnded
-from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.games import ended_words, paused_lines
+
+if TYPE_CHECKING:
+    from tangy_tui.app.card_news import CardNote
+    from tangy_tui.app.live_games import News
+    from tangy_tui.monitoring.supervision import Event
 
 Name = Callable[[str], str]
 

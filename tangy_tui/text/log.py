@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import CallMade
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
@@ -14,8 +14,11 @@ from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.situations import Name
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_tui.text.situations import Name
 
 MOST_TOLD = 30
 """Games that a report tells one by one; of more, only those in which something was the matter."""

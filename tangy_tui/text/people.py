@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from tangy_profiles.beliefs import Beliefs, Beta
-from tangy_profiles.events import EventRecord
+from typing import TYPE_CHECKING
+
 from tangy_profiles.people_records import FeedbackGiven, ResponseVoided, StrategySwitched
-from tangy_profiles.persuading import MethodName
-from tangy_profiles.store import Event
-from tangy_tui.interaction.feedback import FeedbackEntry
-from tangy_tui.interaction.record import Record
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.times import ago, on_day
+
+if TYPE_CHECKING:
+    from tangy_profiles.beliefs import Beliefs, Beta
+    from tangy_profiles.events import EventRecord
+    from tangy_profiles.persuading import MethodName
+    from tangy_profiles.store import Event
+    from tangy_tui.interaction.feedback import FeedbackEntry
+    from tangy_tui.interaction.record import Record
 
 SELDOM = 0.5
 """A best strategy that works less often than this is not said to work."""

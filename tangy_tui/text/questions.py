@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity
-from tangy_tui.learning.explanation import Why
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import ALL_RIGHT
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_tui.learning.explanation import Why
 
 SAID_TOO_EARLY = "You said that before the question was on the screen."
 TOO_EARLY = "Too early: please answer again."

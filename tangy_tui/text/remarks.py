@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
-from tangy_profiles.activity import Activity
 from tangy_tui.learning.remarks import answers_to
 from tangy_tui.learning.teaching_events import (
     Contradicted,
@@ -17,6 +16,9 @@ from tangy_tui.learning.teaching_events import (
     WrongPerson,
 )
 from tangy_tui.text.numbers import listed
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
 
 Name = Callable[[str], str]
 

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health, Reading, state_of
-from tangy_profiles.robot import DeviceProfile, Robot
 from tangy_tui.monitoring.evidence import STATES
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera import Frame
     from tangy_hw.drivers.camera_state import Sight
     from tangy_hw.perception.camera_hub import CardSight
+    from tangy_profiles.robot import DeviceProfile, Robot
 
 CAMERA_STATES = {
     "OPENING": "no picture yet",

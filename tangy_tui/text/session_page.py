@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from tangy_tui.monitoring.fault import Fault
-from tangy_tui.monitoring.session import Progress
 from tangy_tui.text.faults import RECOVERY_WORDS
 from tangy_tui.text.numbers import counted
+
+if TYPE_CHECKING:
+    from tangy_tui.monitoring.fault import Fault
+    from tangy_tui.monitoring.session import Progress
 
 VISIT = "Tangy is with them"
 STOOD_STILL = "Tangy stood still"

@@ -3,17 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity
-from tangy_profiles.demonstration import Step
 from tangy_profiles.reading import plain
-from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState
 from tangy_profiles.teaching_records import Deletion, Division, Merger, Restoration, Settlement
-from tangy_tui.learning.conflicts import Conflict
-from tangy_tui.learning.library import Edit, Library
-from tangy_tui.learning.online_learning import Lesson
-from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import (
     Asked,
     NotUnderstood,
@@ -24,6 +18,15 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.text.activities import facts_words
 from tangy_tui.text.numbers import counted
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.demonstration import Step
+    from tangy_profiles.scene import CardView, Scene
+    from tangy_tui.learning.conflicts import Conflict
+    from tangy_tui.learning.library import Edit, Library
+    from tangy_tui.learning.online_learning import Lesson
+    from tangy_tui.learning.policy import Policy
 
 MOST_STEPS = 3
 """Steps that are named for each answer of a conflict."""

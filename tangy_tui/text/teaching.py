@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import Activity
 from tangy_tui.learning.teaching_events import (
     Announced,
     Begun,
@@ -18,12 +18,15 @@ from tangy_tui.learning.teaching_events import (
     TeachingEvent,
     WrongPerson,
 )
-from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
 from tangy_tui.text.coach import GUIDED, arranged_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.remarks import remark_lines, settled_words
 from tangy_tui.text.situations import step_words, verification_lines
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_tui.learning.teaching_session import TeachingSession
 
 
 def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "Y") -> list[str]:

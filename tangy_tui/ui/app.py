@@ -33,19 +33,13 @@ from threading import Thread
 from time import monotonic
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
-from rich.console import RenderableType
 from textual import events
 from textual._compositor import ChopsUpdate, LayoutUpdate
 from textual.app import App, SystemCommand
-from textual.binding import BindingType
 from textual.css.query import NoMatches
-from textual.notifications import SeverityLevel
 from textual.screen import Screen
 
-from tangy_tui.app.keymap import Keymap
 from tangy_tui.app.terminal_session import QuestionKey, terminal_session
-from tangy_tui.app.user_settings import LinkSpeed
-from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.text import program as text
 from tangy_tui.text.keys import with_keys
 from tangy_tui.ui.clean_output import CleanOutput, clean
@@ -56,11 +50,17 @@ from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
 from tangy_tui.ui.screen_diff import ScreenDiff, Written
 from tangy_tui.ui.terminal import SERVED, TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
-from tangy_tui.ui.type_ahead_guard import Clock
 from tangy_tui.ui.writer import HeldWrites
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from textual.binding import BindingType
     from textual.command import Provider
+    from textual.notifications import SeverityLevel
+
+    from tangy_tui.app.keymap import Keymap
+    from tangy_tui.app.user_settings import LinkSpeed
+    from tangy_tui.ui.type_ahead_guard import Clock
 
 HANGUP_CODE = 129
 TERMINATED_CODE = 143
@@ -166,7 +166,7 @@ class TangyApp(App[None]):
             # Not on Windows, and not outside of the main thread.
             with suppress(NotImplementedError, RuntimeError, ValueError):
                 loop.add_signal_handler(number, self._signalled, number.name, code)
-        self.call_after_refresh(Thread(target=prepare, daemon=True).start)
+        self.call_after_refresh(Thread(target=_prepare_stop, daemon=True).start)
         if not self.is_headless:
             self.call_after_refresh(self._meet_terminal)
 
@@ -382,6 +382,13 @@ def _actions_provider() -> type[Provider]:
     from tangy_tui.ui.palette import ActionsProvider
 
     return ActionsProvider
+
+
+def _prepare_stop() -> None:
+    """Load what judges sentences that stop the robot, once the first screen is drawn."""
+    from tangy_tui.language.stop_sentence import prepare
+
+    prepare()
 
 
 def run_app(app: TangyApp, *, mouse: bool = True) -> int:

@@ -6,11 +6,10 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING
 
-from tangy_profiles.health import Health
-from tangy_tui.app.workspace import Workspace
-
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import CameraHub
+    from tangy_profiles.health import Health
+    from tangy_tui.app.workspace import Workspace
 
 FIRST_SECONDS = 5.0
 """For which a game waits at most for the first pictures of its cameras."""

@@ -13,20 +13,20 @@ from collections.abc import Awaitable, Callable
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
-from textual.app import App
-
 from tangy_profiles.errors import TangyError
-from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.text.voice import HANDS_FREE, OR_KEY_AND_SAY, OR_SAY, RECORDING
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.dialogs.question import VerifyingDialog
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from textual.app import App
+
     from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.learning.verification import Reply, Say, StopCommand
     from tangy_tui.speech.input import SpeechInput
+    from tangy_tui.ui.dialogs.question import VerifyingDialog
     from tangy_tui.ui.widgets.log_view import Kind
 
 WAITS = 0.05
@@ -211,6 +211,8 @@ class Hearing:
             await self.ears.close()
 
     def _take(self, heard: Say | StopCommand | Reply) -> None:
+        from tangy_tui.learning.verification import Reply, Say, StopCommand
+
         match heard:
             case StopCommand(text):
                 self._stop()
@@ -246,6 +248,8 @@ class Hearing:
     @property
     def _question(self) -> VerifyingDialog | None:
         """The question that is open, if one lies over the screens."""
+        from tangy_tui.ui.dialogs.question import VerifyingDialog
+
         screen = self._app.screen_stack[-1] if self._app.screen_stack else None
         return screen if isinstance(screen, VerifyingDialog) else None
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_world import GameWorld
 from tangy_tui.text import interruptions as text
 
 if TYPE_CHECKING:
+    from tangy_profiles.game_world import GameWorld
     from tangy_profiles.past_game import PastGame
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.ui.program import Program

@@ -8,7 +8,6 @@ from textual import events
 from textual.app import App
 from textual.widgets import Input
 
-from tangy_tui.language.stop_sentence import stops
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.pasted_text import pasted_text
@@ -53,6 +52,8 @@ class KeyReader:
 
     def _says_stop(self, event: events.Key | events.Paste) -> bool:
         """Stop if the word is there now; say whether the event is no key, but belongs to it."""
+        from tangy_tui.language.stop_sentence import stops  # loaded behind the first screen
+
         if text := event.text if isinstance(event, events.Paste) else pasted_text(event).strip():
             taken: Taken = "stop" if stops(text) else "key"
         elif isinstance(event, events.Key):

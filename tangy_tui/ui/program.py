@@ -7,12 +7,10 @@ from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from textual.app import SystemCommand
-from textual.screen import Screen
 from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
-from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning import library, policies
 from tangy_tui.text import program as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
@@ -21,7 +19,6 @@ from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.first_start import change_teacher, first_start, rename_teacher
 from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
-from tangy_tui.ui.messages import OpenStep
 from tangy_tui.ui.policy_comparison import compare_policies
 from tangy_tui.ui.progress_summary import how_far
 from tangy_tui.ui.screens.home import HomeScreen
@@ -29,10 +26,14 @@ from tangy_tui.ui.showing_again import show_again
 from tangy_tui.ui.sounding import SoundingApp
 
 if TYPE_CHECKING:
+    from textual.screen import Screen
+
     from tangy_hw.perception.camera_hub import CameraHub
     from tangy_profiles.past_game import PastGame
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_session import TeachingSession
+    from tangy_tui.ui.messages import OpenStep
 
 T = TypeVar("T")
 

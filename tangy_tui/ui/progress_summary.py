@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
-from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning import library, policies
 from tangy_tui.monitoring.drill_log import last_sheet
 from tangy_tui.text.numbers import counted
+
+if TYPE_CHECKING:
+    from tangy_tui.app.workspace import Workspace
 
 
 def how_far(workspace: Workspace) -> Mapping[str, str]:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from textual.binding import BindingType
-
-from tangy_profiles.activity import Activity
 from tangy_tui.text.voice import LISTENS, LISTENS_NOT, NO_MICROPHONE, OFF, ON
 from tangy_tui.ui.app import FirstScreen, TangyApp
 from tangy_tui.ui.clean_output import clean
@@ -15,6 +12,9 @@ from tangy_tui.ui.keys import bind
 from tangy_tui.ui.speaking import Speaker
 
 if TYPE_CHECKING:
+    from textual.binding import BindingType
+
+    from tangy_profiles.activity import Activity
     from tangy_tui.speech.input import SpeechInput
 
 

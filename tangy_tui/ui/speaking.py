@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Protocol
 from tangy_profiles.activity import Activity
 from tangy_profiles.voice import VoicePreference
 from tangy_tui.text.voice import shown_words
-from tangy_tui.ui.hearing import Hearing
 
 if TYPE_CHECKING:
     from tangy_hw.audio.voice import Rendered, SpeechVoice
     from tangy_tui.app.workspace import Workspace
+    from tangy_tui.ui.hearing import Hearing
 
 GAP = 0.15
 """Seconds for which a line waits that cuts another one: in fast games most are cut themselves."""

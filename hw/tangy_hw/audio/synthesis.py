@@ -270,6 +270,14 @@ def cache_folder() -> Path:
     return user_cache_path("tangy", appauthor=False) / "voice"
 
 
+def clear_cache() -> None:
+    """Empty the cache of spoken texts, if there is one: they may hold the names of people."""
+    folder = cache_folder()
+    with contextlib.suppress(OSError, VoiceError):
+        if folder.is_dir():
+            Synthesiser(folder).clear()
+
+
 def examine_voice(which: Callable[[str], str | None] = shutil.which) -> tuple[str, str]:
     """Try whether a word can be spoken here; nothing is played, and nothing kept.
 

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-from textual import events
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
@@ -29,6 +27,10 @@ from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, yes_key_of
 from tangy_tui.ui.widgets.rows import shorten
+
+if TYPE_CHECKING:
+    from textual import events
+    from textual.app import ComposeResult
 
 MOST_ALTERNATIVES = 3
 LONGEST_HEARD = 100  # characters: two lines
