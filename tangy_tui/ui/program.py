@@ -11,9 +11,9 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
-from tangy_tui.learning import library, policies
 from tangy_tui.text import program as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
+from tangy_tui.ui import policy_opening
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.first_start import change_teacher, first_start, rename_teacher
@@ -336,36 +336,11 @@ class Program(SoundingApp):
 
     async def open_policy(self, policy: Policy, leave_after: float | None = None) -> None:
         """Open the screen of a policy, for so many s at most, and wait until it is left."""
-        from tangy_tui.ui.screens.policy import PolicyScreen
-
-        workspace = self.workspace
-        effects = library.effects_of(workspace.store, workspace.activity, policy)
-        screen = PolicyScreen(workspace, policy, effects, leave_after)
-        await self.push_screen_wait(screen)
+        await policy_opening.open_policy(self, policy, leave_after)
 
     async def load_policy(self, wanted: str = "") -> Policy | None:
         """Learn the kept policy again; what must be said of it is said before it is used."""
-        workspace = self.workspace
-        loaded = await self.in_thread(
-            text.RECALLING,
-            lambda: policies.load_policy(workspace.store, workspace.activity, wanted),
-        )
-        if loaded is None:
-            return None
-        policy, notices = loaded
-        return policy if not notices or await self._accept(policy, notices[0], wanted) else None
-
-    async def _accept(self, policy: Policy, notice: str, wanted: str) -> bool:
-        """Show how a policy differs from what was kept of it, and ask before it is used."""
-        from tangy_tui.ui.dialogs.difference import DifferenceDialog
-
-        workspace = self.workspace
-        kept = policies.need_policy(workspace.store, workspace.activity, wanted)
-        changes = policies.changes(kept, policy)
-        answer = await self.push_screen_wait(DifferenceDialog(workspace.activity, notice, changes))
-        if answer == "keep":
-            policies.keep_policy(workspace.store, policy)
-        return answer != "back"
+        return await policy_opening.load_policy(self, wanted)
 
     async def tell(self, text: str, title: str) -> None:
         """Say something in a dialog, and wait until it was read."""

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.past_game import PastGame
     from tangy_tui.app.robot_opening import Opening
-    from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_session import TeachingSession
     from tangy_tui.speech.input import SpeechInput

@@ -1,0 +1,50 @@
+"""Opening a kept policy: what must be said of it is said before it is shown or used."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_tui.text import program as text
+
+if TYPE_CHECKING:
+    from tangy_tui.learning.policy import Policy
+    from tangy_tui.ui.program import Program
+
+
+async def open_policy(program: Program, policy: Policy, leave_after: float | None) -> None:
+    """Open the screen of a policy, for so many s at most, and wait until it is left."""
+    from tangy_tui.learning.library import effects_of
+    from tangy_tui.ui.screens.policy import PolicyScreen
+
+    workspace = program.workspace
+    effects = effects_of(workspace.store, workspace.activity, policy)
+    await program.push_screen_wait(PolicyScreen(workspace, policy, effects, leave_after))
+
+
+async def load_policy(program: Program, wanted: str) -> Policy | None:
+    """Learn the kept policy again; None where there is none, or it is not to be used."""
+    from tangy_tui.learning import policies
+
+    workspace = program.workspace
+    loaded = await program.in_thread(
+        text.RECALLING,
+        lambda: policies.load_policy(workspace.store, workspace.activity, wanted),
+    )
+    if loaded is None:
+        return None
+    policy, notices = loaded
+    return policy if not notices or await _accept(program, policy, notices[0], wanted) else None
+
+
+async def _accept(program: Program, policy: Policy, notice: str, wanted: str) -> bool:
+    """Show how a policy differs from what was kept of it, and ask before it is used."""
+    from tangy_tui.learning import policies
+    from tangy_tui.ui.dialogs.difference import DifferenceDialog
+
+    workspace = program.workspace
+    kept = policies.need_policy(workspace.store, workspace.activity, wanted)
+    changes = policies.changes(kept, policy)
+    answer = await program.push_screen_wait(DifferenceDialog(workspace.activity, notice, changes))
+    if answer == "keep":
+        policies.keep_policy(workspace.store, policy)
+    return answer != "back"
