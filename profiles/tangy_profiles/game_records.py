@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from tangy_profiles.codec import By, Count, Flat, Sparse, measurement, read
+from tangy_profiles.contacts import Role
 from tangy_profiles.demonstration import Step, not_the_same
+from tangy_profiles.drill_sheet import Sheet
+from tangy_profiles.game_world import GameWorld
 from tangy_profiles.health import Fact
 from tangy_profiles.records import EventRecord, kind
 from tangy_profiles.state import ActivityState, Variable
-
-if TYPE_CHECKING:
-    from tangy_profiles.contacts import Role
-    from tangy_profiles.drill_sheet import Sheet
-    from tangy_profiles.game_world import GameWorld
 
 
 @kind("game begun")
