@@ -43,7 +43,7 @@ from tangy_tui.app.terminal_session import QuestionKey, terminal_session
 from tangy_tui.text import program as text
 from tangy_tui.text.keys import with_keys
 from tangy_tui.ui.clean_output import CleanOutput, clean
-from tangy_tui.ui.key_reading import KeyReader
+from tangy_tui.ui.key_reading import KeyReader, prepare_stop
 from tangy_tui.ui.keys import DEFAULT, bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
@@ -166,7 +166,7 @@ class TangyApp(App[None]):
             # Not on Windows, and not outside of the main thread.
             with suppress(NotImplementedError, RuntimeError, ValueError):
                 loop.add_signal_handler(number, self._signalled, number.name, code)
-        self.call_after_refresh(Thread(target=_prepare_stop, daemon=True).start)
+        self.call_after_refresh(Thread(target=prepare_stop, daemon=True).start)
         if not self.is_headless:
             self.call_after_refresh(self._meet_terminal)
 
@@ -382,13 +382,6 @@ def _actions_provider() -> type[Provider]:
     from tangy_tui.ui.palette import ActionsProvider
 
     return ActionsProvider
-
-
-def _prepare_stop() -> None:
-    """Load what judges sentences that stop the robot, once the first screen is drawn."""
-    from tangy_tui.language.stop_sentence import prepare
-
-    prepare()
 
 
 def run_app(app: TangyApp, *, mouse: bool = True) -> int:

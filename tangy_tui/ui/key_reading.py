@@ -70,3 +70,10 @@ class KeyReader:
 
 def _is_text(event: events.Key | events.Paste) -> bool:
     return isinstance(event, events.Key) and (event.is_printable or event.key == "enter")
+
+
+def prepare_stop() -> None:
+    """Load what judges sentences that stop the robot, once the first screen is drawn."""
+    from tangy_tui.language.stop_sentence import prepare
+
+    prepare()
