@@ -290,10 +290,11 @@ class GameController:
         self.robot.stop(ENDED)
 
     def _stop(self, by: str) -> list[Result]:
-        self.stopped, self.going = True, False
+        before, self.stopped, self.going = self.stopped, True, False
         self.supervision.stopped_by_staff()
         self.robot.stop()
-        self.note("the robot was stopped", by=by)
+        if by or not before:
+            self.note("the robot was stopped", by=by)
         return [StaffNote("stopped")]
 
     def _go_on(self) -> list[Result]:

@@ -55,6 +55,10 @@ class Done:
     teacher: str
     said: str
     draws: bool
+    numbers: tuple[int, ...] = ()
+    """What was called, or what somebody was asked to mark or to clear."""
+    wins: bool = False
+    """Whether it celebrates somebody who has won, where the activity is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +79,8 @@ class Noted:
 
     what: str
     by: str
+    taken_back: int = 0
+    """The number of a call that counts no more; 0: of none."""
 
 
 What: TypeAlias = Done | AnsweredRequest | Diagnosed | Moved | Noted | CallMade
@@ -215,8 +221,8 @@ def _replay(
                 what = _answered(event, None, None)
             case GameResumed(by=by):
                 what = Noted(RESUMED, by)
-            case StaffAction(what=words, by=by):
-                what = Noted(words, by)
+            case StaffAction(what=words, by=by, taken_back=taken):
+                what = Noted(words, by, taken)
             case CallMade() as what:
                 pass
             case FaultDiagnosed(fault=id, seconds=at) if id in faults and id not in moved:
@@ -263,6 +269,8 @@ def _done(
         teacher=step.teacher or "",
         said=said,
         draws=behaviour is not None and behaviour.effect == "draw",
+        numbers=step.numbers,
+        wins=behaviour is not None and bool(behaviour.needs) and step.completed,
     )
 
 

@@ -17,7 +17,7 @@ from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.memory import PersonModel, PersonModels, counted, replayed
 from tangy_tui.interaction.tally import TallyRow
-from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault
+from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Diagnosed, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.replay import GameReplay, Noted, read_replays
@@ -119,6 +119,22 @@ class Session:
     names: Mapping[str, str]
     reads: frozenset[str] = frozenset()
     """The stages in which Tangy helps somebody."""
+    activity: Activity | None = None
+    """The first activity that is known of those that were played."""
+
+    def name(self, person: str) -> str:
+        """Return what a person is called."""
+        return self.names.get(person, person)
+
+    @property
+    def timed_faults(self) -> tuple[tuple[str, Fault], ...]:
+        """The faults in order, each with when it was diagnosed (ISO 8601)."""
+        return tuple(
+            (moment.at, moment.what.fault)
+            for replay in self.replays
+            for moment in replay.moments
+            if isinstance(moment.what, Diagnosed) and not moment.what.fault.asks_only
+        )
 
     @property
     def games(self) -> tuple[Game, ...]:
@@ -232,6 +248,7 @@ def read_session(
         reads=frozenset(s for s in activity.stages if activity.reads(s))
         if activity
         else frozenset(),
+        activity=activity,
     )
 
 

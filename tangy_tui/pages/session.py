@@ -5,21 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 
-from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
+from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import RESULTS, STATUS_WORDS, Progress, Session
 from tangy_tui.pages.beliefs import belief_drawing, interval
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
+from tangy_tui.pages.staff_parts import STYLE as PARTS_STYLE
+from tangy_tui.pages.staff_parts import calls_part, faults_part, people_part, staff_part
 from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 from tangy_tui.text import session_page as say
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.report import WORLD_WORDS, care_lines
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 MOST_DRAWN = 24
 """Games that are drawn on one page; of more, the last ones."""
+
+FEW_DRAWN = 3
+"""Games that are drawn where the page is to fit on two sheets."""
 
 COLUMNS = ("person", "strategy", "used", *(words for _, words in RESULTS), "before", "after")
 """Of the table of people: the results add up to how often a strategy was used."""
@@ -85,13 +91,16 @@ KEY = (
 """The marks of the timeline, and what they mean."""
 
 
-def session_page(session: Session) -> str:
-    """Return the page of a session."""
+def session_page(session: Session, *, full: bool = True) -> str:
+    """Return the page of a session: what staff need, and in `full` what researchers ask as well."""
     games = session.games
     title = f"{session.title}: session of {day_and_time(games[0].at)}"
-    parts = [*_head(session), *_care(session), *_timelines(session), *_people(session)]
-    parts += [*_faults(session), *_tables(session), *_notes(session)]
-    return document(title, _sum(session), parts, STYLE)
+    parts = [*_head(session), *_care(session), *people_part(session), *calls_part(session)]
+    parts += [*staff_part(session), *([] if full else faults_part(session))]
+    parts += _timelines(session, MOST_DRAWN if full else FEW_DRAWN)
+    if full:
+        parts += [*_people(session), *_faults(session), *_tables(session)]
+    return document(title, _sum(session), [*parts, *_notes(session)], STYLE + PARTS_STYLE)
 
 
 def _sum(session: Session) -> str:
@@ -105,20 +114,13 @@ def _sum(session: Session) -> str:
     return " · ".join(words)
 
 
-GAME_WORDS = {
-    SIMULATED: "simulated",
-    BENCH: "on the bench of simulated devices",
-    LIVE: "live, with a robot",
-}
-
-
 def _head(session: Session) -> Iterator[str]:
     games = session.games
     people = [person.name for person in session.people]
     policies = dict.fromkeys(game.policy for game in games)
     facts = [
         ("When", f"{day_and_time(games[0].at)} to {_until(session)}"),
-        ("Games", ", ".join(dict.fromkeys(GAME_WORDS[game.world] for game in games))),
+        ("Games", ", ".join(dict.fromkeys(WORLD_WORDS[game.world] for game in games))),
         (say.WHO, ", ".join(people) or "nobody is named in the log"),
         ("Policy", ", ".join(policies)),
         ("How long", _how_long(session)),
@@ -159,7 +161,9 @@ def _how_long(session: Session) -> str:
 def _endings(session: Session) -> str:
     endings = [game.ending for game in session.games]
     counts = {words: endings.count(words) for words in dict.fromkeys(endings)}
-    return " ".join(f"{count} of {len(endings)}: {words}." for words, count in counts.items())
+    return " ".join(
+        f"{count} of {len(endings)}: {words.rstrip('.')}." for words, count in counts.items()
+    )
 
 
 def _sentence(words: str) -> str:
@@ -168,7 +172,11 @@ def _sentence(words: str) -> str:
 
 def _care(session: Session) -> Iterator[str]:
     yield heading(say.CARE)
-    if not session.look_after:
+    people = care_lines(attention(session.replays).values(), session.name)
+    if people:
+        lines = "".join(f"<li>{escape(line)}</li>" for line in people)
+        yield f'<div class="care"><ul>{lines}</ul></div>'
+    if not (session.look_after or people):
         yield f'<p class="fine">{escape(say.NOTHING_LEFT)}</p>'
     numbers = _numbers(session)
     told: set[tuple[str, str]] = set()
@@ -185,12 +193,12 @@ def _care(session: Session) -> Iterator[str]:
         )
 
 
-def _timelines(session: Session) -> Iterator[str]:
+def _timelines(session: Session, most: int) -> Iterator[str]:
     yield heading(say.WHEN)
     numbers = _numbers(session)
-    drawn = session.replays[-MOST_DRAWN:]
+    drawn = session.replays[-most:]
     if len(drawn) < len(session.replays):
-        yield paragraph(say.drawn_words(MOST_DRAWN, len(session.replays)))
+        yield paragraph(say.drawn_words(most, len(session.replays)))
     stages = stages_of(session.replays)
     yield _key(stages)
     for replay in drawn:

@@ -205,4 +205,4 @@ def _person_line(person: Progress) -> str:
     return f"{person.name}, asked {counted(person.interactions, 'time')}: {'; '.join(parts)}"
 
 
-HOW_TO_GO_ON = "tangy log show 1: a game step by step. tangy log report 1: its report."
+HOW_TO_GO_ON = "tangy log show 1: a game step by step. tangy report session 1: its report."

@@ -43,6 +43,16 @@ def progress(items: Iterable[T], what: str, *, quiet: bool) -> Iterator[T]:
         yield from track(items, description=what, console=console, transient=True)
 
 
+def print_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print a table without a title; nothing where there are no rows."""
+    if not rows:
+        return
+    table = Table(*columns, box=box.SIMPLE_HEAD, title_justify="left", show_edge=False)
+    for row in rows:
+        table.add_row(*(Text(plain(cell)) for cell in row))
+    Console(highlight=False).print(table)
+
+
 PLAYERS = ("one", "other")
 """As many as a search of all games has."""
 

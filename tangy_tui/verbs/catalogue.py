@@ -69,6 +69,7 @@ VERBS = {
     "cards": Verb("cards"),
     "faces": Verb("faces", below=(("enrol", "faces_enrol", "faces_enrol"),)),
     "log": Verb("log"),
+    "report": Verb("report"),
     "store": Verb("store"),
 }
 """In the order in which help lists them."""

@@ -1,4 +1,4 @@
-"""`tangy log`: the games that were played, step by step, where, and the report of a session."""
+"""`tangy log`: the games that were played, step by step, and where."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.command_line import counts_as, report_in
+from tangy_tui.text.command_line import counts_as
 from tangy_tui.verbs.common import Data, Json, print_json, print_line
 from tangy_tui.verbs.opening import say_aside, say_notices
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="The games that were played: list, step by step, report. Without a verb: list.",
+    help="The games that were played: list, step by step, where. Without a verb: list.",
 )
 
 Which = Annotated[
@@ -56,7 +56,7 @@ def log_list(data: Data = None, as_json: Json = False) -> None:
     """List the games, the newest last."""
     from tangy_tui.monitoring.games import read_games
 
-    with _open(data) as (store, _):
+    with open_log(data) as (store, _):
         games = read_games(store)
     if as_json:
         print_json([game.to_json() for game in games])
@@ -73,9 +73,9 @@ def log_show(game: Which, activity: Of = "", data: Data = None, as_json: Json = 
     from tangy_tui.monitoring.replay import read_replays
     from tangy_tui.text.log import replay_lines
 
-    with _open(data) as (store, names):
+    with open_log(data) as (store, names):
         found = find_game(read_games(store), game)
-        known = _activities([found], activity)
+        known = known_activities_of([found], activity)
         (replay,) = read_replays(store, [found], known, names)
     if as_json:
         print_json(_document(replay))
@@ -85,7 +85,7 @@ def log_show(game: Which, activity: Of = "", data: Data = None, as_json: Json = 
         print_line(plain(line))
 
 
-@app.command("report")
+@app.command("report", hidden=True)
 def log_report(
     game: Session = "last",
     html: Annotated[
@@ -95,29 +95,10 @@ def log_report(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Report on a session: what happened, faults and recoveries, people, what to look after."""
-    from tangy_tui.monitoring.games import find_games, read_games
-    from tangy_tui.monitoring.session import read_session
-    from tangy_tui.pages import page
-    from tangy_tui.text.log import session_lines
+    """Report on a session, as `tangy report session --full` does."""
+    from tangy_tui.verbs.report import report_session
 
-    if html is not None:
-        page.check_place(html, "--html")
-    with _open(data) as (store, names):
-        found = find_games(read_games(store), game)
-        known = _activities(found, activity)
-        session = read_session(store, found, known, names)
-    if html is not None:
-        from tangy_tui.pages.session import session_page
-
-        page.write(html, session_page(session), "--html")
-    if as_json:
-        print_json(session.to_json())
-    elif html is not None:
-        print(plain(report_in(html)))
-    else:
-        for line in session_lines(session):
-            print_line(plain(line))
+    report_session(game, html, True, activity, data, as_json)
 
 
 @app.command("world")
@@ -154,7 +135,7 @@ def log_world(
 
 
 @contextmanager
-def _open(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
+def open_log(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
     """Open the log for reading, with the names of the people."""
     from tangy_profiles.person import MOST_PEOPLE, load_people
     from tangy_profiles.store import Store
@@ -169,7 +150,7 @@ def _open(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
             say_aside(store)
 
 
-def _activities(games: Sequence[Game], file: str) -> dict[str, Activity]:
+def known_activities_of(games: Sequence[Game], file: str) -> dict[str, Activity]:
     """Load the activities of games, as far as they are to be had.
 
     Raises:

@@ -1,0 +1,141 @@
+"""What each person got of a game: how often they asked and waited, who was visited, for how long.
+
+All of it is read from the log. Times are in s since the game began.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from statistics import median
+
+from tangy_tui.monitoring.replay import Done, GameReplay, Noted
+
+
+@dataclass(slots=True)
+class Attention:
+    """One person in one game or several.
+
+    `waits` are from each request until Tangy was there or the request was closed, in s; `open` are
+    those that nobody had come for when the game ended. `seconds` is how long Tangy was with the
+    person, `helped` counts what it did there, by behaviour, `won` how often they won.
+    """
+
+    id: str
+    waits: list[float] = field(default_factory=list)
+    open: list[float] = field(default_factory=list)
+    visits: int = 0
+    seconds: float = 0.0
+    last_visit: float | None = None
+    helped: Counter[str] = field(default_factory=Counter)
+    won: int = 0
+
+    @property
+    def requests(self) -> int:
+        """How often the person asked for help."""
+        return len(self.waits) + len(self.open)
+
+    @property
+    def longest(self) -> float | None:
+        """The longest wait (s), also of a request that stayed open; None: they never asked."""
+        return max([*self.waits, *self.open], default=None)
+
+    @property
+    def median(self) -> float | None:
+        """The median wait (s) of the requests for which Tangy came; None: of none."""
+        return median(self.waits) if self.waits else None
+
+    def add(self, other: Attention) -> None:
+        """Add another game of the same person."""
+        self.waits += other.waits
+        self.open += other.open
+        self.visits += other.visits
+        self.seconds += other.seconds
+        self.last_visit = other.last_visit if other.last_visit is not None else self.last_visit
+        self.helped.update(other.helped)
+        self.won += other.won
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A number that was called, when (s in the game), and whether it was taken back later."""
+
+    number: int
+    seconds: float
+    taken_back: bool = False
+
+
+def attention_in(replay: GameReplay) -> dict[str, Attention]:
+    """Return what each person got of a game, by id, in the order of the log."""
+    found = {person: Attention(person) for person in replay.game.people}
+    asked: dict[str, float] = {}
+    before: str = ""
+    for done in replay.done:
+        _count_visit(found, done, before)
+        before = done.after.place
+        _count_requests(found, asked, done)
+    for person, since in asked.items():
+        found[person].open.append(max(0.0, replay.seconds - since))
+    return found
+
+
+def attention(replays: Iterable[GameReplay]) -> dict[str, Attention]:
+    """Return what each person got of some games, added up."""
+    added: dict[str, Attention] = {}
+    for replay in replays:
+        for person, one in attention_in(replay).items():
+            added.setdefault(person, Attention(person)).add(one)
+    return added
+
+
+def _count_visit(found: dict[str, Attention], done: Done, before: str) -> None:
+    """Count what was done with the person beside whom the robot stood or came to stand."""
+    there = found.get(done.state.place)
+    if there is not None and done.after.place == there.id:
+        there.seconds += done.over - done.begun
+        there.won += done.wins
+        if done.target == there.id and done.completed:
+            there.helped[done.behaviour] += 1
+    came = found.get(done.after.place)
+    if came is not None:
+        came.visits += done.after.place != before
+        came.last_visit = done.over
+
+
+def _count_requests(found: dict[str, Attention], asked: dict[str, float], done: Done) -> None:
+    """Count who waits, and who waits no more: Tangy is there, or the request was closed."""
+    for user in done.after.users:
+        if user.id not in found:
+            continue
+        waits = user.request == "AR" and done.after.place != user.id
+        closed_at_once = done.after.closed == user.id and user.request == "AR"
+        if user.id in asked and (not waits or closed_at_once):
+            found[user.id].waits.append(max(0.0, done.over - asked.pop(user.id)))
+        if waits and user.id not in asked and not _is_with(done, user.id):
+            asked[user.id] = done.over
+
+
+def _is_with(done: Done, person: str) -> bool:
+    """Say whether the robot has just left somebody whose request is still open."""
+    return done.state.place == person and done.after.closed != person
+
+
+def calls_in(replay: GameReplay) -> list[Call]:
+    """Return the numbers that were called, in their order, with those that were taken back."""
+    calls: list[Call] = []
+    for moment in replay.moments:
+        match moment.what:
+            case Done(draws=True, completed=True, numbers=numbers, over=over):
+                calls += [Call(number, over) for number in numbers]
+            case Noted(taken_back=number) if number:
+                for place in range(len(calls) - 1, -1, -1):
+                    if calls[place].number == number and not calls[place].taken_back:
+                        calls[place] = Call(number, calls[place].seconds, taken_back=True)
+                        break
+    return calls
+
+
+def never_visited(found: Sequence[Attention]) -> list[Attention]:
+    """Return those whom Tangy never went to."""
+    return [one for one in found if not one.visits]

@@ -1,0 +1,175 @@
+"""The games of a house over time, from the logs of one robot or several: what each person got."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.game_world import GameWorld
+from tangy_profiles.person import folded
+from tangy_profiles.store import Store
+from tangy_tui.monitoring.attention import Attention, attention_in
+from tangy_tui.monitoring.games import Game, read_games
+from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, read_replays
+
+SHORT_ROBOT = 6
+"""Characters of a robot's id that tell it from others."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotLog:
+    """The log of one robot, read for reports: its games, and what people are called in it.
+
+    `robot` is its id, `label` what it is called in reports, `named` who was given a name.
+    """
+
+    robot: str
+    label: str
+    replays: tuple[GameReplay, ...]
+    names: Mapping[str, str]
+    named: frozenset[str]
+    activities: Mapping[str, Activity]
+
+    @property
+    def games(self) -> tuple[Game, ...]:
+        """Its games, the newest last."""
+        return tuple(replay.game for replay in self.replays)
+
+    def name(self, person: str) -> str:
+        """Return what a person is called."""
+        return self.names.get(person, person)
+
+    def activity(self, game: Game) -> Activity | None:
+        """Return the activity of a game, where it is known."""
+        return self.activities.get(game.activity)
+
+
+@dataclass(frozen=True, slots=True)
+class PersonInGame:
+    """One person in one game of one robot."""
+
+    log: RobotLog
+    replay: GameReplay
+    attention: Attention
+    answers: tuple[AnsweredRequest, ...]
+
+    @property
+    def at(self) -> datetime:
+        """When the game began."""
+        return self.replay.game.at
+
+
+@dataclass(slots=True)
+class PersonOverTime:
+    """One person over all games that are told of, the newest last."""
+
+    name: str
+    games: list[PersonInGame] = field(default_factory=list)
+
+    @property
+    def sum(self) -> Attention:
+        """All of it added up."""
+        added = Attention(self.name)
+        for one in self.games:
+            added.add(one.attention)
+        return added
+
+    @property
+    def answers(self) -> list[AnsweredRequest]:
+        """What the person did about what they were asked to do."""
+        return [answer for one in self.games for answer in one.answers]
+
+
+@dataclass(frozen=True, slots=True)
+class Month:
+    """The games of one calendar month, by the clock of the place we are in."""
+
+    year: int
+    month: int
+    games: tuple[tuple[RobotLog, GameReplay], ...]
+
+    @property
+    def people(self) -> tuple[PersonOverTime, ...]:
+        """Who took part."""
+        return people_over_time(self.games)
+
+
+def read_log(
+    store: Store,
+    names: Mapping[str, str],
+    activities: Mapping[str, Activity],
+    games: Sequence[Game] | None = None,
+) -> RobotLog:
+    """Read a log for reports.
+
+    Args:
+        store: the log.
+        names: of the people, by id; those in the log come first.
+        activities: those that are known, by name.
+        games: which games; None: all of them.
+    """
+    given = store.names()
+    chosen = read_games(store) if games is None else games
+    first = next(iter(store.events()), None)
+    robot = "" if first is None else first.robot
+    called = {**names, **given}
+    return RobotLog(
+        robot,
+        robot[:SHORT_ROBOT],
+        tuple(read_replays(store, chosen, activities, called)),
+        called,
+        frozenset(given),
+        activities,
+    )
+
+
+def of_world(logs: Iterable[RobotLog], world: GameWorld) -> list[tuple[RobotLog, GameReplay]]:
+    """Return the games of one world from all logs, the newest last."""
+    found = [(log, r) for log in logs for r in log.replays if r.game.world == world]
+    return sorted(found, key=lambda one: one[1].game.at)
+
+
+def people_over_time(
+    games: Iterable[tuple[RobotLog, GameReplay]],
+) -> tuple[PersonOverTime, ...]:
+    """Put together what each person got, in the order of their names.
+
+    Who was given the same name in the logs of several robots is taken for the same person. Who has
+    none is told apart by robot.
+    """
+    found: dict[tuple[str, str], PersonOverTime] = {}
+    for log, replay in games:
+        answers = [answer for _, answer in replay.answers]
+        for id, one in attention_in(replay).items():
+            called = log.name(id)
+            key = ("", folded(called)) if id in log.named else (log.robot, id)
+            person = found.setdefault(key, PersonOverTime(called))
+            own = tuple(answer for answer in answers if answer.person == id)
+            person.games.append(PersonInGame(log, replay, one, own))
+    return tuple(sorted(found.values(), key=lambda person: folded(person.name)))
+
+
+def by_month(games: Iterable[tuple[RobotLog, GameReplay]]) -> list[Month]:
+    """Group games by the month in which they began, the newest last."""
+    months: dict[tuple[int, int], list[tuple[RobotLog, GameReplay]]] = {}
+    for log, replay in games:
+        local = replay.game.at.astimezone()
+        months.setdefault((local.year, local.month), []).append((log, replay))
+    return [Month(year, month, tuple(found)) for (year, month), found in sorted(months.items())]
+
+
+def last_session(games: Sequence[Game], gap: float = 1800.0) -> list[Game]:
+    """Return the last game with those before it that belong to the same session.
+
+    They were played in the same world, and each ended less than so many s before the next began.
+    """
+    session = list(games[-1:])
+    for game in reversed(games[:-1]):
+        first = session[0]
+        over = game.ended or game.at
+        if game.world != first.world or (first.at - over).total_seconds() > gap:
+            break
+        session.insert(0, game)
+    return session

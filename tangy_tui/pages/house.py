@@ -1,0 +1,64 @@
+"""The pages of a person over time, and of a house over months."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tangy_profiles.game_world import GameWorld
+from tangy_tui.monitoring.house import PersonOverTime, RobotLog, by_month, of_world
+from tangy_tui.pages.page import document, heading, paragraph, table
+from tangy_tui.pages.staff_parts import STYLE
+from tangy_tui.text import house as say
+
+
+def house_page(
+    logs: Sequence[RobotLog],
+    world: GameWorld,
+    people: Sequence[PersonOverTime],
+    others: Sequence[GameWorld],
+) -> str:
+    """Return the page of a house: its months, its people, what went wrong.
+
+    Args:
+        logs: of its robots.
+        world: whose games are told of.
+        people: who took part in them.
+        others: the worlds of which there are games as well.
+    """
+    games = of_world(logs, world)
+    parts = [*_notes(logs, others), heading(say.MONTHS)]
+    parts += [table(say.MONTH_COLUMNS, say.month_rows(by_month(games)))]
+    parts += [heading(say.WHO), table(say.WHO_COLUMNS, say.who_rows(people))]
+    if faults := list(say.fault_rows(games)):
+        parts += [heading(say.FAULTS), table(say.FAULT_COLUMNS, faults)]
+    if len(logs) > 1:
+        parts += [heading(say.ROBOTS), table(say.ROBOT_COLUMNS, say.robot_rows(logs, world))]
+    return document(say.house_title(logs), say.scope(world, len(games)), parts, STYLE)
+
+
+def person_page(
+    person: PersonOverTime,
+    logs: Sequence[RobotLog],
+    world: GameWorld,
+    others: Sequence[GameWorld],
+) -> str:
+    """Return the page of one person: game by game, and what works with them.
+
+    Args:
+        person: who, with the games that are told of.
+        logs: of the robots.
+        world: whose games are told of.
+        others: the worlds of which there are games as well.
+    """
+    parts = [*_notes(logs, others), table(say.WHO_COLUMNS, say.who_rows([person]))]
+    if strategies := list(say.strategy_rows(person)):
+        parts += [heading(say.WORKS), table(say.STRATEGY_COLUMNS, strategies)]
+    parts += [heading(say.GAMES), table(say.GAME_COLUMNS, say.game_rows(person.games))]
+    return document(person.name, say.scope(world, len(person.games)), parts, STYLE)
+
+
+def _notes(logs: Sequence[RobotLog], others: Sequence[GameWorld]) -> Iterator[str]:
+    if others:
+        yield paragraph(say.others_words(others))
+    if len(logs) > 1:
+        yield paragraph(say.SAME_NAME)

@@ -1,0 +1,84 @@
+"""The parts of a session's page that staff read first: people, numbers, what staff did, faults."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from html import escape
+
+from tangy_tui.monitoring.attention import attention, calls_in
+from tangy_tui.monitoring.session import STATUS_WORDS, Session
+from tangy_tui.pages.page import heading, paragraph, table
+from tangy_tui.text import report as say
+from tangy_tui.text.times import day_and_time, time_of_day
+
+STYLE = """
+.called { display: flex; flex-wrap: wrap; gap: .15rem .5rem; margin: .3rem 0;
+  font-variant-numeric: tabular-nums; }
+.called s { color: var(--dim); }
+@media print { :root { font-size: 10pt; } body { font-size: 9.5pt; line-height: 1.35; }
+  h1 { font-size: 15pt; }
+  h2 { font-size: 12pt; margin: 10pt 0 2pt; } h3 { font-size: 10pt; margin: 6pt 0 2pt; }
+  th, td { padding: 1.5pt 5pt; } .wide { margin: 2pt 0; } .care { padding: 3pt 8pt; margin: 4pt 0; }
+  dl { margin: 4pt 0; } figure { margin: 4pt 0; } @page { margin: 12mm; } }
+"""
+
+
+def people_part(session: Session) -> Iterator[str]:
+    """Tell what each person got: requests, waits, visits, help, and what they did when asked."""
+    found = attention(session.replays)
+    answers = [answer for replay in session.replays for _, answer in replay.answers]
+    yield heading(say.PEOPLE)
+    yield table(
+        say.PEOPLE_COLUMNS,
+        (
+            (
+                session.name(one.id),
+                say.asked_words(one),
+                say.waited_words(one),
+                say.visits_words(one),
+                say.time_words(one),
+                say.helped_words(one, session.activity),
+                say.response_words([a for a in answers if a.person == one.id]),
+                str(one.won or ""),
+            )
+            for one in found.values()
+        ),
+    )
+
+
+def calls_part(session: Session) -> Iterator[str]:
+    """Tell the numbers that were called, game by game, in their order."""
+    told = [(replay.game, calls_in(replay)) for replay in session.replays]
+    told = [(game, calls) for game, calls in told if calls]
+    if not told:
+        return
+    yield heading(say.CALLED)
+    for game, calls in told:
+        if len(told) > 1:
+            yield f"<h3>Game {game.number}, {escape(day_and_time(game.at))}</h3>"
+        labels = say.call_labels(calls, session.activity)
+        cells = "".join(
+            f"<s>{escape(label)}</s>" if taken else f"<span>{escape(label)}</span>"
+            for label, taken in labels
+        )
+        yield f'<p class="called">{cells}</p>'
+        if any(taken for _, taken in labels):
+            yield f'<p class="dim">{escape(say.TAKEN_BACK)}</p>'
+
+
+def staff_part(session: Session) -> Iterator[str]:
+    """Tell what staff did, and when."""
+    rows = say.staff_rows(session.replays, session.name)
+    yield heading(say.STAFF)
+    yield table(say.STAFF_COLUMNS, rows) if rows else paragraph(say.NO_STAFF)
+
+
+def faults_part(session: Session) -> Iterator[str]:
+    """Tell each fault in a line: when, what, and what came of it."""
+    rows = [
+        (time_of_day(at), fault.name, say.fault_outcome(fault, STATUS_WORDS[fault.status]))
+        for at, fault in session.timed_faults
+    ]
+    if rows:
+        yield heading(say.FAULTS_SHORT)
+        yield table(say.FAULT_COLUMNS, rows)

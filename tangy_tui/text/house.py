@@ -1,0 +1,172 @@
+"""What staff read in the reports of a person over time and of a house over months."""
+
+from __future__ import annotations
+
+import calendar
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from tangy_profiles.game_world import GameWorld
+from tangy_tui.monitoring.fault import Fault
+from tangy_tui.monitoring.house import Month, PersonInGame, PersonOverTime, RobotLog
+from tangy_tui.monitoring.replay import GameReplay
+from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.report import (
+    WORLD_WORDS,
+    asked_words,
+    helped_words,
+    response_words,
+    time_words,
+    visits_words,
+    waited_words,
+)
+from tangy_tui.text.times import length, on_day
+
+MONTHS = "Month by month"
+MONTH_COLUMNS = (
+    "month", "games", "time", "people", "requests", "waited", "never visited", "faults",
+    "not played to the end",
+)  # fmt: skip
+WHO = "Who took part"
+WHO_COLUMNS = (
+    "person", "games", "last here", "asked for help", "waited", "visits", "time with Tangy",
+    "asked to do", "won",
+)  # fmt: skip
+GAMES = "Game by game"
+GAME_COLUMNS = (
+    "when", "asked for help", "waited", "visits", "time with Tangy", "help given", "asked to do",
+    "won",
+)  # fmt: skip
+WORKS = "What works"
+STRATEGY_COLUMNS = ("way of asking", "asked", "did it", "share")
+FAULTS = "What went wrong, and how often"
+FAULT_COLUMNS = ("fault", "times", "critical", "last")
+ROBOTS = "Robots"
+ROBOT_COLUMNS = ("robot", "games", "time", "faults")
+NOTHING = "No game of this kind stands in the log."
+NOT_THERE = "Not in this log"
+SAME_NAME = (
+    "People of several robots are taken for the same person where they were given the same name."
+)
+EACH_WORLD = "Only these games count here. Others: add --world {others}."
+
+
+def house_title(logs: Sequence[RobotLog]) -> str:
+    """Name the report of a house."""
+    return "The house" if len(logs) == 1 else f"The house, with {counted(len(logs), 'robot')}"
+
+
+def scope(world: GameWorld, games: int) -> str:
+    """Say which games a report tells of."""
+    return f"{counted(games, 'game')}, {WORLD_WORDS[world]}"
+
+
+def others_words(worlds: Sequence[GameWorld]) -> str:
+    """Say which other games there are, that are left out; "" where there are none."""
+    return EACH_WORLD.format(others=listed(worlds, "or")) if worlds else ""
+
+
+def month_rows(months: Sequence[Month]) -> Iterator[tuple[str, ...]]:
+    """Write one row for each month."""
+    for month in months:
+        people = month.people
+        every = [wait for person in people for wait in person.sum.waits]
+        never = [person.name for person in people if not person.sum.visits]
+        replays = [replay for _, replay in month.games]
+        faults = [fault for replay in replays for fault in replay.real_faults]
+        critical = sum(fault.critical for fault in faults)
+        yield (
+            f"{calendar.month_name[month.month]} {month.year}",
+            str(len(replays)),
+            length(sum(replay.seconds for replay in replays)),
+            str(len(people)),
+            str(sum(person.sum.requests for person in people)),
+            _usual(every),
+            ", ".join(never) or "nobody",
+            f"{len(faults)}, {critical} critical" if critical else str(len(faults)),
+            str(sum(not replay.game.smooth for replay in replays)),
+        )
+
+
+def _usual(waits: Sequence[float]) -> str:
+    if not waits:
+        return "\N{EN DASH}"
+    ordered = sorted(waits)
+    return f"{length(ordered[len(ordered) // 2])}, at most {length(ordered[-1])}"
+
+
+def who_rows(people: Sequence[PersonOverTime]) -> Iterator[tuple[str, ...]]:
+    """Write one row for each person."""
+    for person in people:
+        added = person.sum
+        yield (
+            person.name,
+            str(len(person.games)),
+            on_day(person.games[-1].at),
+            asked_words(added),
+            waited_words(added),
+            visits_words(added),
+            time_words(added),
+            response_words(person.answers),
+            str(added.won or ""),
+        )
+
+
+def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
+    """Write one row for each game of a person."""
+    for one in games:
+        got = one.attention
+        yield (
+            on_day(one.at),
+            asked_words(got),
+            waited_words(got),
+            visits_words(got),
+            time_words(got),
+            helped_words(got, one.log.activity(one.replay.game)),
+            response_words(one.answers),
+            "yes" if got.won else "",
+        )
+
+
+def strategy_rows(person: PersonOverTime) -> Iterator[tuple[str, ...]]:
+    """Write one row for each way of asking: how often it was used, and how often it worked."""
+    used: Counter[str] = Counter()
+    did: Counter[str] = Counter()
+    for answer in person.answers:
+        if answer.complied is not None:
+            used[answer.strategy] += 1
+            did[answer.strategy] += answer.complied
+    for strategy, times in used.most_common():
+        yield strategy, str(times), str(did[strategy]), f"{did[strategy] / times:.0%}"
+
+
+def fault_rows(games: Sequence[tuple[RobotLog, GameReplay]]) -> Iterator[tuple[str, ...]]:
+    """Write one row for each kind of fault, the most frequent first."""
+    found: dict[str, list[tuple[Fault, GameReplay]]] = {}
+    for _, replay in games:
+        for fault in replay.real_faults:
+            found.setdefault(fault.code, []).append((fault, replay))
+    for same in sorted(found.values(), key=len, reverse=True):
+        fault, replay = same[-1]
+        critical = "yes" if fault.critical else ""
+        yield fault.name, str(len(same)), critical, on_day(replay.game.at)
+
+
+def robot_rows(logs: Sequence[RobotLog], world: GameWorld) -> Iterator[tuple[str, ...]]:
+    """Write one row for each robot."""
+    for log in logs:
+        own = [replay for replay in log.replays if replay.game.world == world]
+        faults = sum(len(replay.real_faults) for replay in own)
+        yield log.label, str(len(own)), length(sum(r.seconds for r in own)), str(faults)
+
+
+def nobody_called(name: str, there: Sequence[str]) -> str:
+    """Say that nobody of a name took part in these games, and who did."""
+    who = f" {listed(there)} did." if there else ""
+    return f"Nobody called {name!r} took part in these games.{who}"
+
+
+def written_words(tables: Sequence[tuple[str, int]], place: object) -> str:
+    """Say which tables were written, with how many rows each."""
+    told = listed(f"{name} ({counted(rows, 'row')})" for name, rows in tables)
+    return f"Written to {place}: {told}."

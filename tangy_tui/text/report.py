@@ -1,0 +1,148 @@
+"""What staff read in the report of a session: people, waits, calls, what they did themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.game_records import MoveKind
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, GameWorld
+from tangy_tui.monitoring.attention import Attention, Call
+from tangy_tui.monitoring.fault import Fault
+from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
+from tangy_tui.text.faults import move_words
+from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.situations import Name
+from tangy_tui.text.times import length, time_of_day
+
+WORLD_WORDS: Mapping[GameWorld, str] = {
+    SIMULATED: "simulated",
+    BENCH: "on the bench of simulated devices",
+    LIVE: "live, with a robot",
+}
+"""Where a game was played, as reports have it."""
+
+PEOPLE = "Who got what"
+PEOPLE_COLUMNS = (
+    "person", "asked for help", "waited", "visits", "time with Tangy", "help given", "asked to do",
+    "won",
+)  # fmt: skip
+CALLED = "Numbers that were called"
+TAKEN_BACK = "crossed out: taken back"
+STAFF = "What staff did"
+STAFF_COLUMNS = ("when", "who", "what")
+NO_STAFF = "Staff did not step in."
+FAULTS_SHORT = "What went wrong"
+FAULT_COLUMNS = ("when", "what", "what came of it")
+LONG_WAIT = 300.0  # s after which a wait is something to look after
+STAFF_MOVES: Mapping[MoveKind, str] = {
+    "acknowledged": "saw",
+    "expert called": "called the expert",
+    "taught": "said what to do",
+    "accepted": "said that all was right",
+    "cleared": "cleared it",
+    "given up": "ended the game",
+}
+"""What people do about a fault."""
+
+
+def asked_words(one: Attention) -> str:
+    """Say how often a person asked for help."""
+    return counted(one.requests, "time") if one.requests else "no"
+
+
+def waited_words(one: Attention) -> str:
+    """Say how long a person waited: the median and the longest wait."""
+    if one.longest is None:
+        return "\N{EN DASH}"
+    if one.requests == 1 or one.median is None:
+        return length(one.longest) + (", not reached" if one.open else "")
+    more = ", once not reached" if one.open else ""
+    usual, most = length(one.median), length(one.longest)
+    return (usual if usual == most else f"{usual}, at most {most}") + more
+
+
+def visits_words(one: Attention) -> str:
+    """Say how often Tangy was with a person."""
+    return str(one.visits) if one.visits else "never"
+
+
+def time_words(one: Attention) -> str:
+    """Say how long Tangy was with a person."""
+    return length(one.seconds) if one.seconds else "\N{EN DASH}"
+
+
+def helped_words(one: Attention, activity: Activity | None) -> str:
+    """Say what Tangy did with a person, and how often."""
+    parts = []
+    for behaviour, times in one.helped.items():
+        words = behaviour if activity is None else activity.behaviour_words(behaviour)
+        parts.append(words if times == 1 else f"{words} ({times})")
+    return ", ".join(parts) or "\N{EN DASH}"
+
+
+def response_words(answers: Sequence[AnsweredRequest]) -> str:
+    """Say how often a person did what they were asked to do: "4 of 5", and what is not known."""
+    known = [one for one in answers if one.complied is not None]
+    if not answers:
+        return "\N{EN DASH}"
+    done = sum(bool(one.complied or one.followed) for one in known)
+    unknown = len(answers) - len(known)
+    words = f"did {done} of {len(known)}" if known else ""
+    more = f"{unknown} not seen" if unknown else ""
+    return ", ".join(filter(None, (words, more)))
+
+
+def care_lines(found: Iterable[Attention], name: Name) -> list[str]:
+    """Say which people staff should look after: who was not visited, and who waited in vain."""
+    people = list(found)
+    lines = []
+    if never := [name(one.id) for one in people if not one.visits]:
+        lines.append(f"Tangy never went to {listed(never)}.")
+    for one in people:
+        if one.open:
+            wait = length(max(one.open))
+            lines.append(f"{name(one.id)} was still waiting at the end, for {wait}.")
+        elif one.waits and max(one.waits) > LONG_WAIT:
+            lines.append(f"{name(one.id)} waited {length(max(one.waits))} for help.")
+    return lines
+
+
+def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str, str]]:
+    """Return what people did, and when: the time on the clock, who, and what."""
+    rows = []
+    for replay in replays:
+        for moment in replay.moments:
+            if (told := _staff_words(moment)) is not None:
+                who, words = told
+                rows.append((time_of_day(moment.at), who, with_names(words, replay, name)))
+    return rows
+
+
+def with_names(words: str, replay: GameReplay, name: Name) -> str:
+    """Put names in the place of the ids of the people of a game."""
+    there = {person: name(person) for person in replay.game.people}
+    return " ".join(there.get(word, word) for word in words.split(" "))
+
+
+def _staff_words(moment: Moment) -> tuple[str, str] | None:
+    what = moment.what
+    if isinstance(what, Noted):
+        return (what.by, what.what) if what.by else None
+    move = getattr(what, "move", None)
+    fault: Fault | None = getattr(what, "fault", None)
+    if move is None or fault is None or not move.by or move.kind not in STAFF_MOVES:
+        return None
+    return move.by, f"{STAFF_MOVES[move.kind]}: {fault.name}"
+
+
+def fault_outcome(fault: Fault, status: str) -> str:
+    """Say what came of a fault: the last that was done about it, and how it stands."""
+    told = [move_words(move) for move in fault.moves]
+    return "; ".join(dict.fromkeys([*told[-1:], status]))
+
+
+def call_labels(calls: Sequence[Call], activity: Activity | None) -> list[tuple[str, bool]]:
+    """Write each number that was called, with whether it was taken back."""
+    label = str if activity is None else activity.deck.label
+    return [(label(call.number), call.taken_back) for call in calls]

@@ -1,0 +1,197 @@
+"""What each person got of a game, and the tables for researchers: read from the log alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.attention import Attention, attention_in, calls_in
+from tangy_tui.monitoring.data_tables import HEAD, TABLES
+from tangy_tui.monitoring.games import Game, read_games
+from tangy_tui.monitoring.house import (
+    by_month,
+    last_session,
+    of_world,
+    people_over_time,
+    read_log,
+)
+from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted
+from tangy_tui.pages.house import house_page, person_page
+from tests.support.games import play
+
+DICTIONARY = Path(__file__).parents[2] / "docs" / "data-dictionary.md"
+BEGUN = datetime(2026, 3, 1, 10, tzinfo=UTC)
+LENGTH = 10.0  # s of each step
+
+
+def state(place: str, asking: Sequence[str] = (), closed: str | None = None) -> ActivityState:
+    users = tuple(UserState(id, "-", "AR" if id in asking else "ANR") for id in ("ann", "bob"))
+    return ActivityState(0, Situation("-", "ANR", "-"), place, None, users, closed)
+
+
+def game(**given: object) -> Game:
+    one = Game(
+        1, "g1", 1, BEGUN, "a", "p", "d", ("ann", "bob"), 0, 0, 0, BEGUN + timedelta(minutes=9),
+        9, None,
+    )  # fmt: skip
+    return replace(one, **given)  # type: ignore[arg-type]
+
+
+def replay_of(*states: ActivityState, behaviour: str = "b", target: str = "") -> GameReplay:
+    """Make a game of steps of ten seconds each, which lead from state to state."""
+    found = GameReplay(game())
+    for number, (before, after) in enumerate(pairwise(states), 1):
+        begun = found.seconds
+        found.seconds += LENGTH
+        done = Done(
+            number, begun, found.seconds, before, after, behaviour, target or None, "", True, True,
+            "", "", False,
+        )  # fmt: skip
+        found.moments.append(Moment(found.seconds, number, BEGUN.isoformat(), done))
+    return found
+
+
+def test_a_wait_ends_when_the_robot_is_there() -> None:
+    replay = replay_of(
+        state(FRONT), state(FRONT, ["ann"]), state(FRONT, ["ann"]), state("ann", ["ann"]),
+        state(FRONT),
+    )  # fmt: skip
+    ann, bob = attention_in(replay).values()
+    assert (ann.waits, ann.open, ann.visits, ann.last_visit) == ([20.0], [], 1, 30.0)
+    assert (bob.requests, bob.visits, bob.longest) == (0, 0, None)
+
+
+def test_who_is_not_reached_waits_to_the_end() -> None:
+    replay = replay_of(state(FRONT), state(FRONT, ["bob"]), state(FRONT, ["bob"]))
+    bob = attention_in(replay)["bob"]
+    assert (bob.waits, bob.open, bob.longest, bob.median) == ([], [10.0], 10.0, None)
+
+
+def test_a_request_that_is_closed_from_afar_was_no_visit() -> None:
+    replay = replay_of(state(FRONT), state(FRONT, ["ann"]), state(FRONT))
+    ann = attention_in(replay)["ann"]
+    assert (ann.waits, ann.visits) == ([10.0], 0)
+
+
+def test_who_asks_again_waits_again() -> None:
+    replay = replay_of(
+        state(FRONT, ["ann"]), state("ann", ["ann"]), state("ann", [], "ann"), state(FRONT),
+        state(FRONT, ["ann"]), state("ann", ["ann"]),
+    )  # fmt: skip
+    ann = attention_in(replay)["ann"]
+    assert (len(ann.waits), ann.visits) == (1, 2)
+
+
+def test_the_way_to_somebody_is_no_time_with_them() -> None:
+    there = state("ann", ["ann"])
+    replay = replay_of(state(FRONT), there, there, there, state(FRONT), target="ann")
+    ann = attention_in(replay)["ann"]
+    assert (ann.seconds, ann.helped) == (20.0, {"b": 2})
+
+
+def test_games_add_up() -> None:
+    one = Attention("ann", waits=[1.0], visits=1, seconds=2.0, last_visit=3.0)
+    one.add(Attention("ann", open=[9.0], visits=2, seconds=3.0, won=1))
+    assert (one.requests, one.longest, one.visits, one.seconds) == (2, 9.0, 3, 5.0)
+    assert (one.won, one.last_visit) == (1, 3.0)
+
+
+def test_a_call_that_was_taken_back_stays_and_says_so() -> None:
+    replay = GameReplay(game())
+    for number in (7, 8, 7):
+        done = Done(
+            1, 0.0, 1.0, state(FRONT), state(FRONT), "b", None, "", True, True, "", "", True,
+            (number,),
+        )  # fmt: skip
+        replay.moments.append(Moment(1.0, 1, "", done))
+    replay.moments.append(Moment(1.0, 1, "", Noted("-", "Ada", taken_back=7)))
+    assert [(c.number, c.taken_back) for c in calls_in(replay)] == [
+        (7, False), (8, False), (7, True),
+    ]  # fmt: skip
+
+
+def test_a_session_is_the_last_games_of_one_world_without_a_long_pause() -> None:
+    games = [
+        game(id="long ago", at=BEGUN - timedelta(hours=5), ended=BEGUN - timedelta(hours=4)),
+        game(id="first", at=BEGUN),
+        game(id="second", at=BEGUN + timedelta(minutes=20), ended=None),
+    ]
+    assert [one.id for one in last_session(games)] == ["first", "second"]
+    live = game(id="other", world="live", at=BEGUN + timedelta(minutes=21))
+    assert [one.id for one in last_session([*games, live])] == ["other"]
+    assert last_session([]) == []
+
+
+@pytest.fixture
+def data_folder(taught: Path) -> Path:
+    """A folder in which three demonstrations were given and learnt from."""
+    return taught
+
+
+@pytest.fixture
+def played(workspace: Workspace, learnt: Policy) -> Workspace:
+    """Two games, one with a fault, and a person who was given a name."""
+    with workspace.store.transaction():
+        play(workspace.supervision(learnt, 1, asks=True))
+        play(workspace.supervision(learnt, 2, asks=True, injections=["arm-failed@9"]))
+        workspace.store.rename("user1", "Rosa")
+    return workspace
+
+
+def test_every_column_of_the_tables_is_in_the_dictionary(played: Workspace) -> None:
+    text = DICTIONARY.read_text(encoding="utf-8")
+    log = read_log(played.store, {}, {"bingo": played.activity})
+    for table in TABLES:
+        section = text if table.name not in text else text[text.index(f"## {table.name}:") :]
+        known = set(re.findall(r"`(\w+)`", section.split("\n## ")[0])) | set(HEAD)
+        assert set(table.columns) <= known, table.name
+        rows = list(table.of([log]))
+        assert rows, table.name
+        assert all(set(row) == set(table.columns) for row in rows)
+        assert {row["world"] for row in rows} == {"simulated"}
+
+
+def test_the_tables_name_nobody(played: Workspace) -> None:
+    log = read_log(played.store, {}, {"bingo": played.activity})
+    rows = [row for table in TABLES for row in table.of([log])]
+    assert not [row for row in rows if "Rosa" in map(str, row.values())]
+
+
+def test_the_tables_say_what_the_log_says(played: Workspace) -> None:
+    log = read_log(played.store, {}, {"bingo": played.activity})
+    of = {table.name: list(table.of([log])) for table in TABLES}
+    assert len(of["games"]) == 2
+    assert len(of["people"]) == 2 * len(played.people)
+    assert len(of["steps"]) == sum(game.steps for game in read_games(played.store))
+    assert len(of["responses"]) == sum(int(row["asked"] or 0) for row in of["people"])
+
+
+def test_one_name_in_two_logs_is_one_person_and_no_name_is_nobody_twice(
+    played: Workspace,
+) -> None:
+    log = read_log(played.store, {"user2": "User 2"}, {"bingo": played.activity})
+    other = replace(log, robot="another", label="another")
+    people = people_over_time(of_world([log, other], "simulated"))
+    games = {person.name: len(person.games) for person in people if person.name == "Rosa"}
+    assert games == {"Rosa": 4}
+    assert [len(p.games) for p in people if p.name == "User 2"] == [2, 2]
+
+
+def test_the_pages_say_their_world_and_whose_games_they_leave_out(played: Workspace) -> None:
+    log = read_log(played.store, {}, {"bingo": played.activity})
+    people = people_over_time(of_world([log], "simulated"))
+    page = house_page([log], "simulated", people, ["live"])
+    assert "simulated" in page and "--world live" in page and "Rosa" in page
+    rosa = next(person for person in people if person.name == "Rosa")
+    assert "simulated" in person_page(rosa, [log], "simulated", [])
+    (month,) = by_month(of_world([log], "simulated"))
+    assert len(month.games) == 2
