@@ -29,6 +29,7 @@ from tangy_profiles.cards import CardState, Deck, read_deck
 from tangy_profiles.declared.vocabulary import declares
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.extensions import activity_files
+from tangy_profiles.game_rules import NO_RULES, GameRules, read_game_rules
 from tangy_profiles.persuading import PAPER, PersuasionConfig, read_persuading
 from tangy_profiles.phones import read_pronunciations
 from tangy_profiles.reading import Table, nearest, plain, read_toml
@@ -88,6 +89,7 @@ class Activity:
     names_pressing: bool = False
     """Whether the file says which strategies press people, or that none does."""
     asking: AskingLimits = field(default_factory=AskingLimits)
+    rules: GameRules = NO_RULES
 
     @cached_property
     def unread(self) -> str:
@@ -303,13 +305,14 @@ def read_activity(path: Path) -> Activity:
     behaviours = _behaviours(top, strategies, state_names)
     rules = _stage_rules(top, behaviours)
     listening = top.table("listening", optional=True)
+    deck = read_deck(top.table("deck"))
     activity = Activity(
         name=top.text("name"),
         title=top.text("title"),
         patience=top.number("patience", 0.1, 600),
         strategies=MappingProxyType(strategies),
         plain_strategy=plain_strategy,
-        deck=read_deck(top.table("deck")),
+        deck=deck,
         user_states=states,
         stage_rules=rules,
         behaviours=MappingProxyType(behaviours),
@@ -317,13 +320,12 @@ def read_activity(path: Path) -> Activity:
         source=path.name,
         persuasion=read_persuading(top.table("persuasion", optional=True)),
         object=top.text("object", "card"),
-        pronunciations=MappingProxyType(
-            read_pronunciations(top.table("pronunciations", optional=True))
-        ),
+        pronunciations=read_pronunciations(top.table("pronunciations", optional=True)),
         listening=listening.choice("mode", LISTENING, LISTENING[0]),
         names_pressing="pressing_strategies" in top,
         pressing=read_pressing(top, strategies),
         asking=read_asking_limits(top),
+        rules=read_game_rules(top, deck, tuple(strategies)),
     )
     listening.close()
     top.close()

@@ -9,11 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
+from itertools import combinations
+from operator import or_
 
 from tangy_profiles.reading import Table
 
-PATTERNS = ("row", "column", "diagonal", "four corners")
+PATTERNS = (
+    "row",
+    "column",
+    "diagonal",
+    "four corners",
+    "both diagonals",
+    "border",
+    "whole card",
+)
 CHECKERS = ("unread", "complete line", "wrong marks", "missing marks", "otherwise")
 
 
@@ -34,6 +44,8 @@ class Deck:
     rows: int
     free_centre: bool
     patterns: tuple[str, ...]
+    together: int = 1
+    """How many different ones of the patterns a card must have to win."""
 
     @cached_property
     def numbers(self) -> tuple[int, ...]:
@@ -62,6 +74,16 @@ class Deck:
             lines.append(sum(cell[i][width - 1 - i] for i in range(rows)))
         if "four corners" in self.patterns:
             lines.append(cell[0][0] | cell[0][-1] | cell[-1][0] | cell[-1][-1])
+        if "both diagonals" in self.patterns and rows == width:
+            lines.append(sum({cell[i][i] for i in range(rows)} | _falling(cell)))
+        if "border" in self.patterns:
+            rim = {*cell[0], *cell[-1], *(row[0] for row in cell), *(row[-1] for row in cell)}
+            lines.append(sum(rim))
+        if "whole card" in self.patterns:
+            lines.append(sum(sum(row) for row in cell))
+        if self.together > 1:
+            several = combinations(dict.fromkeys(lines), self.together)
+            lines = list(dict.fromkeys(reduce(or_, some) for some in several))
         return tuple(lines)
 
     @cached_property
@@ -108,6 +130,11 @@ class Deck:
         return any(cells & line == line for line in self.lines)
 
 
+def _falling(cell: Sequence[Sequence[int]]) -> set[int]:
+    """Return the cells of the diagonal that falls to the left."""
+    return {cell[row][len(cell) - 1 - row] for row in range(len(cell))}
+
+
 @dataclass(frozen=True)
 class CardState:
     """A user activity state and the checker that recognises it on a card."""
@@ -119,6 +146,11 @@ class CardState:
     not_yet: str = ""
     now: str = ""
     """What a host might do now, in a sentence; {name} is the person."""
+
+
+def winning_state(states: Sequence[CardState]) -> str:
+    """Return the user activity state of a card that wins, "" where there is none."""
+    return next((state.name for state in states if state.checker == "complete line"), "")
 
 
 def judge(states: Sequence[CardState], deck: Deck, marked: int, called: int) -> str:

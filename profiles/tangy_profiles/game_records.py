@@ -10,6 +10,7 @@ from tangy_profiles.codec import By, Count, Flat, Sparse, measurement, read
 from tangy_profiles.contacts import Role
 from tangy_profiles.demonstration import Step, not_the_same
 from tangy_profiles.drill_sheet import Sheet
+from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.health import Fact
 from tangy_profiles.records import EventRecord, kind
@@ -32,6 +33,17 @@ class GameBeginning(EventRecord):
     world: Sparse[GameWorld | None] = None
     asks_in_visit: Sparse[Count] = 0
     asks_in_game: Sparse[Count] = 0
+    patterns: Sparse[tuple[str, ...]] = ()
+    several: Sparse[bool] = False
+    visits: Sparse[bool] = False
+    strength: Sparse[str] = ""
+    absent: Sparse[tuple[str, ...]] = ()
+    """What staff chose for it, as `GamePlan` has it; empty where nothing was chosen."""
+
+    @property
+    def plan(self) -> GamePlan:
+        """What staff chose for it."""
+        return GamePlan(self.patterns, self.several, self.visits, self.strength, self.absent)
 
 
 @kind("game world set")
@@ -60,6 +72,40 @@ class GameResumed(EventRecord):
     game: str
     steps: Count
     by: str = ""
+
+
+ChangeKind = Literal[
+    "taken back",
+    "patterns chosen",
+    "others first",
+    "played on",
+    "won",
+    "claimed",
+    "left",
+    "came",
+    "visit",
+    "visit put off",
+    "visit over",
+]
+"""What can change in a game beside its behaviours."""
+
+
+@kind("game change")
+class GameChange(EventRecord):
+    """Something changed in a game after so many `steps`, beside its behaviours.
+
+    A call (`number`) was taken back; staff chose the `patterns` that follow; a winner (`person`)
+    waits until others were seen to, the game is played on for the next pattern, or is won;
+    a card was found to win, `person` left the game or came to it, or gets a visit unasked.
+    """
+
+    game: str
+    steps: Count
+    what: ChangeKind
+    person: Sparse[str] = ""
+    number: Sparse[Count] = 0
+    patterns: Sparse[tuple[str, ...]] = ()
+    by: Sparse[str] = ""
 
 
 @kind("game step")

@@ -6,7 +6,7 @@ the games before it in the same run, a world comes to where the game was.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Protocol
@@ -14,7 +14,14 @@ from typing import Protocol
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import GameBeginning, GameEnding, GameStep, StaffAction
+from tangy_profiles.game_records import (
+    GameBeginning,
+    GameChange,
+    GameEnding,
+    GameStep,
+    StaffAction,
+)
+from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_profiles.store import Event, Store
@@ -51,6 +58,14 @@ class Replayed(Protocol):
         """Carry out an action."""
         ...
 
+    def choose(self, plan: GamePlan) -> None:
+        """Play the next game by a plan."""
+        ...
+
+    def change(self, change: GameChange) -> None:
+        """Let something change in the game."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class PastGame:
@@ -64,6 +79,10 @@ class PastGame:
     """The games before it in the same run, the first one first."""
     taken_back: tuple[int, ...] = ()
     """The numbers that staff took back, in the order in which they did."""
+    run: tuple[GameBeginning, ...] = ()
+    """How the earlier games began."""
+    changes: tuple[GameChange, ...] = ()
+    """What changed in this game and the earlier ones beside their steps."""
 
     @property
     def world(self) -> GameWorld:
@@ -79,18 +98,28 @@ class PastGame:
         """
         if self.beginning.people != world.people:
             raise NotResumable(OTHER_PEOPLE)
-        for steps in (*self.earlier, self.steps):
+        games = zip((*self.run, self.beginning), (*self.earlier, self.steps), strict=True)
+        for beginning, steps in games:
+            world.choose(beginning.plan)
             world.begin()
-            for step in steps:
+            self._change(world.change, beginning.game, 0)
+            for number, step in enumerate(steps, start=1):
                 behaviour = world.activity.behaviours.get(step.behaviour)
                 if behaviour is None:
                     raise NotResumable(OTHERWISE)
                 world.execute(world.activity.action(behaviour, step.target, step.strategy))
                 if world.observe() != step.after:
                     raise NotResumable(OTHERWISE)
+                self._change(world.change, beginning.game, number)
         return world.observe()
 
-    def follow(self, tracker: Tracker) -> None:
+    def _change(self, change: Callable[[GameChange], object], game: str, steps: int) -> None:
+        """Let change what did in a game after so many steps."""
+        for one in self.changes:
+            if (one.game, one.steps) == (game, steps):
+                change(one)
+
+    def follow(self, tracker: Tracker, change: Callable[[GameChange], object]) -> None:
         """Bring the tracker of a game that has just begun to where the game was.
 
         Raises:
@@ -98,8 +127,10 @@ class PastGame:
         """
         if self.beginning.people != tracker.people:
             raise NotResumable(OTHER_PEOPLE)
-        if not all(tracker.follow(step) for step in self.steps):
-            raise NotResumable(OTHERWISE)
+        for number, step in enumerate(self.steps, start=1):
+            if not tracker.follow(step):
+                raise NotResumable(OTHERWISE)
+            self._change(change, self.beginning.game, number)
 
     def called(self, activity: Activity) -> list[int]:
         """Return the numbers that were called and count, in their order."""
@@ -150,7 +181,15 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
         for note in store.events(StaffAction, after=newest.seq)
         if note.record.game == game and note.record.taken_back
     )
-    return PastGame(newest.record, datetime.fromisoformat(at), own, tuple(earlier), taken)
+    changes = tuple(
+        event.record
+        for event in store.events(GameChange, after=run[0].seq)
+        if event.record.game in steps
+    )
+    began = tuple(event.record for event in run[:-1])
+    return PastGame(
+        newest.record, datetime.fromisoformat(at), own, tuple(earlier), taken, began, changes
+    )
 
 
 def _run(games: list[Event[GameBeginning]]) -> list[Event[GameBeginning]]:

@@ -42,6 +42,7 @@ class Tracker:
         }
         self._rules = [(self._test(rule), rule.stage) for rule in activity.stage_rules]
         self._openers = [r.behaviour for r in activity.stage_rules if r.condition == "before"]
+        self._closers = [r.behaviour for r in activity.stage_rules if r.condition == "after"]
         self._reading = {r.stage for r in activity.stage_rules if r.condition in READS}
         self._attending = {r.stage for r in activity.stage_rules if r.condition in ATTENDS}
         self._settled = activity.user_states[-1].name
@@ -68,6 +69,19 @@ class Tracker:
                 return lambda: since[pair] >= rule.at_least
             case _:
                 return lambda: True
+
+    @property
+    def finished(self) -> bool:
+        """Whether what the game is played for has come about: only its `after` stage is left."""
+        return any(self._counts[name] for name in self._closers)
+
+    def set_aside(self, person: str) -> None:
+        """Let a game go on that was finished by a person, who asks no more."""
+        for name in self._closers:
+            self._counts[name] = 0
+        if person in self.queue:
+            self.queue.remove(person)
+        self.seen = self.closed = None
 
     def begun(self) -> bool:
         """Whether all that must come `before` the activity (a greeting) has been done."""

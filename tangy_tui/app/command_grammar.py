@@ -11,9 +11,12 @@ import re
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import partial
 from typing import Literal, TypeAlias
 
+from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_rules import NO_RULES, GameRules
 from tangy_profiles.reading import plain
 from tangy_tui.app.game_commands import (
     AUTONOMY,
@@ -24,12 +27,14 @@ from tangy_tui.app.game_commands import (
     AskFor,
     CallAgain,
     CallExpert,
+    ChangePace,
     Clear,
     Drive,
     EndGame,
     GameCommand,
     GiveBack,
     GoOn,
+    LetWin,
     OneStep,
     Pause,
     Reached,
@@ -41,6 +46,7 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.keymap import ACTIONS
+from tangy_tui.app.plan_grammar import read_planned
 from tangy_tui.language.steering import WHILE_TEACHING, steering_of
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.remarks import answers_to
@@ -56,7 +62,7 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.verification import Reply, StopCommand
 
-Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases"]
+Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "patterns"]
 """What can be asked of the program; it changes nothing."""
 
 INQUIRIES: dict[str, Inquiry] = {
@@ -66,6 +72,7 @@ INQUIRIES: dict[str, Inquiry] = {
     **dict.fromkeys(("what", "what to do", "what should i do", "what should i do?"), "what to do"),
     "faults": "faults",
     "phrases": "phrases",
+    **dict.fromkeys(("patterns", "pattern", "which patterns"), "patterns"),
 }
 
 ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
@@ -149,6 +156,12 @@ FIXED: dict[str, GameCommand] = {
     **dict.fromkeys(("give back", "go on by yourself"), GiveBack()),
     **dict.fromkeys(("call again", "repeat the number", "say it again"), CallAgain()),
     **dict.fromkeys(("take back", "take the call back", "call back"), TakeBackCall()),
+    **dict.fromkeys(("faster", "call faster"), ChangePace(1)),
+    **dict.fromkeys(("slower", "call slower"), ChangePace(-1)),
+    **dict.fromkeys(("several winners", "more than one winner"), LetWin(several=True)),
+    "one winner": LetWin(several=False),
+    **dict.fromkeys(("visits on", "visit everybody"), LetWin(visits=True)),
+    "visits off": LetWin(visits=False),
     **dict.fromkeys(("seen", "acknowledge", "i have seen it"), Acknowledge()),
     **dict.fromkeys(("expert", "call expert", "call the expert"), CallExpert()),
     **dict.fromkeys(("reached", "i have reached them"), Reached()),
@@ -168,6 +181,13 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("autonomy alone", "Tangy does all of it by itself; or: unsure, each (it asks you first)"),
     ("call again", "says the last number once more"),
     ("take back", "the last number counts as not called"),
+    ("take back B-5", "that number counts as not called"),
+    ("pace 20", "calls every 20 s; or: faster, slower"),
+    ("check 17", "checks card 17 by all that was called; check 17 Rosa says whose it is"),
+    ("play for NAME, NAME", "what is played for next, one after the other; patterns lists them"),
+    ("several winners", "everybody who has it at the same call wins; or: one winner"),
+    ("visits on", "people who do not ask get visits, too; or: visits off"),
+    ("here NAME, left NAME", "somebody has come, or has left"),
     ("ask for NAME", "asks for help for somebody who cannot"),
     ("NAME: B", "tells what a person answers or does, in an activity of questions or the like"),
     ("answer: B", "the same, of the person whom the game waits for"),
@@ -192,7 +212,10 @@ _DIAL = re.compile(r"autonomy (\w+)")
 
 
 def read_command(
-    text: str, find_person: Callable[[str], str], game: Collection[str] = ()
+    text: str,
+    find_person: Callable[[str], str],
+    game: Collection[str] = (),
+    rules: GameRules = NO_RULES,
 ) -> GameCommand | None:
     """Return the command that words are; None: they are none of these.
 
@@ -200,6 +223,7 @@ def read_command(
         text: what was typed or heard.
         find_person: returns the id of a person by name or id.
         game: the words that the activity is called by.
+        rules: what the activity lets staff choose.
 
     Raises:
         TangyError: they are nearly one, and something in them is wrong; one sentence.
@@ -210,6 +234,8 @@ def read_command(
         return FIXED[words]
     if words == "stop" or stops(text, game):
         return StopRobot()
+    if (planned := read_planned(said, find_person, rules)) is not None:
+        return planned
     if dial := _DIAL.fullmatch(words):
         level = next((one for one in AUTONOMY if one == dial[1]), None)
         if level is None:
@@ -248,6 +274,14 @@ def _read_told(said: str, find_person: Callable[[str], str]) -> Tell | None:
             if told[2] == ":":
                 raise
     return None
+
+
+def command_reader(
+    activity: Activity, find_person: Callable[[str], str]
+) -> Callable[[str], GameCommand | None]:
+    """Return what reads commands in games of an activity, as `read_command` does."""
+    title = frozenset(activity.title.casefold().split())
+    return partial(read_command, find_person=find_person, game=title, rules=activity.rules)
 
 
 def nearest_command(text: str) -> str:

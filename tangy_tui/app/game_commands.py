@@ -85,6 +85,57 @@ class TakeBackCall:
 
 
 @dataclass(frozen=True, slots=True)
+class SetPace:
+    """Let so many s pass from one call to the next."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class ChangePace:
+    """Call faster (1) or slower (-1), by a step."""
+
+    by: Literal[1, -1]
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimCard:
+    """Check whether a card wins by all that was called; `person`, by id, says whose it is."""
+
+    card: int
+    person: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ChoosePatterns:
+    """Choose what is played for: in this game after the present pattern, else in the next."""
+
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class LetWin:
+    """Let several win, or one, and let people be visited unasked, or not; None: as it is."""
+
+    several: bool | None = None
+    visits: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ComesIn:
+    """Take a person, by id, for being here from now on."""
+
+    person: str
+
+
+@dataclass(frozen=True, slots=True)
+class GoesAway:
+    """Take a person, by id, for having left."""
+
+    person: str
+
+
+@dataclass(frozen=True, slots=True)
 class AskFor:
     """Ask for help for somebody, by id, who cannot ask."""
 
@@ -163,6 +214,13 @@ GameCommand: TypeAlias = (
     | SetAutonomy
     | CallAgain
     | TakeBackCall
+    | SetPace
+    | ChangePace
+    | ClaimCard
+    | ChoosePatterns
+    | LetWin
+    | ComesIn
+    | GoesAway
     | AskFor
     | Tell
     | VoidResponse
@@ -176,11 +234,46 @@ GameCommand: TypeAlias = (
     | EndGame
 )
 
-AT_ONCE = (StopRobot, Pause, GoOn, OneStep, TakeOver, GiveBack, SetAutonomy, AskFor, Tell, Confirm)
+AT_ONCE = (
+    StopRobot,
+    Pause,
+    GoOn,
+    OneStep,
+    TakeOver,
+    GiveBack,
+    SetAutonomy,
+    SetPace,
+    ChangePace,
+    AskFor,
+    Tell,
+    Confirm,
+)
 """What does not wait for its turn."""
 
+PLANNED = (
+    TakeBackCall,
+    SetPace,
+    ChangePace,
+    ClaimCard,
+    ChoosePatterns,
+    LetWin,
+    ComesIn,
+    GoesAway,
+)
+"""What staff change in a game beside what Tangy does; see `GamePlanControls`."""
 
-WITHOUT_GAME = (StopRobot, Pause, GoOn, SetAutonomy)
+WITHOUT_GAME = (
+    StopRobot,
+    Pause,
+    GoOn,
+    SetAutonomy,
+    SetPace,
+    ChangePace,
+    ChoosePatterns,
+    LetWin,
+    ComesIn,
+    GoesAway,
+)
 """What can be done before a game and after it, too."""
 
 NoteKind = Literal[
@@ -193,6 +286,18 @@ NoteKind = Literal[
     "autonomy",
     "call again",
     "call taken back",
+    "pace",
+    "claim right",
+    "claim wrong",
+    "patterns",
+    "several",
+    "one winner",
+    "visits",
+    "no visits",
+    "here before",
+    "away before",
+    "comes",
+    "goes",
     "asked for",
     "told",
     "voided",
@@ -209,7 +314,10 @@ NoteKind = Literal[
     "nothing called",
     "not told",
     "nothing to tell",
-    "called since",
+    "no cards",
+    "no such card",
+    "whose card",
+    "not called",
     "nothing to void",
     "not halted",
     "nobody named",

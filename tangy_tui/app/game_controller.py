@@ -21,6 +21,7 @@ from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.fault_commands import Result, attend
 from tangy_tui.app.game_commands import (
     AT_ONCE,
+    PLANNED,
     TAKEN_OVER,
     WITHOUT_GAME,
     Accept,
@@ -43,11 +44,11 @@ from tangy_tui.app.game_commands import (
     SetAutonomy,
     StaffNote,
     StopRobot,
-    TakeBackCall,
     TakeOver,
     Tell,
     VoidResponse,
 )
+from tangy_tui.app.plan_controls import GamePlanControls
 from tangy_tui.app.robot_controls import ENDED, RobotControls
 from tangy_tui.learning.verification import Verification
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -93,6 +94,7 @@ class GameController:
         """Is called then as well, by the thread that acts."""
         self.by = by
         self.robot = RobotControls(robot, self.note, lambda: self.stopped, paced=paced)
+        self.plan = GamePlanControls(supervision, self.note, by)
         self.answers = Answers(supervision)
         """What is said where Tangy asks, until it is verified: then it is for `answer`."""
         self._void = void
@@ -225,6 +227,8 @@ class GameController:
     def _dispatch(self, command: GameCommand) -> list[Result]:
         if self.supervision.over and not isinstance(command, WITHOUT_GAME):
             return [StaffNote("no game")]
+        if isinstance(command, PLANNED):
+            return self.plan.do(command)
         match command:
             case StopRobot(by):
                 return self._stop(by)
@@ -246,8 +250,6 @@ class GameController:
             case Confirm(yes):
                 return self._confirm(yes=yes)
             case AskFor() | Tell():
-                return [self.robot.do(command)]
-            case TakeBackCall():
                 return [self.robot.do(command)]
             case CallAgain() | Drive():
                 return [self.refuses(command) or self.robot.do(command)]

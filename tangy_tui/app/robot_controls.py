@@ -15,7 +15,6 @@ from tangy_tui.app.game_commands import (
     CallAgain,
     Drive,
     StaffNote,
-    TakeBackCall,
     Tell,
 )
 from tangy_tui.learning.policy import Decision
@@ -81,7 +80,7 @@ class RobotControls:
         behaviour = self._robot.activity.behaviours[decision.behaviour]
         return behaviour.effect == "draw" and self._robot.calls_in > 0
 
-    def do(self, command: CallAgain | TakeBackCall | AskFor | Tell | Drive) -> StaffNote:
+    def do(self, command: CallAgain | AskFor | Tell | Drive) -> StaffNote:
         """Do what only a robot that is there can do.
 
         Raises:
@@ -102,15 +101,9 @@ class RobotControls:
         if not robot.called:
             return StaffNote("nothing called")
         label = robot.activity.deck.label(robot.called[-1])
-        if isinstance(command, CallAgain):
-            self._note("staff had the last number called again")
-            robot.call_again()
-            return StaffNote("call again", label)
-        if command.label not in ("", label):
-            return StaffNote("called since", command.label)
-        number = robot.calls.take_back()
-        self._note(f"staff took a call back: {label}", number or 0)
-        return StaffNote("call taken back", label)
+        self._note("staff had the last number called again")
+        robot.call_again()
+        return StaffNote("call again", label)
 
     def _tell(self, robot: LiveWorld, command: Tell) -> StaffNote:
         """Let a game that is declared by facts know what a person says or does."""

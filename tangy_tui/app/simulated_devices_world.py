@@ -20,6 +20,7 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.behaviour import Action
 from tangy_profiles.effects import CORRECTS, DRIVES
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import BENCH, GameWorld
 from tangy_profiles.health import OK
 from tangy_profiles.state import ActivityState, Outcome
@@ -112,7 +113,9 @@ class BenchedWorld(LiveWorld):
         self._heard, self._listens = 0, False
         self._to_come = ToCome(self.injections, self._chance)
         self._pass_until(lambda: not self.commands.diagnosed(self.health()))
-        return super().begin()
+        state = super().begin()
+        self.bench.do("rules", away=sorted(self.away), **self._wins)
+        return state
 
     @property
     def still_to_come(self) -> list[str]:
@@ -237,6 +240,26 @@ class BenchedWorld(LiveWorld):
             self.bench.do("restart", device=remedy.device)
             self._switch_tablet()
         return super().recover(remedy)
+
+    def change(self, change: GameChange) -> None:
+        """Let something change in the game, of which the people on the bench know as well."""
+        super().change(change)
+        match change.what:
+            case "others first":
+                self.bench.do("rules", done=change.person)
+            case "played on":
+                self.bench.do("rules", done=change.person, **self._wins)
+            case "left" | "came":
+                self.bench.do("rules", away=sorted(self.away))
+            case "taken back":
+                self.bench.do("rules", taken_back=change.number)
+            case _:
+                pass  # that is between staff and the robot
+
+    @property
+    def _wins(self) -> dict[str, Any]:
+        deck = self.activity.deck
+        return {"patterns": list(deck.patterns), "together": deck.together}
 
     def _expert_comes(self, remedy: Remedy) -> float:
         began = self.link.time

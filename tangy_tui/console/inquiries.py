@@ -5,6 +5,7 @@ from __future__ import annotations
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, read_inquiry
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.learning.verification import NO_QUESTION, answer_help
+from tangy_tui.text.changes import patterns_line
 from tangy_tui.text.control import going_words
 from tangy_tui.text.faults import advice_lines, list_lines
 from tangy_tui.text.games import Demonstrations, why_lines
@@ -38,6 +39,8 @@ class Inquiries:
                 return advice_lines(self._game) or [NOTHING_WRONG]
             case "faults":
                 return list_lines(self._game.faults)
+            case "patterns":
+                return [patterns_line(self._game.world)]
         if word in ANSWERS:
             return [NO_QUESTION]
         if word in ("undo", "redo"):

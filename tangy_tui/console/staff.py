@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterable, Sequence
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.app.command_grammar import ANSWERS, nearest_command, read_command
+from tangy_tui.app.command_grammar import ANSWERS, command_reader, nearest_command
 from tangy_tui.app.game_commands import (
     AT_ONCE,
     CallExpert,
@@ -91,7 +91,7 @@ class StaffLines:
         """
         self._controller = controller
         self._game = controller.supervision
-        self._name, self._find_person = name, find_person
+        self._name = name
         self._read, self._speed, self._also = read, speed, also
         self._yes = yes or TypedYes()
         self._inquiries = Inquiries(controller, name, demonstrations)
@@ -104,7 +104,7 @@ class StaffLines:
         self._leaves = False  # staff ended it while no game could begin
         self._begun = threading.Event()
         self._tasks: queue.Queue[Callable[[], Sequence[Told]] | None] = queue.Queue()
-        self._title = frozenset(self._game.world.activity.title.casefold().split())
+        self._command = command_reader(self._game.world.activity, find_person)
 
     def run(self, games: int) -> bool:
         """Play games; return whether all came to their end, or to that which staff set."""
@@ -291,7 +291,7 @@ class StaffLines:
         if not begun or not taking_over or any_waits(early):  # a script goes on in its order
             return begun and not early
         try:  # until Tangy asks what to do next, commands alone are taken
-            command = read_command(line, self._find_person, self._title)
+            command = self._command(line)
         except TangyError:
             return not early
         return isinstance(command, AT_ONCE) if early else command is not None
@@ -299,7 +299,7 @@ class StaffLines:
     def _needs_no_game(self, line: str) -> bool:
         """Say whether a line is a STOP, or goes on or ends after one."""
         try:
-            command = read_command(line, self._find_person, self._title)
+            command = self._command(line)
         except TangyError:
             return False
         stopped = self._controller.stopped
@@ -337,7 +337,7 @@ class StaffLines:
             return
         controller = self._controller
         try:
-            command = read_command(text, self._find_person, self._title)
+            command = self._command(text)
         except TangyError as error:
             self._write(str(error))
             return

@@ -8,18 +8,19 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias
 from uuid import uuid4
 
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.declared.whom import Addressee, addressee
 from tangy_profiles.demonstration import Step
-from tangy_profiles.game_records import GameBeginning, GameEnding, GameResumed, GameStep
+from tangy_profiles.game_records import ChangeKind, GameBeginning, GameEnding, GameResumed, GameStep
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.person import Person
 from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
+from tangy_tui.interaction.changes import GameChanges
 from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
@@ -103,6 +104,7 @@ class Facilitation:
         """Is asked what to look at again; whoever looks behaviours over knows."""
         self.observation = Observation(world)
         """Observes the state, and looks again where one look is not to be believed."""
+        self.changes = GameChanges(world, store)
         self._answers = answers
         self._learnt = learnt
         self._activity = world.activity
@@ -131,6 +133,7 @@ class Facilitation:
                 world=self.world.played_in,
                 asks_in_visit=self._activity.asking.visit,
                 asks_in_game=self._activity.asking.game,
+                **self.changes.logged,
             )
         )
         return [GameBegun(self._game, self.games, state)]
@@ -141,6 +144,7 @@ class Facilitation:
         Raises:
             NotResumable: the world cannot come to where it was.
         """
+        self.changes.resume(past)
         state, game = self.world.resume(past), past.beginning
         self._enter(game.game, game.number, len(past.steps), state)
         self._store.append(GameResumed(game=self._game, steps=self.steps, by=by))
@@ -162,6 +166,8 @@ class Facilitation:
         """
         if self.over or self.question is not None:
             return []
+        if changed := self.changes.due(self._game, self.steps):
+            return [*changed]
         state = self.look()
         decision = self.policy.decide(state.situation)
         if self.steps >= MOST_STEPS:
@@ -193,6 +199,10 @@ class Facilitation:
             return self._end(reason)
         self.question = Unsure(state, decision, reason, remedy_for(decision))
         return self.question
+
+    def change(self, what: ChangeKind, **about: Any) -> GameEvent:
+        """Let something change in the game beside its behaviours, and tell it."""
+        return self.changes.make(self._game, self.steps, what, **about)
 
     def look(self) -> ActivityState:
         """Observe the state before a behaviour."""
@@ -308,7 +318,7 @@ class Facilitation:
         activity = self._activity
         choice = None
         if behaviour.persuades and target is not None:
-            without = activity.pressing if self._refused == target else ()
+            without = (activity.pressing if self._refused == target else ()) + self.changes.left_out
             same = self._said is not None and self._said[:2] == (target, behaviour.name)
             again = self._said[2] if same and self._said is not None else None
             choice = self.persuasion.choose(self.world.who(target), without, again=again)
@@ -382,11 +392,7 @@ class Facilitation:
         self.over = True
         count, seconds = self.world.pauses
         ending = GameEnding(
-            game=self._game,
-            steps=self.steps,
-            stopped=reason,
-            pauses=count,
-            paused_seconds=seconds,
+            game=self._game, steps=self.steps, stopped=reason, pauses=count, paused_seconds=seconds
         )
         self._store.append(ending)
         return GameEnded(self._game, self.steps, reason, (count, seconds))

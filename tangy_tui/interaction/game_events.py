@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 from tangy_profiles.behaviour import Action
 from tangy_profiles.beliefs import Beta
+from tangy_profiles.game_records import ChangeKind
 from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_tui.interaction.persuasion import StrategyChoice
 from tangy_tui.learning.online_learning import Lesson
@@ -107,6 +108,25 @@ class GameEnded:
     pauses: tuple[int, float] = (0, 0.0)
 
 
+@dataclass(frozen=True, slots=True)
+class GameChanged:
+    """Something changed in the game beside its behaviours; `said` is what the group is told."""
+
+    what: ChangeKind
+    person: str = ""
+    number: int = 0
+    patterns: tuple[str, ...] = ()
+    said: str = ""
+
+
 GameEvent: TypeAlias = (
-    GameBegun | ResumedGame | Acted | BeliefUpdated | Unsure | Taught | DoneOnce | GameEnded
+    GameBegun
+    | ResumedGame
+    | Acted
+    | BeliefUpdated
+    | Unsure
+    | Taught
+    | DoneOnce
+    | GameChanged
+    | GameEnded
 )

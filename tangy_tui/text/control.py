@@ -75,7 +75,9 @@ REFUSALS: tuple[NoteKind, ...] = (
     "no game",
     "no robot",
     "nothing called",
-    "called since",
+    "not called",
+    "no cards",
+    "no such card",
     "nothing to void",
     "not told",
     "nothing to tell",
@@ -117,7 +119,37 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "call again":
             return f"Tangy calls {about} again."
         case "call taken back":
-            return f"{about} counts as not called; say so to the group."
+            return f"{about} counts as not called."
+        case "pace":
+            return f"Tangy calls every {about} seconds."
+        case "claim right":
+            return f"Card {about} is right: it wins."
+        case "claim wrong":
+            return f"Card {about} is wrong: it does not win yet."
+        case "patterns":
+            return f"Played for: {about}."
+        case "several":
+            return "Everybody who has it at the same call wins."
+        case "one winner":
+            return "One person wins."
+        case "visits":
+            return "Tangy also visits people who do not ask."
+        case "no visits":
+            return "Tangy visits only people who ask."
+        case "comes":
+            return f"{name(about)} is here."
+        case "goes":
+            return f"{name(about)} has left."
+        case "here before":
+            return f"{name(about)} is here already."
+        case "away before":
+            return f"{name(about)} has left already."
+        case "no cards":
+            return "This activity has no cards, and no pace."
+        case "no such card":
+            return f"There is no card {about} in this game."
+        case "whose card":
+            return f"Nobody is known to have card {about}. Say whose it is, and Tangy goes there."
         case "asked for":
             return f"{name(about)} asks for help."
         case "told":
@@ -147,8 +179,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return "In this activity Tangy sees for itself what people do."
         case "nothing called":
             return "No number was called yet."
-        case "called since":
-            return f"{about} is not the last any more."
+        case "not called":
+            return f"{about} was not called."
         case "nothing to void":
             return f"There is no response of {name(about)} in this game that counts."
         case "not halted":

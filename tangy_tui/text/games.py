@@ -12,6 +12,7 @@ from tangy_tui.interaction.game_events import (
     BeliefUpdated,
     DoneOnce,
     GameBegun,
+    GameChanged,
     GameEnded,
     ResumedGame,
     Taught,
@@ -19,6 +20,7 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.learning.explanation import explain
 from tangy_tui.monitoring.fault import Diagnosed, Moved
+from tangy_tui.text.changes import changed_lines
 from tangy_tui.text.decisions import why_words
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
@@ -84,6 +86,8 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
             ]
         case DoneOnce(_, instead):
             return [f"   {once_words(activity.behaviour_words(instead))}"]
+        case GameChanged():
+            return changed_lines(event, activity, name)
         case GameEnded(pauses=pauses):
             return [ended_words(event), *paused_lines(*pauses)]
 

@@ -26,10 +26,15 @@ from tangy_tui.app.game_commands import (
     AUTONOMY,
     DIRECTIONS,
     AskFor,
+    ChoosePatterns,
+    ClaimCard,
+    ComesIn,
     Confirm,
     Drive,
     GameCommand,
+    GoesAway,
     SetAutonomy,
+    SetPace,
     StopRobot,
     TakeBackCall,
     Tell,
@@ -38,6 +43,7 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
 from tangy_tui.learning.verification import Reply, StopCommand
 
+BINGO = load_activity("bingo")
 LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
 
 
@@ -48,7 +54,7 @@ def find(wanted: str) -> str:
 
 
 def read(text: str) -> GameCommand | None:
-    return read_command(text, find, {"bingo"})
+    return read_command(text, find, {"bingo"}, BINGO.rules)
 
 
 @pytest.mark.parametrize(
@@ -67,6 +73,16 @@ def read(text: str) -> GameCommand | None:
         ("answer: honey", Tell(None, "honey")),
         ("the answer is honey", Tell(None, "honey")),
         ("answer the question", None),
+        ("take back B-5", TakeBackCall("B-5")),
+        ("pace 20", SetPace(20)),
+        ("Pace 7.5 seconds", SetPace(7.5)),
+        ("bingo 17", ClaimCard(17)),
+        ("Bingo 17 Rosa", ClaimCard(17, "user2")),
+        ("play for two lines, full card", ChoosePatterns(("two lines", "full card"))),
+        ("play on for an X", ChoosePatterns(("x",))),
+        ("here Rosa", ComesIn("user2")),
+        ("Rosa has left", GoesAway("user2")),
+        ("nobody left", None),
         ("drive left", Drive("left", 1.0)),
         ("drive forward 2.5 s", Drive("forward", 2.5)),
         ("autonomy each", SetAutonomy("each")),
@@ -87,7 +103,8 @@ def test_what_is_a_command_as_it_stands_is_read_as_that(words: str) -> None:
 def test_every_command_has_words_and_is_in_the_help() -> None:
     typed = {type(command) for command in FIXED.values()} | {
         type(read(text)) for text in ("stop", "autonomy each", "ask for Rosa", "void Rosa",
-                                      "Rosa: B", "drive left")
+                                      "Rosa: B", "drive left", "pace 9", "bingo 1", "play for x",
+                                      "here rosa", "left rosa")
     }  # fmt: skip
     assert typed == set(get_args(GameCommand)) - {Confirm}  # which is answered by Y or N
     helped = " ".join(key for key, _ in MEANINGS)
@@ -101,6 +118,9 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
         ("autonomy often", f"There is no autonomy 'often': {', '.join(AUTONOMY)}."),
         ("drive up", f"Tangy cannot drive 'up': {', '.join(DIRECTIONS)}."),
         ("drive left 60", "One line drives for 5 s at most."),
+        ("pace 90", "The pace is from 5 to 60 s."),
+        ("bingo seventeen", "Say bingo with the number of the card: 'bingo seventeen'."),
+        ("left Nobody", "There is nobody called 'Nobody'."),
     ],
 )
 def test_what_is_nearly_a_command_is_refused_in_a_sentence(text: str, said: str) -> None:

@@ -187,13 +187,13 @@ def test_an_end_typed_ahead_comes_after_what_was_typed_before_it(
             all_read.wait(20)
         return go_on(self)
 
-    def read(line: str, *more: Any) -> Any:
+    def read(line: str, **more: Any) -> Any:
         if line == LAST:
             all_read.set()
-        return read_command(line, *more)
+        return read_command(line, **more)
 
     monkeypatch.setattr(GameController, "next", late)
-    monkeypatch.setattr("tangy_tui.console.staff.read_command", read)
+    monkeypatch.setattr("tangy_tui.app.command_grammar.read_command", read)
     lines = "take over", "tell a joke", "y", "end", LAST
     written, ended = told(workspace, *lines, speed=100, after=begun)
     assert ended and "joke, as Ada said" in "\n".join(written)

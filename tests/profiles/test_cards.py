@@ -102,6 +102,13 @@ def test_lines_are_what_the_patterns_say(deck: Deck) -> None:
         wanted += [{(i, i) for i in range(rows)}, {(i, rows - 1 - i) for i in range(rows)}]
     if "four corners" in deck.patterns:
         wanted.append({(r, c) for r in (0, rows - 1) for c in (0, width - 1)})
+    everywhere = {(r, c) for r in range(rows) for c in range(width)}
+    if "both diagonals" in deck.patterns and rows == width:
+        wanted.append({(r, c) for r, c in everywhere if c in (r, rows - 1 - r)})
+    if "border" in deck.patterns:
+        wanted.append({(r, c) for r, c in everywhere if r in (0, rows - 1) or c in (0, width - 1)})
+    if "whole card" in deck.patterns:
+        wanted.append(everywhere)
     assert [cells_of(line, deck) for line in deck.lines] == wanted
     for cell, through in enumerate(deck.lines_through):
         assert through == tuple(line for line in deck.lines if line >> cell & 1)

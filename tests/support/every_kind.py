@@ -12,6 +12,7 @@ from tangy_profiles.game_records import (
     DrillHeld,
     EffectAccepted,
     FaultDiagnosed,
+    GameChange,
     GameResumed,
 )
 from tangy_profiles.game_world import BENCH
@@ -102,6 +103,8 @@ def _play(workspace: Workspace) -> None:
     called = {"game": fault.body["game"], "fault": fault.body["fault"], "role": "expert"}
     append_body(workspace.store, CallMade, {**called, "way": "command", "stage": "sent"})
     append_body(workspace.store, GameResumed, {"game": fault.body["game"], "steps": 1, "by": "Ada"})
+    changed = {"game": fault.body["game"], "steps": 1, "what": "played on", "person": "user1"}
+    append_body(workspace.store, GameChange, changed)
     GameWorlds(workspace.store).set(fault.body["game"], BENCH, "Ada")
     append_body(workspace.store, EffectAccepted, {**about, "fault": fault.body["fault"], **kept})
 

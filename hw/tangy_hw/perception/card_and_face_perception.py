@@ -10,7 +10,7 @@ import asyncio
 import time
 from collections.abc import AsyncIterator, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tangy_hw.drivers.camera import Frame
@@ -20,6 +20,7 @@ from tangy_hw.perception.cards.look import MOMENT, CardLook
 from tangy_hw.perception.faces.face_votes import FRAMES, Vote, vote
 from tangy_profiles.activity import Activity
 from tangy_profiles.card_face import USUAL_SEED
+from tangy_profiles.cards import Deck
 from tangy_profiles.robot import FaceModels
 
 if TYPE_CHECKING:
@@ -98,7 +99,12 @@ class CardAndFacePerception:
         await self._in_thread(self._load)
 
     async def read_card(
-        self, called: set[int], most: int = MOST_PICTURES, *, identify: bool = False
+        self,
+        called: set[int],
+        most: int = MOST_PICTURES,
+        *,
+        identify: bool = False,
+        wins: tuple[tuple[str, ...], int] | None = None,
     ) -> CardSeen:
         """Read the card that the robot looks at, from as many pictures as it takes.
 
@@ -106,11 +112,13 @@ class CardAndFacePerception:
             called: the numbers that were called.
             most: pictures that are looked at; it ends as soon as the state is told.
             identify: two of them are to show which card it is, whatever its state is.
+            wins: the shapes that win, and how many of them together, if not the activity's.
         """
         look: CardLook | None = None
         async for frame in _fresh(self.sensors, most, apart=MOMENT):
             reader = await self._in_thread(self._card_reader)
             if look is None:
+                reader.deck = self._deck(wins)
                 look = CardLook(reader, self._activity.user_states, called, identify=identify)
             if look.is_another(frame.pixels, frame.stamp):
                 look.add(await self._in_thread(reader.read, frame.image()))
@@ -129,6 +137,10 @@ class CardAndFacePerception:
             seen.cards,
             look.sure,
         )
+
+    def _deck(self, wins: tuple[tuple[str, ...], int] | None) -> Deck:
+        deck = self._activity.deck
+        return deck if wins is None else replace(deck, patterns=wins[0], together=wins[1])
 
     async def who(self, most: int = 2 * FRAMES) -> Vote:
         """Say whose face the robot looks at: so many pictures are looked at for a vote."""

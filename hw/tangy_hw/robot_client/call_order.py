@@ -33,11 +33,9 @@ class CallOrder:
         """Return the last numbers as they are shown, `most` at most, the newest first."""
         return tuple(map(deck.label, self.called[: -most - 1 : -1]))
 
-    def take_back(self) -> int | None:
-        """Take the last call back: its number counts as not called, and comes again last."""
-        if not self.called:
-            return None
-        number = self.called.pop()
-        self._numbers.remove(number)
-        self._numbers.append(number)
-        return number
+    def take_back(self, number: int) -> None:
+        """Take a call back: its number counts as not called, and comes again last."""
+        if number in self.called:
+            self.called.remove(number)
+            self._numbers.remove(number)
+            self._numbers.append(number)

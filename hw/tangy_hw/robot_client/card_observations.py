@@ -13,7 +13,7 @@ from tangy_hw.dealt_cards import CardDoubt, CardLearnt, DealtCards
 from tangy_hw.robot_client.commands import Commands
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
-from tangy_profiles.card_face import called_cells, numbers_of
+from tangy_profiles.card_face import LAST_CARD, called_cells, numbers_of
 from tangy_profiles.scene import CardView
 
 MOST_NEWS = 50  # that wait to be told
@@ -36,6 +36,8 @@ class CardObservations:
         """The numbers of all cards that were in sight last, wherever that was."""
         self.news: deque[CardDoubt | CardLearnt] = deque(maxlen=MOST_NEWS)
         """What staff are to be told, once for each visit; whoever tells it takes it out."""
+        self.wins: dict[str, Any] | None = None
+        """The shapes that win, and how many of them together, where not as the activity has it."""
         self._told: set[CardDoubt] = set()
         self._activity = activity
         self._commands = commands
@@ -64,7 +66,13 @@ class CardObservations:
         """
         person = person or place
         identify = self.dealt.card_of(person) is None
-        card = self._commands.do("card", called=called, after=after, identify=identify)
+        card = self._commands.do(
+            "card",
+            called=called,
+            after=after,
+            identify=identify,
+            **({} if self.wins is None else self.wins),
+        )
         self.view = None
         if self._is_doubted(person, card):
             return {**card, "card": None, "state": self._activity.unread}
@@ -89,6 +97,10 @@ class CardObservations:
         if card.get("sure", True) and self.dealt.learn(person, number):
             self.news.append(CardLearnt(person, number))
         return self.dealt.card_of(person) is None
+
+    def numbers_on(self, card: int) -> tuple[int, ...] | None:
+        """Return the numbers of a printed card, None where there is none of that number."""
+        return self._numbers(card) if 1 <= card <= LAST_CARD else None
 
     def asked_about(self, behaviour: Behaviour) -> tuple[int, ...] | None:
         """Return the numbers that a behaviour is to ask about; None: there are none to be seen."""

@@ -15,11 +15,12 @@ from random import Random
 from typing import Any, assert_never
 
 from tangy_hw.device_protocols import DeviceError, Picture, Pose
-from tangy_hw.robot_client.call_order import LAST_CALLS, CallOrder
+from tangy_hw.robot_client.call_order import CallOrder
 from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
+from tangy_hw.robot_client.live_plan import LivePlan
 from tangy_hw.robot_client.recovery_actions import RecoveryActions
 from tangy_hw.robot_client.response_watch import LOOK_SECONDS, watch_response
 from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
@@ -42,7 +43,7 @@ PACE_SECONDS = 30.0
 FACING = pi / 2  # the heading at which the robot faces the people
 
 
-class LiveWorld:
+class LiveWorld(LivePlan):
     """One room with a robot and people in it. `begin` each game, `execute` behaviours."""
 
     played_in: GameWorld = LIVE
@@ -73,7 +74,7 @@ class LiveWorld:
             pace: s from one call to the next.
             knows_faces: the robot looks who it is that it has come to.
         """
-        self.activity = activity
+        self.activity, self.own_deck = activity, activity.deck
         self.people = tuple(people)
         self.over = True
         self.broken = ""
@@ -92,6 +93,7 @@ class LiveWorld:
         self._begin()
 
     def _begin(self) -> None:
+        self._begin_plan()
         self.tracker = Tracker(self.activity, self.people)
         self.calls = CallOrder(self.activity.deck.shuffled(self._order.random))
         self.cards.begin()
@@ -117,7 +119,7 @@ class LiveWorld:
         """Go on where a game was interrupted, or raise NotResumable; cards are learnt anew."""
         for _ in range(past.beginning.number):
             self._begin()  # each game of the run has an order of its own
-        past.follow(self.tracker)
+        past.follow(self.tracker, self.change)
         self.calls.resume(past, self.activity)
         self.over = False
         self.commands.settle()
@@ -324,7 +326,8 @@ class LiveWorld:
     def state_on(self, card: dict[str, Any]) -> str | None:
         """Return the user activity state that a card shows, None if it is not told."""
         state = str(card["state"])
-        return state if state != self.activity.unread else None
+        seen = state if state != self.activity.unread else None
+        return self.judged(self.tracker.place, seen)
 
     def _executed(self, behaviour: Behaviour, succeeded: bool) -> None:
         """Let a behaviour count; whose request it settled is to take the sign down."""
@@ -340,16 +343,6 @@ class LiveWorld:
         if not is_down:  # it still asks: nothing that was done has ended that
             tracker.queue.insert(0, closed)
             tracker.closed, tracker.seen = None, seen
-
-    def call_again(self) -> None:
-        """Say and show the last number once more.
-
-        Raises:
-            DeviceError: it could not be said.
-        """
-        if self.called:
-            label, *before = self.calls.labels(self.activity.deck, LAST_CALLS + 1)
-            self.say(label, Picture(label, label, tuple(before)))
 
     # ------------------------------------------------------------------------ what is there
 

@@ -15,7 +15,7 @@ from tangy_hw.perception.card_and_face_perception import (
 )
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import aged
-from tangy_hw.robot_process.protocol import number_of
+from tangy_hw.robot_process.protocol import number_of, wins_of
 from tangy_profiles.worker_lines import Asked
 
 LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
@@ -43,6 +43,7 @@ class Looks:
             set(asked["called"]),
             int(asked.get("pictures", MOST_PICTURES)),
             identify=bool(asked.get("identify")),
+            wins=wins_of(asked),
         )
         self._looked = seen, time.monotonic()
         if seen.card is not None:

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tangy_hw.device_protocols import Picture, Pose
+from tangy_profiles.cards import PATTERNS
 from tangy_profiles.worker_lines import Asked, LineError
 
 OFTEN = frozenset(("drive", "picture", "settle", "sights", "wait"))
@@ -65,6 +66,20 @@ def text_of(asked: Mapping[str, Any], key: str, otherwise: str) -> str:
     if not isinstance(value, str):
         raise LineError(f"{key} must be a text.")
     return value
+
+
+def wins_of(asked: Mapping[str, Any]) -> tuple[tuple[str, ...], int] | None:
+    """Return the shapes that win, and how many of them together; None: as the activity has it.
+
+    Raises:
+        LineError: they are none that there are.
+    """
+    if "patterns" not in asked:
+        return None
+    shapes = asked["patterns"]
+    if not isinstance(shapes, list) or not shapes or not set(shapes) <= set(PATTERNS):
+        raise LineError("patterns must be shapes of a card.")
+    return tuple(shapes), max(1, int(number_of(asked, "together")))
 
 
 def picture_of(told: Mapping[str, Any]) -> Picture:

@@ -14,6 +14,7 @@ from typing import Any
 
 from tangy_sim.device_simulator import messages
 from tangy_sim.device_simulator.camera_streams import Film
+from tangy_sim.device_simulator.house_rules import tell
 from tangy_sim.device_simulator.lidar import Lidar
 from tangy_sim.device_simulator.world import BenchWorld
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
@@ -53,6 +54,7 @@ class DeviceServers:
             "lift": lambda told: {"lifted": world.lift(str(told["kind"]))},
             "mend": lambda told: {"lifted": world.mend(str(told["fault"]))},
             "restart": lambda told: {"works": world.restart(str(told["device"]))},
+            "rules": lambda told: tell(world.people, told),
             "read": lambda told: self._read(str(told["text"])),
             "ask": lambda told: self._asked(str(told["person"])),
             "truth": lambda _: {"truth": world.truth()},

@@ -101,7 +101,7 @@ class People:
         self._chance = Random(f"{seed}/faults").random
         rules = activity.stage_rules
         self._openers = {rule.behaviour for rule in rules if rule.condition == "before"}
-        self._agenda = Agenda()
+        self._agenda, self.away = Agenda(), set[str]()
         self.begin(0.0)
 
     def begin(self, now: float) -> None:
@@ -262,7 +262,7 @@ class People:
         self._after(ASKS, partial(self._ask, sitter))
 
     def _ask(self, sitter: Sitter) -> None:
-        if sitter.asks_since is None and not self.game.over:
+        if sitter.asks_since is None and not (self.game.over or sitter.id in self.away):
             sitter.asks_since = self.now
             if self._speak and "requests-silent" in self._faults:
                 self.game.spoken.append(sitter.id)

@@ -19,6 +19,8 @@ from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.speech import words
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_records import GameChange
+from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
@@ -79,6 +81,12 @@ class DeclaredWorld:
     def resume(self, past: PastGame) -> ActivityState:
         """Go on where a game was interrupted, or raise NotResumable."""
         return past.replay(self)
+
+    def choose(self, plan: GamePlan) -> None:
+        """Play the next game as ever: here is nothing to choose."""
+
+    def change(self, change: GameChange) -> None:
+        """Let nothing change beside the behaviours."""
 
     def observe(self) -> ActivityState:
         """Return the joint state as it is now."""

@@ -19,6 +19,7 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
+from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
@@ -30,7 +31,7 @@ AGREEING, MOST_LOOKS = 3, 5
 """Looks at a card that agree before it counts as read, and looks that are taken at most."""
 
 
-class SimulatedWorld:
+class SimulatedWorld(PlannedGame):
     """One room with a simulated group. `begin` starts each game; `execute` runs a behaviour.
 
     The same seed gives the same games on every machine. `players` are the people with their cards,
@@ -50,11 +51,13 @@ class SimulatedWorld:
         preferences: Preferences | None = None,
     ) -> None:
         self.activity = activity
+        self.own_deck = activity.deck
         self.people = tuple(people)
         self.users = users or load_users()
         self.preferences = preferences or preferences_in_turn(
             self.people, tuple(activity.strategies), self.users
         )
+        self.pace = self.users.call_seconds
         self._cards = Random(f"{seed}/cards")
         self._uniform = Random(f"{seed}/users").random
         self._compliance = Random(f"{seed}/compliance")
@@ -67,12 +70,13 @@ class SimulatedWorld:
 
     def begin(self) -> ActivityState:
         """Deal new cards and begin a game; return its first state."""
+        self._begin_plan()
         activity, deck, cards = self.activity, self.activity.deck, self._cards.random
         self.over = False
         self.tracker = Tracker(activity, self.people)
         self.order = deck.shuffled(cards)
         self._calls = 0
-        self._now = 0.0
+        self._now = self._sooner = 0.0
         self.players = {p: SimulatedUser(p, deck, deck.deal(cards)) for p in self.people}
         self._holders: dict[int, list[tuple[SimulatedUser, int]]] = {n: [] for n in deck.numbers}
         for player in self.players.values():
@@ -110,18 +114,20 @@ class SimulatedWorld:
         self._count(behaviour, succeeded)
         calls = 1.0 if beside == FRONT and tracker.place == FRONT else self.users.away_calls
         self._now += calls
+        if self.pace != self.users.call_seconds:
+            self._sooner += calls * (self.users.call_seconds - self.pace)
         if self._now >= self._next_ask:
             self._let_people_ask()
         elif not self._opened and tracker.begun():
             self._open()
         if self._in_view and tracker.seen is None and tracker.place in tracker.queue:
             self._look_at_card()  # the person beside the robot asks again, the card still there
-        return Outcome(succeeded, calls * self.users.call_seconds, numbers, response)
+        return Outcome(succeeded, calls * self.pace, numbers, response)
 
     @property
     def seconds(self) -> float:
         """The time in this game, in s."""
-        return self._now * self.users.call_seconds
+        return self._now * self.users.call_seconds - self._sooner
 
     def who(self, place: str) -> str:
         """Return who sits at somebody's place, which here is always theirs."""
@@ -229,8 +235,8 @@ class SimulatedWorld:
         self._next_ask = min(p.asks_at for p in self.players.values())
 
     def _ask(self, player: SimulatedUser) -> bool:
-        """Let a person ask for help; say whether that is seen, and new."""
-        return self.tracker.ask(player.id)
+        """Let a person ask for help who is here; say whether that is seen, and new."""
+        return player.id not in self.away and self.tracker.ask(player.id)
 
     def _respond(self, beside: str, action: Action) -> Response | None:
         """Let the person beside the robot respond to what was put to them."""
@@ -303,4 +309,36 @@ class SimulatedWorld:
         """Take one look at the card beside the robot."""
         self._in_view = True
         card = self.players[self.tracker.place]
-        self.tracker.seen = card.judged(self.activity.card_states)
+        self.tracker.seen = self.judged(card.id, card.judged(self.activity.card_states))
+
+    # ------------------------------------------------------------------- what staff change
+
+    @property
+    def called_now(self) -> tuple[int, ...]:
+        """The numbers that count as called."""
+        return tuple(self.order[: self._calls])
+
+    def numbers_on(self, card: int) -> tuple[int, ...] | None:
+        """Return the numbers of a card: here they are numbered by their places."""
+        holder = self.holder(card)
+        return self.players[holder].numbers if holder else None
+
+    def holder(self, card: int) -> str:
+        """Return who has a card, "" where there is none of that number."""
+        return self.people[card - 1] if 1 <= card <= len(self.people) else ""
+
+    def _play_pattern(self) -> None:
+        super()._play_pattern()
+        for player in getattr(self, "players", {}).values():
+            player.deck = self.activity.deck
+
+    def _take_back(self, number: int) -> None:
+        """Let a number count as not called: people take their markers off, and it comes last."""
+        if number not in self.order[: self._calls]:
+            return
+        self.order.remove(number)
+        self.order.append(number)
+        self._calls -= 1
+        for player, cell in self._holders[number]:
+            player.called &= ~(1 << cell)
+            player.marked &= ~(1 << cell)

@@ -273,7 +273,8 @@ class AskingPanel(Vertical):
             self._show(word)
             return
         try:
-            command = read_command(event.text, self._find_person, self._phrasebook.game)
+            rules = self._workspace.activity.rules
+            command = read_command(event.text, self._find_person, self._phrasebook.game, rules)
         except TangyError as error:
             self._return(event.text, str(error))
             return

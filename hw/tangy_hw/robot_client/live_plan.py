@@ -1,0 +1,89 @@
+"""What staff change in a live game, and how the robot has its part in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+
+from tangy_hw.device_protocols import DeviceError, Picture
+from tangy_hw.robot_client.call_order import LAST_CALLS, CallOrder
+from tangy_hw.robot_client.card_observations import CardObservations
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.help_requests import HelpRequestTracker
+from tangy_profiles.game_records import ChangeKind, GameChange
+from tangy_profiles.planned_game import PlannedGame
+
+SET_ASIDE: tuple[ChangeKind, ...] = ("others first", "played on", "left")
+"""Changes by which somebody's request is over, also while the sign stays up."""
+
+
+class LivePlan(PlannedGame):
+    """The part of a live world that staff change; see `LiveWorld`."""
+
+    link: RobotLink
+    cards: CardObservations
+    calls: CallOrder
+    requests: HelpRequestTracker
+    _due: float
+
+    def say(
+        self, speech: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
+    ) -> None:
+        """Say and show something."""
+        raise NotImplementedError
+
+    @property
+    def called_now(self) -> tuple[int, ...]:
+        """The numbers that count as called."""
+        return tuple(self.calls.called)
+
+    def numbers_on(self, card: int) -> tuple[int, ...] | None:
+        """Return the numbers of a printed card, None where there is none of that number."""
+        return self.cards.numbers_on(card)
+
+    def holder(self, card: int) -> str:
+        """Return who has a card, as far as that was said or seen."""
+        return self.cards.dealt.owner(card)
+
+    def _play_pattern(self) -> None:
+        super()._play_pattern()
+        deck = self.activity.deck
+        chosen = {"patterns": list(deck.patterns), "together": deck.together}
+        self.cards.wins = None if deck == self.own_deck else chosen
+
+    def set_pace(self, seconds: float) -> None:
+        """Let so many s pass from one call to the next, also until the call that is due."""
+        self._due += seconds - self.pace
+        self.pace = seconds
+
+    def change(self, change: GameChange) -> None:
+        """Let something change in the game; whose request is over by it is left at that."""
+        super().change(change)
+        if change.what in SET_ASIDE:
+            self.requests.set_aside(change.person)
+
+    def _asks(self, person: str) -> None:
+        super()._asks(person)
+        self.requests.ask_for(person)
+
+    def _asks_no_more(self, person: str) -> None:
+        super()._asks_no_more(person)
+        self.requests.set_aside(person)
+
+    def _take_back(self, number: int) -> None:
+        self.calls.take_back(number)
+
+    def announce(self, text: str) -> None:
+        """Say something to the group, and show it; what cannot be said is seen by the devices."""
+        with suppress(DeviceError):
+            self.say(text, Picture(text, "", self.calls.labels(self.activity.deck)))
+
+    def call_again(self) -> None:
+        """Say and show the last number once more.
+
+        Raises:
+            DeviceError: it could not be said.
+        """
+        if self.calls.called:
+            label, *before = self.calls.labels(self.activity.deck, LAST_CALLS + 1)
+            self.say(label, Picture(label, label, tuple(before)))

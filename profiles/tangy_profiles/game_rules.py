@@ -1,0 +1,187 @@
+"""The rules of one game that staff choose from: what fills a card, claims, visits; data of TOML."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from tangy_profiles.cards import PATTERNS, Deck
+from tangy_profiles.errors import ProfileError, TangyError
+from tangy_profiles.reading import Table, nearest, plain
+
+LONGEST_PACE, SHORTEST_PACE = 60.0, 5.0
+PACES = (5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0)
+"""The paces, in s from one call to the next, that faster and slower step through."""
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Cells that win: any of the `shapes`, or `together` different ones of them at once."""
+
+    name: str
+    label: str
+    shapes: tuple[str, ...]
+    together: int = 1
+
+    def on(self, deck: Deck) -> Deck:
+        """Return a deck whose cards win by this pattern."""
+        return replace(deck, patterns=self.shapes, together=self.together)
+
+
+@dataclass(frozen=True)
+class Strength:
+    """How strongly people may be spoken to: by which of the strategies."""
+
+    name: str
+    label: str
+    strategies: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class GameRules:
+    """What an activity offers staff to choose for a game; "" and 0 where it has no such rule.
+
+    `claim` is the word before the number of a card that is said to win; `claim_right`,
+    `claim_wrong`, `taken_back` and `play_on` are said to the group. Somebody who was not visited
+    for `unvisited` calls gets a visit, where staff want that.
+    """
+
+    patterns: tuple[Pattern, ...] = ()
+    claim: str = ""
+    claim_right: str = ""
+    claim_wrong: str = ""
+    taken_back: str = ""
+    play_on: str = ""
+    unvisited: int = 0
+    strengths: tuple[Strength, ...] = ()
+
+    def pattern(self, name: str) -> Pattern:
+        """Return a pattern by its name or label, in any case.
+
+        Raises:
+            TangyError: there is none of that name.
+        """
+        wanted = " ".join(name.split()).casefold()
+        for pattern in self.patterns:
+            if wanted in (pattern.name.casefold(), pattern.label.casefold()):
+                return pattern
+        known = [pattern.name for pattern in self.patterns]
+        raise TangyError(plain(f"There is no pattern {name!r}: {nearest(wanted, known)}"))
+
+    def left_out(self, strength: str) -> tuple[str, ...]:
+        """Return the strategies that are not used at a strength; "" leaves out none."""
+        chosen = next((one for one in self.strengths if one.name == strength), None)
+        known = {name for one in self.strengths for name in one.strategies}
+        return () if chosen is None else tuple(sorted(known - set(chosen.strategies)))
+
+
+NO_RULES = GameRules()
+
+
+@dataclass(frozen=True)
+class GamePlan:
+    """What staff chose for a game: nothing of it changes the game that the activity has.
+
+    `patterns` are played for one after another; "" as a strength leaves all strategies.
+    """
+
+    patterns: tuple[str, ...] = ()
+    several: bool = False
+    """Whether others who have the pattern at the same call win as well."""
+    visits: bool = False
+    """Whether somebody who was not visited for a while gets a visit."""
+    strength: str = ""
+    absent: tuple[str, ...] = ()
+    """Who takes part and has not come yet."""
+
+
+@dataclass
+class Patterns:
+    """The patterns of one game: the present one, and those that follow."""
+
+    rules: GameRules
+    deck: Deck
+    left: list[Pattern] = field(default_factory=list)
+    present: Pattern | None = None
+
+    @classmethod
+    def of(cls, rules: GameRules, deck: Deck, names: Sequence[str]) -> Patterns:
+        """Return those of a plan; without names the deck is as the activity has it."""
+        chosen = [rules.pattern(name) for name in names]
+        return cls(rules, deck, chosen[1:], chosen[0] if chosen else None)
+
+    @property
+    def played(self) -> Deck:
+        """The deck whose cards win by the present pattern."""
+        return self.deck if self.present is None else self.present.on(self.deck)
+
+    def follow_with(self, names: Sequence[str]) -> None:
+        """Choose what is played for after the present pattern."""
+        self.left = [self.rules.pattern(name) for name in names]
+
+    def advance(self) -> bool:
+        """Go on to the next pattern; say whether there was one."""
+        if not self.left:
+            return False
+        self.present = self.left.pop(0)
+        return True
+
+
+def read_game_rules(top: Table, deck: Deck, strategies: Sequence[str]) -> GameRules:
+    """Read what an activity offers to choose from; a file may have none of it.
+
+    Raises:
+        ProfileError: it has a mistake.
+    """
+    patterns = tuple(_read_pattern(entry, deck) for entry in top.tables("patterns", optional=True))
+    strengths = tuple(
+        _read_strength(entry, strategies) for entry in top.tables("strengths", optional=True)
+    )
+    rules = top.table("rules", optional=True)
+    found = GameRules(
+        patterns=patterns,
+        strengths=strengths,
+        claim=rules.text("claim", ""),
+        claim_right=_said(rules, "claim_right", ("card", "pattern")),
+        claim_wrong=_said(rules, "claim_wrong", ("card", "pattern")),
+        taken_back=_said(rules, "taken_back", ("call",)),
+        play_on=_said(rules, "play_on", ("pattern",)),
+        unvisited=rules.whole("unvisited", 0, 999, 0),
+    )
+    rules.close()
+    names = [one.name for one in patterns] + [one.name for one in strengths]
+    if len(set(names)) < len(names):
+        raise top.wrong("patterns", "two patterns or strengths have the same name.")
+    return found
+
+
+def _read_pattern(entry: Table, deck: Deck) -> Pattern:
+    name = entry.text("name")
+    shapes = entry.words("shapes", PATTERNS)
+    together = entry.whole("together", 1, 4, 1)
+    pattern = Pattern(name, entry.text("label", name), shapes, together)
+    entry.close()
+    if not pattern.on(deck).lines:
+        raise entry.wrong("shapes", "make no pattern on this card.")
+    return pattern
+
+
+def _read_strength(entry: Table, strategies: Sequence[str]) -> Strength:
+    name = entry.text("name")
+    chosen = entry.words("strategies", strategies)
+    if not chosen:
+        raise entry.wrong("strategies", "must hold at least one strategy.")
+    strength = Strength(name, entry.text("label", name), chosen)
+    entry.close()
+    return strength
+
+
+def _said(table: Table, key: str, slots: Sequence[str]) -> str:
+    """Read a sentence that is said, in which nothing but the slots is filled."""
+    text = table.text(key, "")
+    try:
+        text.format(**dict.fromkeys(slots, ""))
+    except (KeyError, IndexError, ValueError):
+        wanted = " and ".join("{%s}" % slot for slot in slots)  # noqa: UP031 - braces as they are
+        raise ProfileError(str(table.wrong(key, f"can have {wanted} filled in alone."))) from None
+    return text

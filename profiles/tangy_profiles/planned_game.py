@@ -1,0 +1,192 @@
+"""What staff change in a game beside its behaviours: its pattern, a call, a claim, who is here.
+
+Both worlds have this part in common. Each change is a `GameChange`, so that the log has it, and a
+game that was interrupted comes to where it was.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.card_face import called_cells
+from tangy_profiles.cards import Deck, winning_state
+from tangy_profiles.game_rules import GamePlan, Patterns
+from tangy_profiles.state import FRONT
+
+if TYPE_CHECKING:
+    from tangy_profiles.game_records import ChangeKind, GameChange
+    from tangy_profiles.tracker import Tracker
+
+
+class PlannedGame:
+    """A world's game by the plan that staff made; `choose` one before it begins."""
+
+    activity: Activity
+    """What is played, with the deck of the present pattern."""
+    own_deck: Deck
+    """The deck as the activity has it."""
+    people: tuple[str, ...]
+    tracker: Tracker
+    pace: float
+    """From one call to the next, in s."""
+    game_plan = GamePlan()
+    patterns: Patterns
+    winner = ""
+    """Who has won, where others are seen to before the game goes on or ends."""
+    vouched: frozenset[str] = frozenset()
+    """Whose card wins, whatever is seen of it."""
+    away: frozenset[str] = frozenset()
+    """Who has left, or has not come yet."""
+    visiting = ""
+    """Who gets a visit without having asked, "" where nobody does."""
+    _visited: dict[str, int]
+
+    def choose(self, plan: GamePlan) -> None:
+        """Play the next game by a plan.
+
+        Raises:
+            TangyError: it names a pattern that the activity has not.
+        """
+        Patterns.of(self.activity.rules, self.activity.deck, plan.patterns)
+        self.game_plan = plan
+
+    def _begin_plan(self) -> None:
+        """Begin a game by the plan."""
+        self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
+        self.winner, self.visiting = "", ""
+        self.vouched, self.away = frozenset(), frozenset(self.game_plan.absent)
+        self._visited = {}
+        self._play_pattern()
+
+    def _play_pattern(self) -> None:
+        """Play for the present pattern."""
+        if self.activity.deck != self.patterns.played:
+            self.activity = replace(self.activity, deck=self.patterns.played)
+
+    @property
+    def plan_away(self) -> frozenset[str]:
+        """Who is not here when the next game begins."""
+        return frozenset(self.game_plan.absent)
+
+    def set_pace(self, seconds: float) -> None:
+        """Let so many s pass from one call to the next."""
+        self.pace = seconds
+
+    # ---------------------------------------------------------------- what a game shows of it
+
+    @property
+    def called_now(self) -> tuple[int, ...]:
+        """The numbers that count as called."""
+        raise NotImplementedError
+
+    def numbers_on(self, card: int) -> tuple[int, ...] | None:
+        """Return the numbers of a card row by row, None where there is no such card."""
+        raise NotImplementedError
+
+    def holder(self, card: int) -> str:
+        """Return who has a card, "" where nobody is known to."""
+        raise NotImplementedError
+
+    def wins(self, card: int) -> bool | None:
+        """Say whether a card wins by the numbers that were called; None: there is none."""
+        numbers = self.numbers_on(card)
+        if numbers is None:
+            return None
+        deck = self.patterns.played
+        return deck.wins(called_cells(deck, numbers, set(self.called_now)))
+
+    def judged(self, place: str, state: str | None) -> str | None:
+        """Return how the person at a place is doing: a claim that was right counts as a win."""
+        return winning_state(self.activity.user_states) if place in self.vouched else state
+
+    @property
+    def due(self) -> tuple[ChangeKind, str] | None:
+        """Return what is to change before the next behaviour, and for whom; None: nothing is."""
+        tracker = self.tracker
+        if tracker.finished:
+            winner = tracker.place if tracker.place in tracker.queue else tracker.queue[:1]
+            person = winner if isinstance(winner, str) else "".join(winner)
+            if self.game_plan.several and set(tracker.queue) - {person}:
+                return "others first", person
+            return ("played on", person) if self.patterns.left else None
+        if self.winner and not tracker.queue:
+            return ("played on" if self.patterns.left else "won"), self.winner
+        return self._visit_due() if self.game_plan.visits else None
+
+    def _visit_due(self) -> tuple[ChangeKind, str] | None:
+        """Return whose visit is due or is put off, for it costs nobody a request."""
+        queue, place, calls = self.tracker.queue, self.tracker.place, len(self.called_now)
+        if place != FRONT:
+            self._visited[place] = calls
+        if self.visiting:
+            if self.visiting in queue and place != self.visiting and len(queue) > 1:
+                return "visit put off", self.visiting
+            return None if self.visiting in queue else ("visit over", self.visiting)
+        if queue or place != FRONT or not self.tracker.begun() or not self.activity.rules.unvisited:
+            return None
+        here = [person for person in self.people if person not in self.away]
+        longest = min(here, key=lambda person: self._visited.get(person, 0), default="")
+        waited = calls - self._visited.get(longest, 0)
+        return ("visit", longest) if longest and waited >= self.activity.rules.unvisited else None
+
+    # ---------------------------------------------------------------------- what changes in it
+
+    def change(self, change: GameChange) -> None:
+        """Let something change in the game."""
+        person = change.person
+        match change.what:
+            case "patterns chosen":
+                self.patterns.follow_with(change.patterns)
+            case "others first":
+                self.winner = person
+                self.vouched -= {person}
+                self.tracker.set_aside(person)
+            case "played on":
+                self.winner = ""
+                self.vouched = frozenset()
+                self.tracker.set_aside(person)
+                if self.patterns.advance():
+                    self._play_pattern()
+            case "won":
+                self.winner = ""
+                self._wins_by_word(person)
+            case "claimed":
+                self._wins_by_word(person)
+            case "left":
+                self.away |= {person}
+                self._asks_no_more(person)
+            case "came":
+                self.away -= {person}
+            case "visit":
+                self.visiting = person
+                self._asks(person)
+            case "visit put off":
+                self.visiting = ""
+                self._asks_no_more(person)
+            case "visit over":
+                self.visiting = ""
+            case "taken back":
+                self._take_back(change.number)
+
+    def _wins_by_word(self, person: str) -> None:
+        """Let a person win whatever is seen of their card; the robot goes there to celebrate."""
+        self.vouched |= {person}
+        self._asks(person)
+
+    def _asks(self, person: str) -> None:
+        """Let a person ask for help who did not do so."""
+        self.tracker.ask(person)
+
+    def _asks_no_more(self, person: str) -> None:
+        """Let a person's request be over."""
+        if person in self.tracker.queue:
+            self.tracker.queue.remove(person)
+
+    def _take_back(self, number: int) -> None:
+        """Let a number count as not called."""
+        raise NotImplementedError
+
+    def announce(self, text: str) -> None:
+        """Say something to the group, where there is something that speaks."""

@@ -1,0 +1,55 @@
+"""What the bench's people are told between the robot's sentences: what wins, who is done, who left.
+
+In a room people know that from the host, or from each other; the robot's words need not say it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from tangy_profiles.cards import PATTERNS
+from tangy_sim.device_simulator.people import People
+
+
+def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
+    """Tell people what holds from now on.
+
+    Args:
+        people: the group.
+        told: `patterns` and `together` of what wins; `done`, whose sign comes down; `away`, who is
+            not here; `taken_back`, a number that counts as not called. Each may be left out.
+
+    Raises:
+        KeyError: somebody or some pattern is not known.
+    """
+    if "patterns" in told:
+        _play_for(people, tuple(map(str, told["patterns"])), int(told["together"]))
+    if "done" in told:
+        people.sitters[str(told["done"])].asks_since = None
+    if "away" in told:
+        people.away = {people.sitters[str(person)].id for person in told["away"]}
+        for person in people.away:
+            people.sitters[person].asks_since = None
+    if "taken_back" in told:
+        _take_back(people, int(told["taken_back"]))
+    return {}
+
+
+def _play_for(people: People, patterns: tuple[str, ...], together: int) -> None:
+    if unknown := set(patterns) - set(PATTERNS):
+        raise KeyError(*unknown)
+    deck = replace(people.activity.deck, patterns=patterns, together=together)
+    people.activity = replace(people.activity, deck=deck)
+    for sitter in people.sitters.values():
+        sitter.player.deck = deck
+
+
+def _take_back(people: People, number: int) -> None:
+    if number in people.game.called:
+        people.game.called.remove(number)
+    for sitter in people.sitters.values():
+        if (cell := sitter.player.cell.get(number)) is not None:
+            sitter.player.called &= ~(1 << cell)
+            sitter.player.marked &= ~(1 << cell)

@@ -1,0 +1,158 @@
+"""What staff change in a game by themselves: pace, calls, claims, patterns, who is here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, assert_never
+
+from tangy_profiles.game_rules import LONGEST_PACE, PACES, SHORTEST_PACE
+from tangy_profiles.planned_game import PlannedGame
+from tangy_tui.app.fault_commands import Result
+from tangy_tui.app.game_commands import (
+    ChangePace,
+    ChoosePatterns,
+    ClaimCard,
+    ComesIn,
+    GoesAway,
+    LetWin,
+    SetPace,
+    StaffNote,
+    TakeBackCall,
+)
+
+if TYPE_CHECKING:
+    from tangy_tui.monitoring.supervision import Supervision
+
+PlanCommand = (
+    TakeBackCall | SetPace | ChangePace | ClaimCard | ChoosePatterns | LetWin | ComesIn | GoesAway
+)
+
+
+class GamePlanControls:
+    """The plan of the games that a supervision runs; where nothing can be planned, each says so."""
+
+    def __init__(self, supervision: Supervision, note: Callable[..., None], by: str) -> None:
+        """Take what runs the games; `note` logs what staff (`by`) did."""
+        self._supervision = supervision
+        self._note = note
+        self._by = by
+
+    @property
+    def world(self) -> PlannedGame | None:
+        """The world, where staff can plan its games."""
+        return self._supervision.game.changes.world
+
+    def do(self, command: PlanCommand) -> list[Result]:
+        """Carry out a command.
+
+        Raises:
+            TangyError: it cannot be done, or not be logged.
+        """
+        world = self.world
+        if world is None:
+            return [StaffNote("no cards")]
+        match command:
+            case SetPace(seconds):
+                return [self._pace(world, seconds)]
+            case ChangePace(by):
+                return [self._pace(world, next_pace(world.pace, by))]
+            case TakeBackCall(label):
+                return self._take_back(world, label)
+            case ClaimCard(card, person):
+                return self._claim(world, card, person)
+            case ChoosePatterns(names):
+                return self._choose(world, names)
+            case LetWin(several, visits):
+                return self._let_win(world, several, visits)
+            case ComesIn(person):
+                if person not in (world.plan_away if self._idle else world.away):
+                    return [StaffNote("here before", person)]
+                return self._moved(world, person, here=True)
+            case GoesAway(person):
+                if person in (world.plan_away if self._idle else world.away):
+                    return [StaffNote("away before", person)]
+                return self._moved(world, person, here=False)
+            case forgotten:
+                assert_never(forgotten)
+
+    @property
+    def _idle(self) -> bool:
+        return self._supervision.over
+
+    def _pace(self, world: PlannedGame, seconds: float) -> StaffNote:
+        pace = min(LONGEST_PACE, max(SHORTEST_PACE, seconds))
+        world.set_pace(pace)
+        self._note(f"staff set the pace: {pace:g} s")
+        return StaffNote("pace", f"{pace:g}")
+
+    def _take_back(self, world: PlannedGame, label: str) -> list[Result]:
+        """Take a call back, the last one or that of a label, and tell the group."""
+        deck, called = world.activity.deck, world.called_now
+        if not called:
+            return [StaffNote("nothing called")]
+        number = next((n for n in called if deck.label(n).casefold() == label.casefold()), None)
+        if label and number is None:
+            return [StaffNote("not called", label)]
+        number = called[-1] if number is None else number
+        changed = self._supervision.game.change("taken back", number=number, by=self._by)
+        self._note(f"staff took a call back: {deck.label(number)}", number)
+        return [StaffNote("call taken back", deck.label(number)), changed]
+
+    def _claim(self, world: PlannedGame, card: int, person: str) -> list[Result]:
+        """Check a card by all that was called, and say to the group what came of it."""
+        wins = world.wins(card)
+        if wins is None:
+            return [StaffNote("no such card", str(card))]
+        rules, present = world.activity.rules, world.patterns.present
+        pattern = present or next(iter(rules.patterns), None)
+        words = rules.claim_right if wins else rules.claim_wrong
+        holder = person or world.holder(card)
+        self._note(f"staff checked card {card}: {'right' if wins else 'wrong'}")
+        world.announce(words.format(card=card, pattern=pattern.label if pattern else ""))
+        told: list[Result] = [StaffNote("claim right" if wins else "claim wrong", str(card))]
+        if wins and holder:
+            told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
+        elif wins:
+            told.append(StaffNote("whose card", str(card)))
+        return told
+
+    def _choose(self, world: PlannedGame, names: tuple[str, ...]) -> list[Result]:
+        rules = world.activity.rules
+        patterns = tuple(rules.pattern(name).name for name in names)
+        labels = ", ".join(rules.pattern(name).label for name in patterns)
+        if self._idle:
+            world.choose(replace(world.game_plan, patterns=patterns))
+        else:
+            self._supervision.game.change("patterns chosen", patterns=patterns, by=self._by)
+        self._note(f"staff chose what is played for: {', '.join(patterns)}")
+        return [StaffNote("patterns", labels)]
+
+    def _let_win(
+        self, world: PlannedGame, several: bool | None, visits: bool | None
+    ) -> list[Result]:
+        plan, told = world.game_plan, list[Result]()
+        if several is not None:
+            plan = replace(plan, several=several)
+            told.append(StaffNote("several" if several else "one winner"))
+        if visits is not None:
+            plan = replace(plan, visits=visits)
+            told.append(StaffNote("visits" if visits else "no visits"))
+        world.choose(plan)
+        self._note(f"staff chose: several winners {plan.several}, visits {plan.visits}")
+        return told
+
+    def _moved(self, world: PlannedGame, person: str, *, here: bool) -> list[Result]:
+        away = world.plan_away - {person} if here else world.plan_away | {person}
+        world.choose(replace(world.game_plan, absent=tuple(sorted(away))))
+        if not self._idle:
+            self._supervision.game.change("came" if here else "left", person=person, by=self._by)
+        self._note(f"staff: {person} {'is here' if here else 'has left'}")
+        return [StaffNote("comes" if here else "goes", person)]
+
+
+def next_pace(pace: float, by: int) -> float:
+    """Return the next shorter (1) or longer (-1) pace, in s."""
+    if by > 0:
+        return max((one for one in PACES if one < pace), default=PACES[0])
+    return min((one for one in PACES if one > pace), default=PACES[-1])

@@ -1,0 +1,70 @@
+"""Words by which staff change a game: its pace, its patterns, a call, a claim, who is here."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.game_rules import LONGEST_PACE, SHORTEST_PACE, GameRules
+from tangy_profiles.reading import plain
+from tangy_tui.app.game_commands import (
+    ChoosePatterns,
+    ClaimCard,
+    ComesIn,
+    GameCommand,
+    GoesAway,
+    SetPace,
+    TakeBackCall,
+)
+
+CHECK = "check"
+"""The word before a card's number in every activity; an activity may have one of its own."""
+_PACE = re.compile(r"pace (\d{1,4}(?:\.\d)?)(?: ?s| seconds?)?", re.I)
+_PATTERNS = re.compile(r"(?:play for|play on for|patterns?) (.+)", re.I)
+_MOVED = re.compile(r"(here|left) (.+)|(.+?) (is here|has come|left|has left)", re.I)
+_TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
+
+
+def read_planned(
+    said: str, find_person: Callable[[str], str], rules: GameRules
+) -> GameCommand | None:
+    """Return the command that words are; None: they are none of these.
+
+    Raises:
+        TangyError: they are nearly one, and something in them is wrong; one sentence.
+    """
+    if claim := _claim(said, find_person, rules):
+        return claim
+    if pace := _PACE.fullmatch(said):
+        seconds = float(pace[1])
+        if not SHORTEST_PACE <= seconds <= LONGEST_PACE:
+            raise TangyError(f"The pace is from {SHORTEST_PACE:g} to {LONGEST_PACE:g} s.")
+        return SetPace(seconds)
+    if (back := _TAKE_BACK.fullmatch(said)) and back[1].casefold() not in ("it", "that"):
+        return TakeBackCall(back[1])
+    if rules.patterns and (patterns := _PATTERNS.fullmatch(said)):
+        names = [one.strip() for one in re.split(r",|\bthen\b", patterns[1]) if one.strip()]
+        return ChoosePatterns(tuple(rules.pattern(name).name for name in names))
+    if moved := _MOVED.fullmatch(said):
+        come = (moved[1] or moved[4]).casefold() in ("here", "is here", "has come")
+        try:
+            person = find_person(moved[2] or moved[3])
+        except TangyError:
+            if moved[1] is None:  # it may be an answer in words
+                return None
+            raise
+        return ComesIn(person) if come else GoesAway(person)
+    return None
+
+
+def _claim(said: str, find_person: Callable[[str], str], rules: GameRules) -> GameCommand | None:
+    """Return the claim that words are: the activity's word for it, a card's number, a name."""
+    word, _, rest = said.partition(" ")
+    if not rules.claim or not rest or word.casefold() not in (CHECK, rules.claim.casefold()):
+        return None
+    number, _, person = rest.partition(" ")
+    digits = number.strip("#,:")
+    if not (digits.isascii() and digits.isdecimal() and len(digits) <= 6):
+        raise TangyError(plain(f"Say {word} with the number of the card: {said[:60]!r}."))
+    return ClaimCard(int(digits), find_person(person) if person.strip() else "")

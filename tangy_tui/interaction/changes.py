@@ -1,0 +1,85 @@
+"""What changes in a game beside its behaviours: logged, carried out in the world, and told."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tangy_profiles.game_records import ChangeKind, GameChange
+from tangy_profiles.game_rules import GamePlan
+from tangy_profiles.past_game import PastGame
+from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.store import Store
+from tangy_tui.interaction.game_events import GameChanged
+from tangy_tui.world import World
+
+
+class GameChanges:
+    """The changes of one world's games; other worlds than those with cards have none."""
+
+    def __init__(self, world: World, store: Store) -> None:
+        """Take the world and the log."""
+        self.world = (
+            world if isinstance(world, PlannedGame) and world.activity.deck.columns else None
+        )
+        self._store = store
+
+    @property
+    def plan(self) -> GamePlan:
+        """What staff chose for the game."""
+        return GamePlan() if self.world is None else self.world.game_plan
+
+    @property
+    def logged(self) -> dict[str, Any]:
+        """What the log has of the plan when a game begins."""
+        plan = self.plan
+        return {
+            "patterns": plan.patterns,
+            "several": plan.several,
+            "visits": plan.visits,
+            "strength": plan.strength,
+            "absent": plan.absent,
+        }
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """The strategies that staff want nobody to be spoken to by."""
+        if self.world is None or not self.plan.strength:
+            return ()
+        return self.world.activity.rules.left_out(self.plan.strength)
+
+    def resume(self, past: PastGame) -> None:
+        """Play on by the plan of a game that was interrupted."""
+        if self.world is not None:
+            self.world.choose(past.beginning.plan)
+
+    def due(self, game: str, steps: int) -> list[GameChanged]:
+        """Make the change that is due before the next behaviour, if one is."""
+        if self.world is None or (due := self.world.due) is None:
+            return []
+        what, person = due
+        return [self.make(game, steps, what, person=person)]
+
+    def make(self, game: str, steps: int, what: ChangeKind, **about: Any) -> GameChanged:
+        """Log a change after so many steps, carry it out, and say it to the group."""
+        change = GameChange(game=game, steps=steps, what=what, **about)
+        self._store.append(change)
+        said = ""
+        if self.world is not None:
+            self.world.change(change)
+            if said := self._said(change):
+                self.world.announce(said)
+        return GameChanged(what, change.person, change.number, change.patterns, said)
+
+    def _said(self, change: GameChange) -> str:
+        """Return what the group is told of a change, "" where nothing is said."""
+        if (world := self.world) is None:
+            return ""
+        rules, deck = world.activity.rules, world.activity.deck
+        match change.what:
+            case "played on":
+                present = world.patterns.present
+                return rules.play_on.format(pattern=present.label if present else "")
+            case "taken back":
+                return rules.taken_back.format(call=deck.label(change.number))
+            case _:
+                return ""

@@ -1,0 +1,66 @@
+"""What staff are told of what changes in a game beside Tangy's behaviours."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import assert_never
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.planned_game import PlannedGame
+from tangy_tui.interaction.game_events import GameChanged
+from tangy_tui.world import World
+
+Name = Callable[[str], str]
+
+
+def changed_lines(event: GameChanged, activity: Activity, name: Name) -> list[str]:
+    """Say what changed, and what Tangy says to the group about it."""
+    said = [f"   Tangy says: {event.said}"] if event.said else []
+    return [changed_words(event, activity, name), *said]
+
+
+def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
+    """Say in a sentence what changed."""
+    person = name(event.person) if event.person else ""
+    match event.what:
+        case "taken back":
+            return f"{activity.deck.label(event.number)} is taken back and comes again later."
+        case "patterns chosen":
+            return f"Next: {pattern_words(activity, event.patterns)}."
+        case "others first":
+            return f"{person} has won. Tangy looks after the others who are asking."
+        case "played on":
+            return f"{person} has won. The game goes on."
+        case "won":
+            return f"Nobody else is asking. Tangy goes back to {person}, who has won."
+        case "claimed":
+            return f"Tangy goes to {person}, whose card wins."
+        case "left":
+            return f"{person} has left. Tangy does not go there any more."
+        case "came":
+            return f"{person} is here now."
+        case "visit":
+            return f"{person} has had no visit for a while. Tangy goes there."
+        case "visit put off":
+            return f"Others are asking, so {person}'s visit waits."
+        case "visit over":
+            return f"{person} has had a visit."
+        case forgotten:
+            assert_never(forgotten)
+
+
+def pattern_words(activity: Activity, names: tuple[str, ...]) -> str:
+    """Name patterns as people call them, in their order."""
+    labels = [activity.rules.pattern(name).label for name in names]
+    return ", then ".join(labels) or "nothing more"
+
+
+def patterns_line(world: World) -> str:
+    """Say what is played for, what follows, and what else can be chosen."""
+    names = ", ".join(pattern.name for pattern in world.activity.rules.patterns)
+    if not isinstance(world, PlannedGame) or not names:
+        return "There is nothing to choose in this activity."
+    played = world.patterns
+    now = "" if played.present is None else f"Now: {played.present.label}. "
+    then = ", then ".join(pattern.label for pattern in played.left)
+    return f"{now}{f'Next: {then}. ' if then else ''}You can choose: {names}."

@@ -1,0 +1,209 @@
+"""Games by what staff chose: patterns in turn, claims, pace, visits, comings and goings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from tangy_profiles.cards import winning_state
+from tangy_profiles.game_records import GameChange, GameStep
+from tangy_profiles.game_rules import GamePlan
+from tangy_profiles.past_game import interrupted_game
+from tangy_sim.worlds.world import SimulatedWorld
+from tangy_tui.app.game_commands import (
+    ChangePace,
+    ChoosePatterns,
+    ClaimCard,
+    ComesIn,
+    GameCommand,
+    GoesAway,
+    SetPace,
+    StaffNote,
+    TakeBackCall,
+)
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.game_events import Acted, GameChanged, GameEnded
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.monitoring.supervision import Event
+
+
+class Planned:
+    """A run of simulated games, with all that is told in them."""
+
+    def __init__(self, folder: Path, users: int = 4) -> None:
+        self.workspace = Workspace(folder, users=users)
+        policy, _ = load_policy(self.workspace.store, self.workspace.activity)
+        self.supervision = self.workspace.supervision(policy, 31)
+        self.control: GameController = scripted_controller(self.supervision)
+        self.events: list[Event] = []
+
+    @property
+    def world(self) -> SimulatedWorld:
+        return cast(SimulatedWorld, self.supervision.world)
+
+    def begin(self, plan: GamePlan) -> None:
+        self.world.choose(plan)
+        self.events = self.control.begin()
+
+    def play(self, calls: int = 1_000) -> None:
+        """Play on until so many numbers were called, or the game is over."""
+        while not self.supervision.over and len(self.world.called_now) < calls:
+            self.events += go_on_by_script(self.control, expert=True)
+
+    def do(self, command: GameCommand) -> list[str]:
+        """Carry out a command; return the kinds of what was told."""
+        told = self.control.apply(command)
+        return [one.kind if isinstance(one, StaffNote) else str(one.what)  # type: ignore[union-attr]
+                for one in told]  # fmt: skip
+
+    def changes(self) -> list[str]:
+        return [event.what for event in self.events if isinstance(event, GameChanged)]
+
+    def celebrated(self) -> list[str | None]:
+        acted = (event for event in self.events if isinstance(event, Acted))
+        return [a.action.target for a in acted if a.action.behaviour.needs and a.outcome.completed]
+
+
+@pytest.fixture
+def planned(taught: Path) -> Iterator[Planned]:
+    one = Planned(taught)
+    yield one
+    one.workspace.close()
+
+
+def test_a_game_is_played_on_for_each_pattern_that_was_chosen(planned: Planned) -> None:
+    planned.begin(GamePlan(("line", "two lines", "full card")))
+    planned.play()
+    ended = planned.events[-1]
+    assert isinstance(ended, GameEnded) and ended.stopped is None
+    assert planned.changes().count("played on") == 2 and len(planned.celebrated()) == 3
+    assert len(planned.world.called_now) > 55  # no card is full much sooner
+    assert planned.supervision.faults == []
+
+
+def test_of_several_winners_each_is_celebrated_before_the_game_ends(planned: Planned) -> None:
+    planned.begin(GamePlan(several=True))
+    world, winning = planned.world, winning_state(planned.workspace.activity.user_states)
+    while world.tracker.seen != winning:
+        planned.events += go_on_by_script(planned.control, expert=True)
+    first = world.tracker.place
+    second = next(person for person in world.people if person != first)
+    world.vouched |= {second}  # whose card wins at the same call
+    world.tracker.ask(second)
+    planned.play()
+    assert planned.celebrated()[:2] == [first, second] and planned.supervision.faults == []
+    assert planned.changes()[0] == "others first"
+
+
+def test_a_claim_is_told_by_the_numbers_that_were_called(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    planned.play(calls=3)
+    assert planned.do(ClaimCard(2)) == ["claim wrong"] and planned.do(ClaimCard(5)) == [
+        "no such card"
+    ]
+    planned.begin(GamePlan(("full card",)))
+    planned.play(calls=20)
+    world = planned.world
+    planned.do(ChoosePatterns(("line",)))
+    card = world.players["user3"].numbers
+    world.order[: world._calls] = [*card[:5], *world.order[5 : world._calls]]
+    world.patterns.advance()
+    assert planned.do(ClaimCard(3)) == ["claim right", "claimed"]
+    planned.play()
+    assert planned.celebrated()[-1] == "user3"
+
+
+def test_a_call_that_is_taken_back_comes_again_and_is_told_to_the_group(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    planned.play(calls=4)
+    *_, second, last = planned.world.called_now
+    label = planned.workspace.activity.deck.label(second)
+    assert planned.do(TakeBackCall(label)) == ["call taken back", "taken back"]
+    assert second not in planned.world.called_now and last in planned.world.called_now
+    assert planned.world.order[-1] == second
+    assert all(not p.marked >> p.cell[second] & 1
+               for p in planned.world.players.values() if second in p.cell)  # fmt: skip
+    assert planned.do(TakeBackCall(label)) == ["not called"]
+    (change,) = planned.workspace.store.events(GameChange)
+    assert (change.record.what, change.record.number) == ("taken back", second)
+
+
+def test_the_pace_is_changed_in_mid_game_and_stays_within_its_bounds(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    planned.play(calls=2)
+    assert planned.do(SetPace(10)) == ["pace"]
+    before = planned.supervision.world.seconds
+    planned.play(calls=4)
+    assert planned.supervision.world.seconds - before == pytest.approx(20)
+    for _ in range(12):
+        planned.do(ChangePace(1))
+    assert planned.world.pace == 5
+    for _ in range(12):
+        planned.do(ChangePace(-1))
+    assert planned.world.pace == 60
+
+
+def test_who_has_left_is_not_seen_to_until_they_are_here_again(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    assert planned.do(GoesAway("user1")) == ["goes"] and planned.do(GoesAway("user1")) == [
+        "away before"
+    ]
+    planned.play(calls=25)
+    asked = [a.action.target for a in planned.events if isinstance(a, Acted)]
+    assert "user1" not in asked and any(asked)
+    assert planned.do(ComesIn("user1")) == ["comes"]
+    assert planned.world.tracker.ask("user1")
+
+
+def test_everybody_is_visited_and_nobody_who_asks_waits_for_that(taught: Path) -> None:
+    planned = Planned(taught, users=8)
+    planned.begin(GamePlan(("full card",), visits=True))
+    planned.play()
+    acted = [event for event in planned.events if isinstance(event, Acted)]
+    assert {a.action.target for a in acted} >= set(planned.world.people)
+    visits = [event for event in planned.events if isinstance(event, GameChanged)]
+    assert any(event.what == "visit" for event in visits)
+    planned.workspace.close()
+
+
+@pytest.mark.parametrize("calls", [6, 40, 60])
+def test_a_planned_game_that_was_interrupted_goes_on_as_it_would_have(
+    taught: Path, calls: int
+) -> None:
+    planned = Planned(taught)
+    planned.begin(GamePlan(("line", "two lines", "full card"), several=True, visits=True))
+    planned.play(calls=4)
+    planned.do(TakeBackCall())
+    planned.do(GoesAway("user2"))
+    planned.play(calls=calls)
+    world = planned.world
+    stood = (world.tracker.state(), list(world.called_now), list(world.tracker.queue), world.away)
+    marked = {p.id: p.marked for p in world.players.values()}
+    planned.workspace.close()
+
+    again = Planned(taught)
+    past = interrupted_game(again.workspace.store, "bingo")
+    assert past is not None
+    again.control = scripted_controller(again.supervision, past)
+    again.control.begin()
+    world = again.world
+    state, called, queue, away = stood
+    assert (world.tracker.state(), list(world.called_now), list(world.tracker.queue)) == (
+        state, called, queue
+    )  # fmt: skip
+    assert world.away == away and {p.id: p.marked for p in world.players.values()} == marked
+    again.play()
+    assert isinstance(again.events[-1], GameEnded) and again.events[-1].stopped is None
+    again.workspace.close()
+
+
+def test_where_nothing_is_chosen_nothing_changes_beside_the_behaviours(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    planned.play()
+    store = planned.workspace.store
+    assert not list(store.events(GameChange)) and list(store.events(GameStep))
