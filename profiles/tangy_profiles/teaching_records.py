@@ -173,6 +173,17 @@ class LearntRow(NamedTuple):
         return Situation(self.stage, self.request, self.user_state)
 
 
+@kind("own phrase")
+class OwnPhraseNoted(EventRecord):
+    """A teacher's own words for a behaviour are kept; or not: turned down, or removed."""
+
+    activity: str
+    teacher: str
+    text: str
+    behaviour: str
+    kept: bool
+
+
 @kind("policy learnt")
 class PolicyLearnt(EventRecord):
     """A policy was kept: how to learn it again, and what that must give."""

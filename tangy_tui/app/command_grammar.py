@@ -321,6 +321,7 @@ SETTLING: dict[str, RemarkAnswer] = {
     "this": "this",
     "earlier": "earlier",
     "both": "both",
+    **dict.fromkeys(("keep", "keep it", "y", "yes"), "keep"),
     **dict.fromkeys(("later", "decide later", "n", "no"), "later"),
 }
 """Words that answer a remark, beside the numbers."""

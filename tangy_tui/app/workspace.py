@@ -232,10 +232,11 @@ class Workspace:
         return Intents()
 
     def phrasebook(self) -> Phrasebook:
-        """Make what is understood of those who take part, said or typed."""
-        from tangy_tui.language.commands import Phrasebook
+        """Make what is understood of those who take part, said or typed: the teacher's own, too."""
+        from tangy_tui.learning.own_phrases import OwnPhrases
 
-        return Phrasebook(self.activity, self.people, self.intents.model)
+        own = OwnPhrases(self.store, self.activity, self.teacher)
+        return own.phrasebook(self.people, self.intents.model)
 
     def teaching(
         self,

@@ -18,6 +18,10 @@ MakeWorld: TypeAlias = Callable[[Demonstration], World]
 """Make the world of a demonstration (its seed, people, guided), ready at its first state."""
 
 
+class NotAsBefore(Exception):
+    """A step that was done again did not come out as it did."""
+
+
 @dataclass(frozen=True, slots=True)
 class ReplayedGame:
     """The world that a demonstration led to, and the numbers that each step was about."""

@@ -19,9 +19,11 @@ from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.contradictions import Contradictions
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library
+from tangy_tui.learning.own_phrases import OwnPhrases
 from tangy_tui.learning.teaching_events import (
     Contradicted,
     EndedEarly,
+    NewWording,
     Overlooked,
     Remark,
     RemarkAnswer,
@@ -41,6 +43,8 @@ def answers_to(remark: Remark) -> tuple[RemarkAnswer, ...]:
             return ("undo", "this")
         case WrongPerson() | EndedEarly():
             return ("undo",)
+        case NewWording():
+            return ("keep",)
 
 
 class Remarks:
@@ -49,6 +53,7 @@ class Remarks:
     def __init__(self, activity: Activity, teacher: str, store: Store) -> None:
         """Make it for a teacher; what was shown before is read when it is needed first."""
         self.open: Remark | None = None
+        self.phrases = OwnPhrases(store, activity, teacher)
         self._activity = activity
         self._teacher = teacher
         self._store = store
@@ -93,6 +98,9 @@ class Remarks:
             self.open = Contradicted(shown.number, shown.step, earlier, own)
         elif not known or self._goes(shown):
             self.open = self._overlooked(shown, over=over)
+        words = self.phrases.wording(shown.step.behaviour)
+        if self.open is None and words:
+            self.open = NewWording(shown.number, shown.step, words)
 
     def answer(self, answer: RemarkAnswer) -> Settled | None:
         """Note what a teacher says of the open remark, as when its conflict is settled later.
@@ -103,6 +111,9 @@ class Remarks:
         remark, self.open = self.open, None
         if remark is None:
             return None
+        if isinstance(remark, NewWording):
+            self.phrases.note(remark.words, remark.step.behaviour, kept=answer == "keep")
+            return Settled(remark, answer, ())
         situation, done = remark.step.state.situation, remark.step.behaviour
         other = remark.earlier.step.behaviour if isinstance(remark, Contradicted) else done
         answers: dict[RemarkAnswer, tuple[str, ...]] = {

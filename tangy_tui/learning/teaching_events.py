@@ -60,9 +60,9 @@ class Again:
     kept: int
 
 
-RemarkAnswer = Literal["this", "earlier", "both", "undo", "later"]
+RemarkAnswer = Literal["this", "earlier", "both", "undo", "keep", "later"]
 """What can be answered to a remark: this step is right, the earlier one, both; take this one back,
-or decide later."""
+keep the words for it, or decide later."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +129,16 @@ class EndedEarly:
     lacks: str
 
 
-Remark: TypeAlias = Contradicted | Overlooked | WrongPerson | EndedEarly
+@dataclass(frozen=True, slots=True)
+class NewWording:
+    """Step `number` came of spoken `words` that Tangy was not sure of, or did not understand."""
+
+    number: int
+    step: Step
+    words: str
+
+
+Remark: TypeAlias = Contradicted | Overlooked | WrongPerson | EndedEarly | NewWording
 """What is said of a step at once, and can be answered or put off."""
 
 

@@ -30,6 +30,7 @@ from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.editing import Editor, NotPossible, new_id
 from tangy_tui.learning.game_replay import (
     MakeWorld,
+    NotAsBefore,
     ReplayedGame,
     replay_game,
     shown_again,
@@ -73,10 +74,6 @@ ANOTHER_SIMULATOR = "The unfinished game was made with another simulator; a new 
 NOTHING_SAID = "(nothing: there are no numbers to say)"
 
 
-class NotAsBefore(Exception):
-    """A step that was done again did not come out as it did."""
-
-
 class TeachingSession:
     """One teacher's session: demonstrations one after another, each in its own simulated game."""
 
@@ -107,9 +104,9 @@ class TeachingSession:
             learnt: see `Phrasebook`.
         """
         self.activity, self._learnt = activity, learnt
-        self.phrasebook = Phrasebook(activity, people, learnt)
         self._store, self._make_world, self._seed = store, make_world, seed
         self.teach_as(teacher)
+        self.phrasebook = self.phrasebook_for(people)
         self.demonstration: Demonstration
         self.world: World
         self.numbers: tuple[tuple[int, ...], ...] = ()
@@ -124,6 +121,10 @@ class TeachingSession:
     def teach_as(self, teacher: str) -> None:
         """Let somebody teach, before the session begins."""
         self.teacher, self._remarks = teacher, Remarks(self.activity, teacher, self._store)
+
+    def phrasebook_for(self, people: Sequence[Person]) -> Phrasebook:
+        """Make what is understood among some people, with the teacher's own phrases."""
+        return self._remarks.phrases.phrasebook(people, self._learnt)
 
     @property
     def people(self) -> tuple[str, ...]:
@@ -160,9 +161,8 @@ class TeachingSession:
     def begin(self, *, resume: bool = True) -> list[TeachingEvent]:
         """Take up this teacher's unfinished demonstration, or begin a new one.
 
-        An unfinished one is replayed in a world of the same seed. If that does not lead to the
-        states that were logged (the simulator has changed since), it stays as it is in the log,
-        and a new one is begun.
+        An unfinished one is replayed in a world of the same seed. Where that leads to other states
+        (the simulator has changed), it stays as it is in the log, and a new one is begun.
 
         Raises:
             TangyError: the demonstration that is to be shown again cannot be.
@@ -170,8 +170,7 @@ class TeachingSession:
         if self._first is not None:
             return self.check()
         library = read_library(self._store, self.activity.name)
-        entry = unfinished(library, self.teacher, guided=self.guided) if resume else None
-        if entry is None:
+        if (entry := unfinished(library, self.teacher, guided=self.guided)) is None or not resume:
             return self._begin_new()
         kept = entry.demonstration
         if (replay := self._replay(kept)) is None:
@@ -272,8 +271,7 @@ class TeachingSession:
             new = shown_again(library, again, self.teacher)
         except TangyError as error:
             return [Refused(str(error))]
-        replay = self._replay(new)
-        if replay is None:
+        if (replay := self._replay(new)) is None:
             return [Refused("It was made with another simulator: show the whole game anew.")]
         self._enter(new, replay)
         self._logged = False
@@ -285,7 +283,7 @@ class TeachingSession:
         self.world, self.numbers = led_to.world, led_to.numbers
         self._undone = []
         present = [self._people.get(id, Person(id, id)) for id in demonstration.people]
-        self.phrasebook = Phrasebook(self.activity, present, self._learnt)
+        self.phrasebook = self.phrasebook_for(present)
         self._verifier = Verifier(
             self.activity, self.phrasebook, lambda: self.world.observe(), self._names
         )
@@ -293,7 +291,7 @@ class TeachingSession:
     def _say(self, said: Say) -> list[TeachingEvent]:
         if self.demonstration.finished:
             return [Refused("This game is over. Begin the next demonstration, or undo a step.")]
-        return self._told(self._verifier.say(said))
+        return self._told(self._remarks.phrases.followed(said, self._verifier.say(said)))
 
     def _told(self, verification: Verification) -> list[TeachingEvent]:
         if isinstance(verification, Verified):
@@ -348,13 +346,15 @@ class TeachingSession:
         if answer == "undo" and self.remark is not None:
             return self._undo()
         settled = self._remarks.answer(answer)
+        if settled is not None and settled.answer == "keep":
+            self._enter(self.demonstration, ReplayedGame(self.world, self.numbers))
         return [Refused(NO_REMARK)] if settled is None else [settled]
 
     def _log_beginning(self) -> None:
         """Log the demonstration with its first step, so that looking in leaves no empty one."""
         if not self._logged:
-            shown = self.demonstration
-            self._store.append(DemonstrationBegun.of_shown(shown, kept=len(shown.steps)))
+            kept = len(self.demonstration.steps)
+            self._store.append(DemonstrationBegun.of_shown(self.demonstration, kept=kept))
 
     def _undo(self) -> list[TeachingEvent]:
         if not self.demonstration.steps:

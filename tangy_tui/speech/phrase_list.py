@@ -52,6 +52,8 @@ class PhraseList:
     words: tuple[Said, ...]
     left_out: Mapping[str, str]
     """What cannot be heard, only typed, with the reason."""
+    own: Mapping[str, str]
+    """The phrases that are a teacher's own, with their behaviours."""
 
     def to_json(self) -> dict[str, Any]:
         """Write it for a script."""
@@ -81,11 +83,20 @@ class PhraseList:
                 for said in self.words
             ],
             "left_out": dict(self.left_out),
+            "own": dict(self.own),
         }
 
 
-def list_phrases(activity: Activity, people: Sequence[Person]) -> PhraseList:
-    """List what can be said; it looks every word up, which takes some 50 ms."""
+def list_phrases(
+    activity: Activity, people: Sequence[Person], own: Mapping[str, str] | None = None
+) -> PhraseList:
+    """List what can be said; it looks every word up, which takes some 50 ms.
+
+    Args:
+        activity: has all phrases.
+        people: who takes part.
+        own: which of the phrases are a teacher's own.
+    """
     phrasebook = Phrasebook(activity, people)
     lexicon = Lexicon(phrasebook)
     return PhraseList(
@@ -94,6 +105,7 @@ def list_phrases(activity: Activity, people: Sequence[Person]) -> PhraseList:
         tuple(_called(phrasebook, people)),
         tuple(sorted(lexicon.words.values(), key=lambda said: said.word)),
         lexicon.left_out(),
+        own or {},
     )
 
 
@@ -144,6 +156,8 @@ def items(listed: PhraseList) -> Iterator[Item]:
     for ways in listed.behaviours:
         texts = [", ".join(ways.phrases) + ("; or with a person" if ways.to_people else "")]
         texts += [f"keywords: {', '.join(ways.keywords)}"] if ways.keywords else []
+        own = [text for text, behaviour in listed.own.items() if behaviour == ways.behaviour]
+        texts += [f"your own: {', '.join(own)}"] if own else []
         first = ways.phrases[0].split() if ways.phrases else []
         aloud = ", ".join(phones[word] for word in first) if phones.keys() >= set(first) else ""
         yield Item("What can be said for what", ways.behaviour, tuple(texts), aloud)

@@ -41,8 +41,8 @@ OWN_NAME = {"tangy": ("T AE NG IY",)}
 LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The margins from which words are an answer: where the grammar finds it too, and where not."""
 
-LEAST_STEERING = 0.0
-"""The margin from which words steer the program where the grammar does not find them, too."""
+LEAST_STEERING = -0.6
+"""The margin from which words steer the program: the grammar does not know them."""
 
 SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "eight"}
 
@@ -105,8 +105,7 @@ def understand(
 def _steers(evidence: AcousticEvidence, settings: EvidenceSettings) -> bool:
     """Say whether an utterance asks the program itself for something, by words and by sound."""
     way = steering_of(evidence.words)
-    least = LEAST_ANSWER if steering_of(evidence.phrase) == way else LEAST_STEERING
-    return way in WHILE_TEACHING and evidence.margin - settings.shift >= least
+    return way in WHILE_TEACHING and evidence.margin - settings.shift >= LEAST_STEERING
 
 
 def _nearest(

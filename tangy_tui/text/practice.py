@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from string import ascii_lowercase
+from typing import Any
 
 from tangy_profiles.reading import plain
 from tangy_tui.speech.practice import NOTHING, OUTCOMES, Practice
@@ -12,6 +13,34 @@ from tangy_tui.speech.practice import NOTHING, OUTCOMES, Practice
 MOST_LISTED = 12  # files
 NAME = 32  # columns
 WIDTH = 80
+
+
+def meaning_words(
+    row: Mapping[str, Any], questions: Mapping[str, str], names: Mapping[str, str]
+) -> str:
+    """Say what a row of `tangy listen` means.
+
+    Args:
+        row: see `tangy_tui.speech.transcription.listen`.
+        questions: how each behaviour is asked about.
+        names: what each person is called.
+    """
+    choices = [
+        questions.get(choice["behaviour"], choice["behaviour"])
+        + (f" ({names.get(user, user)})" if user else "")
+        for choice in row["choices"]
+        for user in [choice["arguments"].get("user")]
+    ]
+    sure = f"{row['confidence']:.0%}"
+    match row["tier"]:
+        case "stop":
+            return "stop, at once"
+        case "sure":
+            return f"{choices[0]}, {sure} sure"
+        case "unsure":
+            return f"perhaps {' or '.join(choices)}, {sure} sure"
+        case _:
+            return "not understood"
 
 
 def practice_lines(practice: Practice) -> list[str]:

@@ -9,6 +9,7 @@ from tangy_tui.learning.remarks import answers_to
 from tangy_tui.learning.teaching_events import (
     Contradicted,
     EndedEarly,
+    NewWording,
     Overlooked,
     Remark,
     RemarkAnswer,
@@ -23,9 +24,11 @@ if TYPE_CHECKING:
 Name = Callable[[str], str]
 
 ANSWER_BY_LINE = "Type a number, or just go on: you can decide later."
+OR_NO = "Type 1 or no, or just go on."
 NUMBER_OR_ESC = "Press the number of an answer, or Esc."
 LATER = "decide later"
 GO_ON = "go on"
+NOT_ALWAYS = "no, and do not ask again"
 
 
 def remark_words(remark: Remark, activity: Activity, name: Name, game: str = "") -> str:
@@ -57,6 +60,8 @@ def remark_words(remark: Remark, activity: Activity, name: Name, game: str = "")
             return f"{to} did not ask for help. {others}"
         case EndedEarly(lacks=lacks):
             return f"The game ended early: nobody got to “{activity.behaviour(lacks).question}”."
+        case NewWording(words=words):
+            return f"You said “{words}”, which Tangy did not know. Does it mean: {done}?"
         case _:
             assert_never(remark)
 
@@ -77,12 +82,16 @@ def _answer(remark: Remark, answer: RemarkAnswer, activity: Activity) -> str:
             return "both are fine"
         case "undo":
             return "a slip: undo this step"
+        case "keep":
+            return "yes, always"
         case _:
             return LATER
 
 
 def later_words(remark: Remark) -> str:
     """Say what comes of leaving a remark unanswered."""
+    if isinstance(remark, NewWording):
+        return NOT_ALWAYS
     return LATER if isinstance(remark, Contradicted) else GO_ON
 
 
@@ -92,14 +101,23 @@ def remark_lines(remark: Remark, activity: Activity, name: Name, game: str = "")
     return [
         f"   ! {remark_words(remark, activity, name, game)}",
         *(f"     {number}  {words}" for number, words in numbered),
-        f"   {ANSWER_BY_LINE}",
+        f"   {OR_NO if isinstance(remark, NewWording) else ANSWER_BY_LINE}",
     ]
 
 
 def settled_words(settled: Settled, activity: Activity) -> str:
     """Say what came of the answer to a remark."""
+    if isinstance(settled.remark, NewWording):
+        words, done = settled.remark.words, settled.remark.step.behaviour
+        kept = f"From now on “{words}” means: {activity.behaviour(done).question}."
+        return kept if settled.answer == "keep" else f"Tangy does not keep “{words}”."
     if not settled.right:
         return "Left open. Before Tangy learns, it asks again which is right."
     right = listed((activity.behaviour(b).question for b in settled.right), "and")
     are = "is" if len(settled.right) == 1 else "are both"
     return f"{activity.in_words(settled.remark.step.state.situation)}: {right} {are} right."
+
+
+def no_own_phrase(phrase: str, teacher: str) -> str:
+    """Say that a teacher has no such phrase to remove."""
+    return f"{phrase!r} is no phrase of {teacher}'s own. See: tangy activity phrases"

@@ -12,6 +12,7 @@ from tangy_tui.learning.teaching_events import (
     EndedEarly,
     Executed,
     Finished,
+    NewWording,
     Overlooked,
     Settled,
     StepUndone,
@@ -40,7 +41,7 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
                 f"{number}. {words}",
                 f"   Tangy says: {speech}",
             ]
-        case Contradicted() | Overlooked() | WrongPerson() | EndedEarly():
+        case Contradicted() | Overlooked() | WrongPerson() | EndedEarly() | NewWording():
             game = teaching.demonstration.id
             return remark_lines(event, teaching.activity, teaching.name, game)
         case Settled():

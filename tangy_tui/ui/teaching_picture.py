@@ -19,6 +19,7 @@ from tangy_tui.learning.teaching_events import (
     EndedEarly,
     Executed,
     Finished,
+    NewWording,
     Overlooked,
     Remark,
     Settled,
@@ -74,7 +75,7 @@ class TeachingPicture:
         match event:
             case Executed():
                 self.step(event)
-            case Contradicted() | Overlooked() | WrongPerson() | EndedEarly():
+            case Contradicted() | Overlooked() | WrongPerson() | EndedEarly() | NewWording():
                 self.remark(event)
             case Settled():
                 self._log.write(settled_words(event, self._teaching.activity), "dim")

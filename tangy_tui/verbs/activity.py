@@ -13,6 +13,7 @@ from tangy_profiles.asking_limits import GAME, VISIT
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.remarks import no_own_phrase
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, print_json
 from tangy_tui.verbs.opening import open_workspace
 
@@ -198,15 +199,23 @@ def activity_phrases(
     activity: Annotated[
         str, typer.Argument(help="A shipped activity, or its TOML.")
     ] = DEFAULT_ACTIVITY,
+    forget: Annotated[
+        str | None, typer.Option(metavar="PHRASE", help="Remove a phrase of your own.")
+    ] = None,
     data: Data = None,
     users: Users = 4,
     as_json: Json = False,
 ) -> None:
     """Show the phrasebook: what can be said for what, and how every word is said."""
+    from tangy_tui.learning.own_phrases import forget_phrase, own_phrases, personal_activity
     from tangy_tui.speech.phrase_list import list_phrases
 
-    with open_workspace(data, activity, users, write=False) as workspace:
-        listed = list_phrases(workspace.activity, workspace.people)
+    with open_workspace(data, activity, users, write=forget is not None) as workspace:
+        whose = (workspace.store, workspace.activity.name, workspace.teacher)
+        if forget is not None and not forget_phrase(*whose, forget):
+            raise TangyError(plain(no_own_phrase(forget, workspace.teacher)))
+        own = own_phrases(*whose)
+        listed = list_phrases(personal_activity(workspace.activity, own), workspace.people, own)
     if as_json:
         print_json(listed.to_json())
     else:

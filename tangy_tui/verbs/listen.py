@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.language.commands import Phrasebook
     from tangy_tui.speech.evidence import EvidenceSettings
+
+Tell: TypeAlias = Callable[[dict[str, Any]], str]
+"""Says in words what a row of `listen` means."""
 
 
 def listen(
@@ -77,23 +80,32 @@ def listen(
         if bench is not None:
             _bench(bench, phrasebook, settings, as_json)
         elif text is not None:
-            _read(text, phrasebook, settings, workspace.names, as_json)
+            _read(text, phrasebook, settings, _told_by(workspace), as_json)
         else:
-            _listen(files or [], phrasebook, settings, workspace.names, as_json)
+            _listen(files or [], phrasebook, settings, _told_by(workspace), as_json)
+
+
+def _told_by(workspace: Workspace) -> Tell:
+    """Return what says in words what a row of `listen` means."""
+    from tangy_tui.text.practice import meaning_words
+
+    behaviours = workspace.activity.behaviours.values()
+    questions = {behaviour.name: behaviour.question for behaviour in behaviours}
+    return lambda row: meaning_words(row, questions, workspace.names)
 
 
 def _listen(
     files: list[Path],
     phrasebook: Phrasebook,
     settings: EvidenceSettings,
-    names: dict[str, str],
+    tell: Tell,
     as_json: bool,
 ) -> None:
     from tangy_tui.speech.transcription import listen as hear
 
     def show(done: int, rows: Sequence[dict[str, Any]]) -> None:
         for row in rows:
-            print_line(plain(f"{row['file']}: {row['heard']!r} -> {_meaning(row, names)}"))
+            print_line(plain(f"{row['file']}: {row['heard']!r} -> {tell(row)}"))
 
     if as_json:
         with told_progress() as progress:
@@ -108,7 +120,7 @@ def _read(
     file: Path,
     phrasebook: Phrasebook,
     settings: EvidenceSettings,
-    names: dict[str, str],
+    tell: Tell,
     as_json: bool,
 ) -> None:
     from tangy_tui.speech.transcription import read_lines
@@ -118,7 +130,7 @@ def _read(
         print_json(rows)
         return
     for row in rows:
-        print_line(plain(f"{row['heard']!r} -> {_meaning(row, names)}"))
+        print_line(plain(f"{row['heard']!r} -> {tell(row)}"))
 
 
 def _cut_off(file: Path) -> str:
@@ -127,25 +139,6 @@ def _cut_off(file: Path) -> str:
 
     missing = seconds_cut_off(file)
     return cut_off(file, missing) if missing else ""
-
-
-def _meaning(row: dict[str, Any], names: dict[str, str]) -> str:
-    """Say in words what a row of `listen` means."""
-    choices = [
-        f"{choice['behaviour']} ({names.get(user, user)})" if user else str(choice["behaviour"])
-        for choice in row["choices"]
-        for user in [choice["arguments"].get("user")]
-    ]
-    sure = f"{row['confidence']:.0%}"
-    match row["tier"]:
-        case "stop":
-            return "stop, at once"
-        case "sure":
-            return f"{choices[0]}, {sure} sure"
-        case "unsure":
-            return f"perhaps {' or '.join(choices)}, {sure} sure"
-        case _:
-            return "not understood"
 
 
 def _bench(folder: Path, phrasebook: Phrasebook, settings: EvidenceSettings, as_json: bool) -> None:

@@ -77,7 +77,7 @@ def test_lines_of_text_are_told_in_words(tangy: Tangy, tmp_path: Path) -> None:
     said = tmp_path / "said.txt"
     said.write_text("tell a joke")
     done = tangy("listen", "--text", said, "--data", tmp_path / "data")
-    assert done.stdout.startswith("'tell a joke' -> joke, ")
+    assert done.stdout.startswith("'tell a joke' -> tell a joke, ")
 
 
 def test_an_empty_folder_says_how_to_name_recordings(tangy: Tangy, tmp_path: Path) -> None:
@@ -143,8 +143,8 @@ def test_lines_say_the_tier_and_the_choices(
     done = tangy("listen", "a.wav", "--data", tmp_path / "data")
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
-        "a.wav: 'x' -> navigate to user (Rosa), 50% sure",
-        "b.wav: 'x' -> perhaps joke or navigate to user (Rosa), 50% sure",
+        "a.wav: 'x' -> go to the user (Rosa), 50% sure",
+        "b.wav: 'x' -> perhaps tell a joke or go to the user (Rosa), 50% sure",
         "c.wav: 'x' -> not understood",
         "d\N{REPLACEMENT CHARACTER}.wav: 'x' -> stop, at once",
     ]

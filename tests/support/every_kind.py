@@ -31,6 +31,7 @@ from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.editing import Editor
+from tangy_tui.learning.own_phrases import OwnPhrases
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
@@ -67,6 +68,10 @@ def _teach(workspace: Workspace) -> None:
     teaching.apply(Redo())
     list(teacher.demonstrate())
     teaching.apply(Next())
+
+    OwnPhrases(workspace.store, workspace.activity, "Ada").note(
+        "let us hear one more", "call number", kept=True
+    )
 
 
 def _edit(workspace: Workspace) -> None:

@@ -14,6 +14,7 @@ from textual.widgets import Input
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.own_phrases import own_phrases, personal_activity
 from tangy_tui.speech.aloud import hear
 from tangy_tui.speech.phrase_list import Item, items, list_phrases
 from tangy_tui.text import phrases as text
@@ -173,7 +174,9 @@ class PhrasesScreen(TangyScreen[None]):
 
     async def _read(self) -> None:
         workspace = self._workspace
-        listed = await asyncio.to_thread(list_phrases, workspace.activity, workspace.people)
+        own = own_phrases(workspace.store, workspace.activity.name, workspace.teacher)
+        activity = personal_activity(workspace.activity, own)
+        listed = await asyncio.to_thread(list_phrases, activity, workspace.people, own)
         self._items = tuple(items(listed))
         self._show()
 

@@ -99,7 +99,7 @@ class TeachHearing:
         if self._changed is None or self._present != present:
             self._present, self._changed = (
                 present,
-                Phrasebook(self._teaching.activity, present, self._workspace.intents.model),
+                self._teaching.phrasebook_for(present),
             )
         return self._changed
 

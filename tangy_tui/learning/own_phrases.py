@@ -1,0 +1,145 @@
+"""Words of a teacher's own: said, not understood or not for sure, and then typed or chosen.
+
+They become phrases of that teacher's for the behaviour that was meant, if the teacher wants them
+to, and are listened for and understood like those of the activity.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.person import Person
+from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import OwnPhraseNoted
+from tangy_tui.language.answers import yes_or_no
+from tangy_tui.language.commands import Learnt, Phrasebook
+from tangy_tui.language.intent_model import IntentModel
+from tangy_tui.language.steering import steering_of
+from tangy_tui.language.stop_sentence import stops
+from tangy_tui.language.words import bare, words_of
+from tangy_tui.learning.verification import NotUnderstood, Offered, Say, Verification
+
+MOST_WORDS = 12
+"""More are no phrase that somebody says twice."""
+_SPOKEN = re.compile(r"[a-z']+( [a-z']+)*")  # as the phrases of activities are written
+
+
+def own_phrases(store: Store, activity: str, teacher: str) -> dict[str, str]:
+    """Return the phrases that a teacher has kept for an activity, with their behaviours."""
+    noted = _noted(store, activity, teacher)
+    return {text: one.behaviour for text, one in noted.items() if one.kept}
+
+
+def forget_phrase(store: Store, activity: str, teacher: str, text: str) -> bool:
+    """Remove a phrase of a teacher's; return whether there was one. It is not offered again."""
+    said = " ".join(text.split()).casefold()
+    behaviour = own_phrases(store, activity, teacher).get(said)
+    if behaviour is None:
+        return False
+    _note(store, activity, teacher, said, behaviour, kept=False)
+    return True
+
+
+def personal_activity(activity: Activity, own: Mapping[str, str]) -> Activity:
+    """Return an activity with phrases more; those of behaviours it does not have are left out."""
+    behaviours = {
+        name: replace(behaviour, phrases=(*behaviour.phrases, *_more(behaviour, own)))
+        for name, behaviour in activity.behaviours.items()
+    }
+    return replace(activity, behaviours=behaviours)
+
+
+def personal_phrasebook(
+    activity: Activity,
+    people: Sequence[Person],
+    own: Mapping[str, str],
+    learnt: Learnt | None,
+) -> Phrasebook:
+    """Make a phrasebook with phrases more; what was `learnt` is that of the activity as it is."""
+
+    def by_activity(_: Activity) -> IntentModel:
+        assert learnt is not None  # noqa: S101 - else nobody asks
+        return learnt(activity)
+
+    more = personal_activity(activity, own)
+    return Phrasebook(more, people, None if learnt is None else by_activity)
+
+
+def _more(behaviour: Behaviour, own: Mapping[str, str]) -> Iterator[str]:
+    for text, meant in own.items():
+        if meant == behaviour.name and text not in behaviour.phrases:
+            yield text
+
+
+class OwnPhrases:
+    """Follows what a teacher says, and what it turns out to have meant."""
+
+    def __init__(self, store: Store, activity: Activity, teacher: str) -> None:
+        """Begin to follow a teacher."""
+        self._store = store
+        self._activity = activity
+        self._teacher = teacher
+        self._unclear = ""  # what was said last, and not understood
+
+    def phrasebook(self, people: Sequence[Person], learnt: Learnt | None) -> Phrasebook:
+        """Make what is understood among some people, the teacher's phrases too."""
+        own = own_phrases(self._store, self._activity.name, self._teacher)
+        return personal_phrasebook(self._activity, people, own, learnt)
+
+    def followed(self, said: Say, came: Verification) -> Verification:
+        """Take note of what came of words that were typed or spoken, and return it."""
+        if isinstance(came, NotUnderstood | Offered) and said.commands is not None:
+            self._unclear = _plain(came.heard)
+        elif isinstance(came, NotUnderstood):
+            self._unclear = ""
+        return came
+
+    def wording(self, behaviour: str) -> str:
+        """Return the words that meant a behaviour which was done now; "" if none are to be kept."""
+        words, self._unclear = self._unclear, ""
+        goes = self._activity.behaviour(behaviour).effect == "go to user"  # to one, not to another
+        if goes or not _can_be_kept(words):
+            return ""
+        known = {*_noted(self._store, self._activity.name, self._teacher)}
+        listed = {p for b in self._activity.behaviours.values() for p in b.phrases}
+        return "" if words in known | listed else words
+
+    def note(self, text: str, behaviour: str, *, kept: bool) -> None:
+        """Keep words for a behaviour, or note that they are not to be asked about again."""
+        _note(self._store, self._activity.name, self._teacher, text, behaviour, kept=kept)
+
+
+def _can_be_kept(words: str) -> bool:
+    """Say whether words can be a phrase: they mean nothing else, and are not too many."""
+    split = words_of(words)
+    if not _SPOKEN.fullmatch(words) or not bare(split) or len(split) > MOST_WORDS:
+        return False
+    return not stops(words) and yes_or_no(words) is None and steering_of(words) is None
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.split()).strip(" .!?").casefold()
+
+
+def _note(
+    store: Store, activity: str, teacher: str, text: str, behaviour: str, *, kept: bool
+) -> None:
+    store.append(
+        OwnPhraseNoted(
+            activity=activity, teacher=teacher, text=text, behaviour=behaviour, kept=kept
+        )
+    )
+
+
+def _noted(store: Store, activity: str, teacher: str) -> dict[str, OwnPhraseNoted]:
+    """Return what was noted last of each of a teacher's phrases."""
+    found: dict[str, OwnPhraseNoted] = {}
+    for event in store.events(OwnPhraseNoted):
+        one = event.record
+        if (one.activity, one.teacher) == (activity, teacher):
+            found[one.text] = one
+    return found
