@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 HELD = {
     "slow": "Something is near: Tangy drives slowly.",
     "stands": "Something is close: Tangy stands. Turn, or back away.",
+    "overridden": "Tangy crawls and stops for nothing. Watch it, and let the key go in time.",
 }
 """What is said where the robot does not drive as it is told."""
 
@@ -206,7 +207,8 @@ DRIVE_HELP = (
     "↑ and ↓ drive, ← and → turn, as long as you hold the key. Space stops; esc ends.\n\n"
     "Tangy slows down near people and things that its laser scanner sees, and stops before it "
     "reaches them. Then turn, or back away. It cannot see behind itself or over its scanner: look "
-    "there yourself. It backs up slowly. While the scanner is silent, Tangy does not drive."
+    "there yourself. It backs up slowly. While the scanner is silent, Tangy does not drive.\n\n"
+    "If it stands although there is room, Shift+↑ and Shift+↓ move it at a crawl, whatever is near."
 )
 
 

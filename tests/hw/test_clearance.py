@@ -33,7 +33,7 @@ def by_hand(twist: Twist, *points: tuple[float, float]) -> Twist:
 
 def person(x: float, y: float, vx: float = 0.0, vy: float = 0.0, age: float = 3.0) -> Track:
     stood = 2.0 if vx == vy == 0 else 0.0
-    return Track(x, y, vx, vy, 0.22, age, stood, True, False)
+    return Track(x, y, vx, vy, 0.22, age, stood, True, False, hypot(vx, vy))
 
 
 def past(twist: Twist, *people: Track) -> Twist:
@@ -71,7 +71,11 @@ class TestPeople:
     def test_it_stands_before_who_comes_and_drives_behind_who_goes(self) -> None:
         assert past(Twist(0.5, 0.0), person(1.4, 0.0, -1.2)).forward <= 0.15
         assert past(Twist(0.5, 0.0), person(1.0, 0.0, -1.2)) == STILL
-        assert past(Twist(0.5, 0.0), person(1.4, 0.0, 0.8)).forward == 0.5
+        assert past(Twist(0.5, 0.0), person(2.0, 0.0, 0.8)).forward == 0.5
+
+    def test_who_walks_away_close_by_may_turn_back_and_is_followed_slowly(self) -> None:
+        away = past(Twist(0.5, 0.0), person(1.2, 0.0, 0.8)).forward
+        assert 0 < away < past(Twist(0.5, 0.0), person(1.2, 0.0)).forward
 
     def test_it_stands_for_who_crosses_its_way(self) -> None:
         assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL

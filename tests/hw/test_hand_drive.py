@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from tangy_hw.device_protocols import STILL, Scan, Stamped, Twist
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.robot_process.hand_drive import HOLDS_SECONDS, HandDrive
+from tangy_hw.robot_process.hand_drive import HOLDS_SECONDS, OVERRIDE, HandDrive
 from tangy_hw.robot_process.wheels import Wheels
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import ToldBody
@@ -63,6 +63,19 @@ class TestHandDrive:
         hand = HandDrive(LIMITS)
         hand.tell(Twist(0.3, 0.0), 0.0)
         assert hand.command(scan(), 0.1, np.array([[0.35, 0.1]])) == STILL
+
+    @pytest.mark.parametrize("forward", [0.5, -0.5, 9.0])
+    def test_staff_who_override_it_crawl_past_what_is_close_while_they_hold_the_key(
+        self, forward: float
+    ) -> None:
+        hand = HandDrive(LIMITS)
+        hand.tell(Twist(forward, 0.0), 0.0, overrides=True)
+        crawl = Twist(math.copysign(OVERRIDE, forward), 0.0)
+        assert hand.command(scan(front=0.4), 0.1) == crawl and hand.held == "overridden"
+        assert hand.command(None, 0.2) == STILL
+        assert hand.command(scan(front=0.4), HOLDS_SECONDS) == STILL
+        hand.tell(Twist(forward, 0.0), 1.0)
+        assert hand.command(scan(front=0.4, left=0.4), 1.1) != crawl
 
     def test_without_a_scan_it_stands(self) -> None:
         assert drive(Twist(0.3, 0.0), None) == (STILL, "stands")

@@ -131,6 +131,30 @@ class TestTracks:
             if person.x > 4.5:
                 assert nearest(watching.tracker.tracks, person)[0] < 0.6
 
+    def test_legs_far_apart_in_a_stride_stay_one_person(self) -> None:
+        person = walks(0.0, 1.3)
+        person.x, person.y = 3.5, 2.7
+        watching = Watching(drive([person]))
+        watching.watch(0.6)
+        for _ in range(16):
+            watching.watch(TICK)
+            off, track = nearest(watching.tracker.tracks, person)
+            assert off < 0.3 and track.age > 0.3
+
+    def test_who_turns_back_is_followed_on_and_does_not_stand(self) -> None:
+        speeds = [0.0, pi]
+
+        def step(person: Person, drive: Drive) -> None:
+            person.walk(speeds[0] if person.gone < 1.5 else speeds[1], 1.2)
+
+        person = Person(4.2, 2.8, 0.0, step)
+        watching = Watching(drive([person]))
+        watching.watch(0.8)
+        for _ in range(14):
+            watching.watch(TICK)
+            _, track = nearest(watching.tracker.tracks, person)
+            assert track.stood == 0.0 and track.age > 0.3 and track.pace > 0.25
+
     def test_who_has_gone_is_forgotten(self) -> None:
         person = Person(5.2, 2.6, 0.4)
         watching = Watching(drive([person]))

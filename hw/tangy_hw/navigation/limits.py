@@ -23,7 +23,7 @@ class MotionLimits:
     Past people it must be able to stop before they meet (see `people_guard`): `late` is how many s
     pass until it brakes, `stops` how hard it then does, `spare` how many metres are left at the
     end. People are taken to come `approach` m/s faster than they do now, those who have just
-    appeared `approach_new`.
+    appeared `approach_new`; those who walk may turn, and come at `approach_turned`.
     """
 
     speed: float = 0.5
@@ -43,6 +43,7 @@ class MotionLimits:
     spare: float = 0.09
     approach: float = 0.35
     approach_new: float = 0.8
+    approach_turned: float = 1.25
     corners: tuple[tuple[float, float], ...] = ()
 
     @classmethod

@@ -1,10 +1,11 @@
 """The guard over people: how much of a command may be driven, past everybody who is around.
 
 A robot keeps apart from each of them by what it takes to stop before they meet, while they go on as
-they do and come towards it a little faster (separation and speed, as in ISO 13855; how fast they
-are taken to come is data, `MotionLimits.approach`, and slower than the 1.6 m/s of that standard, by
-which a robot would never get beside a seat). Only what driving brings nearer than standing counts:
-a robot that somebody walks up to may drive away from them.
+they do and come towards it a little faster, or, where they walk, turn round and come at a walk
+(separation and speed, as in ISO 13855; how fast they are taken to come is data, `MotionLimits`, and
+slower than the 1.6 m/s of that standard, by which a robot would never get beside a seat). Only what
+driving brings nearer than standing counts: a robot that somebody walks up to may drive away from
+them.
 """
 
 from __future__ import annotations
@@ -58,7 +59,8 @@ class _Bodies(NamedTuple):
     """Places (n, 2) in m, velocities (n, 2), how far each must be off, and how fast it may come.
 
     Driving must leave it further off than standing would, by `leeway` in m, where both are too
-    near: no nearer than what stands, and further than who walks.
+    near: no nearer than what stands, and further than who walks. Who walks may also turn where they
+    are, and come at `turned` m/s; 0 for what stands.
     """
 
     at: Floats
@@ -66,6 +68,7 @@ class _Bodies(NamedTuple):
     apart: Floats
     approach: Floats
     leeway: Floats
+    turned: Floats
 
 
 def _bodies(around: Around, limits: MotionLimits) -> _Bodies:
@@ -79,15 +82,16 @@ def _bodies(around: Around, limits: MotionLimits) -> _Bodies:
             one.vy,
             one.half + limits.spare,
             limits.approach_new if one.age < FRESH else limits.approach,
+            limits.approach_turned if one.pace > WALKS else 0.0,
         )
         for one in tracks
     ]
-    rows += [(x, y, 0.0, 0.0, END + limits.spare, limits.approach) for x, y in ends]
-    table = np.array(rows, dtype=np.float64).reshape(-1, 6)
+    rows += [(x, y, 0.0, 0.0, END + limits.spare, limits.approach, 0.0) for x, y in ends]
+    table = np.array(rows, dtype=np.float64).reshape(-1, 7)
     apart = table[:, 4]
     walks = np.hypot(table[:, 2], table[:, 3]) > WALKS
     leeway = np.where(walks, FURTHER, -NEARER)
-    return _Bodies(table[:, :2], table[:, 2:4], apart, table[:, 5], leeway)
+    return _Bodies(table[:, :2], table[:, 2:4], apart, table[:, 5], leeway, table[:, 6])
 
 
 def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
@@ -107,6 +111,13 @@ def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
     driving = _off(people - robot[:, None], turned, limits)
     standing = _off(people, np.zeros_like(turned), limits)
     near = driving < bodies.apart + bodies.approach * times[:, None]
+    if (near & (driving < standing + bodies.leeway)).any():
+        return False
+    if not bodies.turned.any():
+        return True
+    driving = _off(bodies.at - robot[:, None], turned, limits)
+    standing = _off(bodies.at[None], np.zeros(1), limits)
+    near = (driving < bodies.apart + bodies.turned * times[:, None]) & (bodies.turned > 0)
     return not bool((near & (driving < standing + bodies.leeway)).any())
 
 

@@ -256,13 +256,14 @@ class LiveRobot:
         if self._wanted is not None and self._evidence.blocked:
             self._evidence.blocked = not self.navigator.finds_way(self._wanted)
 
-    def drive_by_hand(self, twist: Twist) -> None:
+    def drive_by_hand(self, twist: Twist, *, overrides: bool = False) -> None:
         """Drive as somebody says who holds a key; it holds for a moment, and not in a hazard.
 
-        It is slower before what the scanner sees near, and stands before what is close.
+        It is slower before what the scanner sees near, and stands before what is close, or crawls
+        past that where the command `overrides` it.
         """
         self.navigator.cancel()
-        self.hand.tell(twist, self._clock.now())
+        self.hand.tell(twist, self._clock.now(), overrides=overrides)
 
     async def stop(self, why: str, by: str = STAFF) -> None:
         """Stand still now, hold the arms where they are, and be quiet; it latches, for `by`.

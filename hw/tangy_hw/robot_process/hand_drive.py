@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -16,8 +17,11 @@ from tangy_hw.navigation.poses import HERE, Floats, endpoints
 
 HOLDS_SECONDS = 0.4  # for which a command of somebody at the keys holds
 
-Held = Literal["", "slow", "stands"]
-"""What was done about the last command: it was carried out, slower, or not at all."""
+OVERRIDE = 0.08  # m/s at most while somebody overrides the look at the scanner
+
+Held = Literal["", "slow", "stands", "overridden"]
+"""What was done about the last command: it was carried out, slower, not at all, or slowly past
+what is near, as staff wanted it who hold the key for that."""
 
 
 class HandDrive:
@@ -30,11 +34,19 @@ class HandDrive:
         self.held: Held = ""
         self._limits, self._laser = limits, laser
         self._told = STILL
+        self._overrides = False
         self._until = 0.0
 
-    def tell(self, twist: Twist, now: float) -> None:
-        """Take a command, `now` in s; it holds for a moment."""
-        self._told, self._until = self._limits.clamped(twist), now + HOLDS_SECONDS
+    def tell(self, twist: Twist, now: float, *, overrides: bool = False) -> None:
+        """Take a command, `now` in s; it holds for a moment.
+
+        One that `overrides` drives at a crawl, whatever stands near: who gives it looks there.
+        """
+        limits = self._limits
+        if overrides:
+            limits = replace(limits, speed=OVERRIDE, turn=limits.turn_close)
+        self._told, self._overrides = limits.clamped(twist), overrides
+        self._until = now + HOLDS_SECONDS
 
     def end(self) -> None:
         """Forget the command."""
@@ -63,6 +75,9 @@ class HandDrive:
         if scan is None:
             self.held = "stands"
             return STILL
+        if self._overrides:
+            self.held = "overridden"
+            return self._told
         points = endpoints(scan, REACH, self._laser)
         around = Around(tracks, points)
         if unseen is not None and len(unseen):

@@ -163,7 +163,7 @@ class RobotProcess:
                 self._break_off(text_of(asked, "why", "called off"))
             case "drive":
                 twist = Twist(number_of(asked, "forward"), number_of(asked, "turn"))
-                self.robot.drive_by_hand(twist)
+                self.robot.drive_by_hand(twist, overrides=asked.get("overrides") is True)
             case forgotten:
                 assert_never(forgotten)
         self._answer(asked, done={})

@@ -30,6 +30,8 @@ class DrivingDialog(Dialog[None]):
         Binding("down", "drive(-1, 0)", "Back"),
         Binding("left", "drive(0, 1)", "Turn left"),
         Binding("right", "drive(0, -1)", "Turn right"),
+        Binding("shift+up", "override(1, 0)", "Forward in spite of it"),
+        Binding("shift+down", "override(-1, 0)", "Back in spite of it"),
         Binding("space", "drive(0, 0)", "Stand still"),
         Binding("escape,q", "close", "Drive no more", key_display="esc"),
     ]
@@ -59,8 +61,8 @@ class DrivingDialog(Dialog[None]):
         if words:
             self._say(words)
 
-    def _drive(self, twist: Twist) -> None:
-        self._link.tell("drive", forward=twist.forward, turn=twist.turn)
+    def _drive(self, twist: Twist, *, overrides: bool = False) -> None:
+        self._link.tell("drive", forward=twist.forward, turn=twist.turn, overrides=overrides)
 
     def _say(self, words: str) -> None:
         self.query_one("#hazard", Static).update(Content(words))
@@ -68,6 +70,12 @@ class DrivingDialog(Dialog[None]):
     def action_drive(self, forward: int, turn: int) -> None:
         """Drive for a moment, or stand still."""
         self._drive(Twist(forward * (FORWARD if forward > 0 else BACK), turn * TURN))
+        self._say("")
+        self._tell()
+
+    def action_override(self, forward: int, turn: int) -> None:
+        """Crawl for a moment past what holds it up, as staff see that there is room."""
+        self._drive(Twist(forward * BACK, turn * TURN), overrides=True)
         self._say("")
         self._tell()
 

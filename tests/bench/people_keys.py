@@ -1,0 +1,99 @@
+"""How a robot drives by keys held down, towards people and walls: whom and what it touches.
+
+Run by hand: `python -m tests.bench.people_keys --drives 100`. Whoever holds the keys steers at the
+nearest person or at a wall, at full speed, and never lets go; the people and how touches count are
+those of `people_drives`. No real person or base took part.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from math import atan2, hypot, pi
+
+import numpy as np
+
+from tangy_hw.device_protocols import STILL, Odometry, Scan, Twist
+from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.navigation.poses import wrap
+from tangy_hw.robot_process.hand_drive import HandDrive
+from tangy_sim.device_simulator.lidar import cast
+from tests.bench.people_scenes import SCENES
+from tests.bench.people_simulation import (
+    LATE,
+    MAP,
+    NO_SCAN,
+    ROBOT,
+    TICK,
+    WALLS,
+    Drive,
+    followed,
+)
+from tests.hw.raycast import Wheels
+
+AMONG = ("standing", "walking", "wandering", "steps in", "group", "wheelchair")
+SECONDS, AIMS = 30.0, 4.0  # s: a drive, and until another person or wall is steered at
+ROUND = np.linspace(-pi, pi, 72, endpoint=False)
+
+
+def by_keys(number: int, seed: int) -> tuple[Drive, bool]:
+    """Drive by keys among people; return the drive, and whether a wall or a thing was touched."""
+    rng = np.random.default_rng([seed, 1000, number])
+    drive = SCENES[AMONG[number % len(AMONG)]](rng)
+    limits = MotionLimits()
+    navigator, hand = Navigator(MAP, rng, drive.start), HandDrive(limits)
+    wheels, sent, scan, touched = Wheels(rng), [STILL] * LATE, None, False
+    aim, until = 0.0, 0.0
+    while drive.time < SECONDS:
+        if drive.time >= until:
+            aim, until = rng.uniform(-pi, pi), drive.time + AIMS
+        if scan is None or rng.random() >= NO_SCAN:
+            scan = drive.look()
+        navigator.tick(Odometry(wheels.pose, drive.twist), scan, TICK)
+        hand.tell(Twist(limits.speed, _steers(drive, aim)), drive.time)
+        told = _commanded(hand, navigator, scan, drive.time)
+        sent.append(told)
+        drive.twist = followed(drive.twist, sent.pop(0))
+        wheels.turn(drive.twist, TICK)
+        drive.move()
+        near = cast(drive.pose.x, drive.pose.y, ROUND, WALLS, np.zeros((0, 3)))
+        touched |= bool(near.min() < ROBOT)
+    return drive, touched
+
+
+def _steers(drive: Drive, aim: float) -> float:
+    """Return how fast whoever holds the keys turns: at who is near, or somewhere."""
+    people = [(hypot(p.x - drive.pose.x, p.y - drive.pose.y), p) for p in drive.people]
+    far, person = min(people, key=lambda found: found[0])
+    if far < 2.5:
+        aim = atan2(person.y - drive.pose.y, person.x - drive.pose.x)
+    return float(np.clip(2.0 * wrap(aim - drive.pose.heading), -0.6, 0.6))
+
+
+def _commanded(hand: HandDrive, navigator: Navigator, scan: Scan, now: float) -> Twist:
+    told = hand.command(scan, now, navigator.unseen, navigator.tracks)
+    return STILL if told is None else told
+
+
+def row(found: Sequence[tuple[Drive, bool]]) -> str:
+    """Sum drives up in a line."""
+    ahead = [t.speed for drive, _ in found for t in drive.touches if t.kind == "ahead"]
+    speeds = f" at {max(ahead):.2f} m/s" if ahead else ""
+    return (
+        f"{len(found)} drives by keys: touched ahead {sum(d.count('ahead') for d, _ in found)}"
+        f"{speeds}, behind {sum(d.count('behind') for d, _ in found)}; walked into it "
+        f"{sum(d.count('stood') for d, _ in found)}; touched a wall {sum(t for _, t in found)}"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--drives", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    print(row([by_keys(number, options.seed) for number in range(options.drives)]))
+
+
+if __name__ == "__main__":
+    main()
