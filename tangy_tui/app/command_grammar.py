@@ -259,6 +259,16 @@ def read_command(
     return None
 
 
+def read_telling(line: str, find_person: Callable[[str], str]) -> Tell:
+    """Return what a line tells: "NAME: words", or words about whom the game waits for.
+
+    Raises:
+        TangyError: a name stands before a colon that nobody has; one sentence.
+    """
+    said = " ".join(line.split())
+    return _read_told(said, find_person) or Tell(None, said)
+
+
 def _read_told(said: str, find_person: Callable[[str], str]) -> Tell | None:
     """Return what is told of a person, None where nothing is.
 

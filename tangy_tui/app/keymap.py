@@ -82,6 +82,7 @@ ACTIONS: tuple[KeyAction, ...] = (
     KeyAction("call_again", ("c",), "call again"),
     KeyAction("ask_for", ("h",), "ask for"),
     KeyAction("whose_card", ("b",), "whose card"),
+    KeyAction("tell", ("l",), "tell"),
     # lists
     KeyAction("put_away", ("x",), "put away"),
     KeyAction("mark", ("asterisk",), "mark"),

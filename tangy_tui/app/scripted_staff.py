@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.past_game import PastGame
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import CallExpert, Clear, EndGame, GoOn, StaffNote
@@ -57,7 +58,11 @@ def _answer(control: GameController) -> list[Result]:
     if expected is None:
         return list(control.give_up())
     behaviour = activity.behaviour(expected)
+    selector = activity.whom_expected(question.state.situation)
     target = question.state.attended if behaviour.attends else None
+    if behaviour.to:
+        whom = dict(question.state.whom).get(selector or "")
+        target = whom or (None if selector else first_addressee(behaviour, question.state))
     return control.answer(behaviour, target)
 
 

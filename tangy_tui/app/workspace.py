@@ -12,7 +12,6 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity, load_activity
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.person import Person, folded, load_people, unaccented
@@ -22,6 +21,7 @@ from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
+from tangy_tui.app.chosen_activity import choose_activity, chosen_activity
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 from tangy_tui.app.session_door import SessionDoor
@@ -63,7 +63,7 @@ class Workspace:
         self,
         folder: Path,
         *,
-        activity: str = DEFAULT_ACTIVITY,
+        activity: str = "",
         users: int = 4,
         write: bool = True,
         robot: str = "tangy",
@@ -76,21 +76,34 @@ class Workspace:
             StoreError: the data folder cannot be used, or another Tangy writes to it.
         """
         self.settings = read_settings(folder)
-        self.profile = activity
-        """The activity as it was asked for: a name, or the path of a file."""
-        self.activity: Activity = load_activity(activity)
+        self._users = users
         self.robot: Robot = load_robot(robot)
-        self.robot.check(self.activity)
+        self._take_up(activity or chosen_activity(folder))
         self.room: Room = load_room()
-        self._sample = load_people(users)
-        if self.activity.teams:
-            self._sample = tuple(Person(team, team) for team in self.activity.teams)
         self.store = Store.open(folder, write=write, now=now)
         self.door = SessionDoor(folder)
         self._logging = ExitStack()
         if write:
             self._logging.enter_context(logging_to(folder))
         self.people: tuple[Person, ...] = ()
+        self.read_people()
+
+    def _take_up(self, activity: str) -> None:
+        loaded: Activity = load_activity(activity)
+        self.robot.check(loaded)
+        self.profile = activity
+        """The activity as it was asked for: a name, or the path of a file."""
+        self.activity = loaded
+        teams = tuple(Person(team, team) for team in loaded.teams)
+        self._sample = teams or load_people(self._users)
+
+    def change_activity(self, activity: str) -> None:
+        """Teach and play another activity from now on, and where none is named.
+
+        Raises:
+            TangyError: there is no such activity, the robot cannot do it, or it cannot be kept.
+        """
+        self._take_up(choose_activity(self.store.folder, activity))
         self.read_people()
 
     @property

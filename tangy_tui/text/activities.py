@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from tangy_profiles.declared.situations import seen_facts
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.state import EVERYBODY, ActivityState
 from tangy_tui.text.numbers import counted
 
@@ -160,3 +161,8 @@ def people_did(doing: dict[str, str]) -> str:
     """Tell what people did after a step ("": nothing)."""
     did = "; ".join(f"{person}: {what}" for person, what in doing.items())
     return f"   {did}" if did else ""
+
+
+def with_activity(mode: str, activity: Activity) -> str:
+    """Name the activity beside a part of the program, unless it is the usual one."""
+    return mode if activity.name == DEFAULT_ACTIVITY else f"{mode}: {activity.title}"

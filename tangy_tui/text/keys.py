@@ -59,6 +59,7 @@ NAMES: Mapping[str, Named] = MappingProxyType(
         "call_again": Named("Call the last number again", "call again"),
         "ask_for": Named("Ask for help for a person", "ask for"),
         "whose_card": Named("Say whose card is whose", "whose card"),
+        "tell": Named("Tell what a person answers or does", "tell"),
         "put_away": Named("Put away, or bring back", "put away"),
         "mark": Named("Mark, to merge", "mark"),
         "merge": Named("Merge the marked demonstrations", "merge"),

@@ -20,6 +20,7 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.activities import with_activity
 from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.games import (
     begun_words,
@@ -118,7 +119,7 @@ class GamePicture:
         """Say how the robot is, where in the game it is, and what else is to be said."""
         self._screen.query_one(StatusLine).show(
             Status(
-                mode=mode,
+                mode=with_activity(mode, self._workspace.activity),
                 robot=robot,
                 stage="over" if self._supervision.over and self._game else self._stage,
                 game=self._game,

@@ -29,6 +29,7 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text import teaching as text
+from tangy_tui.text.activities import with_activity
 from tangy_tui.text.coach import arranged_words, coach_words, unseen_words
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.remarks import remark_words, settled_words
@@ -136,9 +137,10 @@ class TeachingPicture:
         state = teaching.world.observe()
         found = self._shown.now()
         self._coverage(found)
+        mode = "guided" if shown.guided else "teach"
         self._screen.query_one(StatusLine).show(
             Status(
-                mode="guided" if shown.guided else "teach",
+                mode=with_activity(mode, teaching.activity),
                 stage=state.stage if not teaching.world.over else "over",
                 seen=f"{len(found.seen)}/{len(found.times)}",
                 step=len(shown.steps),

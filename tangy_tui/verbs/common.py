@@ -12,7 +12,9 @@ import typer
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, nothing else.")]
 Seed = Annotated[int | None, typer.Option(help="Repeat the same simulated games.")]
 Data = Annotated[Path | None, typer.Option(help="The data folder, instead of your own.")]
-ActivityName = Annotated[str, typer.Option("--activity", help="A shipped activity, or its TOML.")]
+ActivityName = Annotated[
+    str, typer.Option("--activity", help="An activity, or its TOML; usually the chosen one.")
+]
 Users = Annotated[int, typer.Option(help="How many people take part, 1 to 8.")]
 Ascii = Annotated[bool, typer.Option("--ascii", help="Draw with plain ASCII characters only.")]
 Games = Annotated[int, typer.Option(min=1, help="How many games.")]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text import settling
@@ -33,7 +32,7 @@ Some = Annotated[list[str], typer.Argument(metavar="N...", help="Numbers in the 
 
 @app.command("list")
 def list_them(
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -54,7 +53,7 @@ def list_them(
 @app.command()
 def show(
     demonstration: One,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -84,7 +83,7 @@ def show(
 @app.command()
 def delete(
     demonstrations: Some,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -96,7 +95,7 @@ def delete(
 @app.command()
 def restore(
     demonstrations: Some,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -108,7 +107,7 @@ def restore(
 @app.command()
 def merge(
     demonstrations: Some,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -121,7 +120,7 @@ def merge(
 def split(
     demonstration: One,
     step: Annotated[int, typer.Argument(help="The first part ends with this step.")],
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -132,7 +131,7 @@ def split(
 
 @app.command()
 def undo(
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -143,7 +142,7 @@ def undo(
 
 @app.command()
 def redo(
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -155,7 +154,7 @@ def redo(
 @app.command()
 def conflicts(
     unfinished: Unfinished = False,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -195,7 +194,7 @@ def resolve(
     ] = None,
     both: Annotated[bool, typer.Option("--both", help="All answers are right.")] = False,
     unfinished: Unfinished = False,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -284,7 +283,7 @@ def accepted(
     take_back: Annotated[
         int | None, typer.Option(metavar="N", help="Take back the one of this number.")
     ] = None,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

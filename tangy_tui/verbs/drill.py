@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.person import read_name
 from tangy_tui.text.command_line import PREPARING_DRILL
 from tangy_tui.verbs.common import (
@@ -28,7 +27,7 @@ def drill(
     who: Annotated[str | None, typer.Option(help="Who rehearses; default your login name.")] = None,
     scores: Annotated[bool, typer.Option("--scores", help="List earlier score sheets.")] = False,
     plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     users: Users = 4,
     data: Data = None,
     as_json: Json = False,

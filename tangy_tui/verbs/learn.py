@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.text.learnt import changed_lines, grounds, learnt_lines, only_unfinished
@@ -26,7 +25,7 @@ MOST_SHOWN = 8
 
 
 def learn(
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     forest: Annotated[str, typer.Option(help="exact, or paper for its bagging.")] = "exact",
     name: Annotated[str, typer.Option(help="What to call the policy.")] = "",
     unfinished: Annotated[
@@ -99,7 +98,7 @@ def learn(
 
 
 def policy(
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     name: Annotated[
         str, typer.Option(help="A policy by its name or digest, or last~1; default the last.")
     ] = "last",

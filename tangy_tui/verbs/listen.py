@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import WHAT_TO_LISTEN_TO, cut_off, recordings_deleted
@@ -51,7 +50,7 @@ def listen(
         bool,
         typer.Option("--forget-recordings", help="Delete all that `teach --record` has kept."),
     ] = False,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

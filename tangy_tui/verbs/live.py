@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.given_file import read_given_text
@@ -57,7 +56,7 @@ def live(
         bool, typer.Option("--headless", help="Without a screen, on the bench as fast as it goes.")
     ] = False,
     plain_lines: Plain = False,
-    activity: common.ActivityName = DEFAULT_ACTIVITY,
+    activity: common.ActivityName = "",
     policy: PolicyName = "",
     inject: Annotated[
         list[str] | None,

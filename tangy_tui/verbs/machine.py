@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import log_hints
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
@@ -41,7 +40,7 @@ def doctor(
     logs: Annotated[
         bool, typer.Option("--logs", help="Say where each process writes down what it does.")
     ] = False,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -65,9 +64,11 @@ def doctor(
         from tangy_hw.perception.camera_hub import camera_sources
         from tangy_profiles.activity import load_activity
         from tangy_profiles.robot import load_robot
+        from tangy_tui.app.chosen_activity import chosen_activity
 
         body = load_robot(robot)
-        game, cameras = load_activity(activity), camera_sources(body)
+        game = load_activity(activity or chosen_activity(data_folder(data)))
+        cameras = camera_sources(body)
         tried = examine_robot(body, game, cameras, folder=data_folder(data))
         tried += examine_contacts(body)
         wanted |= {finding.part for finding in tried}

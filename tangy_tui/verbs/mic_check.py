@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.reading import plain
 from tangy_tui.text.mic_check import checked_lines
 from tangy_tui.verbs.common import ActivityName, Data, Json, print_json, print_line
@@ -36,7 +35,7 @@ def check(
     listed: Annotated[
         bool, typer.Option("--list", help="Print what is to be said, and check nothing.")
     ] = False,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     data: Data = None,
     as_json: Json = False,
 ) -> None:

@@ -43,7 +43,7 @@ Strategy = Annotated[str, typer.Argument(help="A persuasive strategy of the acti
 @app.callback(invoke_without_command=True)
 def people(
     context: typer.Context,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -52,14 +52,14 @@ def people(
     """List the people, where no verb is given."""
     if context.invoked_subcommand is None:
         people_list(activity, seed, data, users, as_json=as_json)
-    elif (activity, seed, data, users, as_json) != (DEFAULT_ACTIVITY, None, None, 4, False):
+    elif (activity, seed, data, users, as_json) != ("", None, None, 4, False):
         verb = context.invoked_subcommand
         raise TangyError(f"Options of `tangy people {verb}` stand after {verb}.")
 
 
 @app.command("list")
 def people_list(
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -81,7 +81,7 @@ def people_list(
 @app.command("show")
 def people_show(
     person: Who,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -100,7 +100,7 @@ def people_show(
 @app.command("history")
 def people_history(
     person: Who,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -126,7 +126,7 @@ def people_void(
         int | None, typer.Argument(help="Its number in the history; without one, the last.")
     ] = None,
     why: Annotated[str, typer.Option(help="The reason, for the log.")] = "",
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -153,7 +153,7 @@ def people_feedback(
     seen: Annotated[
         bool, typer.Option("--seen", help="Staff asked themselves: the log has no request for it.")
     ] = False,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -180,7 +180,7 @@ def people_switch(
     person: Who,
     strategy: Strategy,
     state: Annotated[str, typer.Argument(metavar="on|off")],
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -206,7 +206,7 @@ def people_method(
             "stays as it is. Or: default.",
         ),
     ],
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -227,7 +227,7 @@ def people_method(
 @app.command("undo")
 def people_undo(
     person: Who,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,

@@ -53,7 +53,7 @@ def play(
     users: common.Users = 4,
     headless: Annotated[bool, typer.Option("--headless", help="Without a screen.")] = False,
     plain_lines: Plain = False,
-    activity: common.ActivityName = DEFAULT_ACTIVITY,
+    activity: common.ActivityName = "",
     policy: PolicyName = "",
     teacher: Teacher = None,
     inject: Annotated[

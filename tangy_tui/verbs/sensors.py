@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.card_face import USUAL_SEED
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_tui.text.cameras import NO_SOURCE
 from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import ActivityName, Ascii, Data, Json, Seed, print_json
@@ -42,7 +41,7 @@ def sensors(
     ] = 3.0,
     plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
     deck_seed: DeckSeed = USUAL_SEED,
-    activity: ActivityName = DEFAULT_ACTIVITY,
+    activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

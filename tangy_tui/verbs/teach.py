@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.progress import NOTHING_SHOWN, coverage_so_far, situations_shown
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def teach(
-    activity: common.ActivityName = DEFAULT_ACTIVITY,
+    activity: common.ActivityName = "",
     script: Annotated[Path | None, typer.Option(help="Take the lines from a file.")] = None,
     mic: Mic = None,
     hands_free: HandsFree = False,

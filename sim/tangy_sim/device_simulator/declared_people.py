@@ -102,6 +102,8 @@ class DeclaredPeople(People):
     def _acts(self, act: Act) -> None:
         """Let somebody do something, if there is still a reason to."""
         game = self.known
+        if not self._may(act):
+            return
         fact = game.declaration.facts[act.fact]
         said = act.value if act.fact == ASKING else raw(game, fact, act.value)
         if self.game.over or not game.observe(act.fact, act.who, said):
@@ -110,6 +112,12 @@ class DeclaredPeople(People):
             self.sitters[act.who].asks_since = self.now
         else:
             self.game.acts.append((act.fact, act.who or "", said))
+
+    def _may(self, act: Act) -> bool:
+        """Say whether people have reason to do something now, where their habit says when."""
+        habits = (one for one in self._declaration.habits if one.fact == act.fact)
+        when = [condition for habit in habits for condition in habit.when]
+        return all(self.known.holds(one, act.who) for one in when)
 
     def _turn_down(self, sitter: Sitter) -> None:
         super()._turn_down(sitter)

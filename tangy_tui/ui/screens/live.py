@@ -17,9 +17,13 @@ from textual.binding import BindingType
 from textual.content import Content
 from textual.screen import Screen
 
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.declared.told import about, sayable
+from tangy_profiles.errors import TangyError
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import FRONT
+from tangy_tui.app.command_grammar import read_telling
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
     AT_ONCE,
@@ -53,11 +57,12 @@ from tangy_tui.text.live_news import seated_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
+from tangy_tui.ui.dialogs.tell import TellDialog
 from tangy_tui.ui.fault_console import Work
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens import live_keys
 from tangy_tui.ui.screens.live_cards import LiveCards
-from tangy_tui.ui.screens.live_keys import NOT_LIVE
+from tangy_tui.ui.screens.live_keys import CARDS_ONLY, FACTS_ONLY, NOT_LIVE
 from tangy_tui.ui.screens.live_marks import track
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -118,7 +123,12 @@ class LiveScreen(PlayScreen):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave out what cannot be done among people."""
-        return action not in NOT_LIVE and super().check_action(action, parameters)
+        none = FACTS_ONLY if self._has_cards else CARDS_ONLY
+        return action not in (*NOT_LIVE, *none) and super().check_action(action, parameters)
+
+    @property
+    def _has_cards(self) -> bool:
+        return not isinstance(self.world, DeclaredLiveWorld)
 
     # ---------------------------------------------------------------------------------- game
 
@@ -250,6 +260,24 @@ class LiveScreen(PlayScreen):
             say = self._cards.say_whose(self.app, self.control)
             self.run_worker(say, name="card", group="ask")
 
+    def action_tell(self) -> None:
+        """Tell Tangy what a person answers or does."""
+        if not self._supervision.over:
+            self.run_worker(self._tell_of(), name="tell", group="ask")
+
+    async def _tell_of(self) -> None:
+        world, workspace = self.world, self._workspace
+        if not isinstance(world, DeclaredLiveWorld):
+            return
+        person = about(world.game)
+        dialog = TellDialog(workspace.name(person) if person else "", sayable(world.game))
+        line = await self.app.push_screen_wait(dialog)
+        if line is not None:
+            try:
+                self._do(read_telling(line, lambda wanted: workspace.find_person(wanted).id))
+            except TangyError as error:
+                self._tell_now(str(error), "warn")
+
     async def _learn(self, answer: Verified) -> list[Result]:
         """Act on an answer, which takes its time, and learn from it."""
         self.working += 1
@@ -310,7 +338,9 @@ class LiveScreen(PlayScreen):
         """Show how the game stands, and the keys that do something now."""
         super().show_status()
         going = self.control.going
-        self.query_one(KeyLine).show(*live_keys.keys(going=going, over=self.at_rest))
+        self.query_one(KeyLine).show(
+            *live_keys.keys(going=going, over=self.at_rest, cards=self._has_cards)
+        )
 
     def _note(self) -> str:
         """Say what the robot is doing, or what the keys would do next."""

@@ -29,7 +29,8 @@ HELP = (
     "it does what it is less sure of, or before everything. {take_over} takes over: you say what "
     "it does next, and Esc lets it go on by itself after all. {drive} drives it with the arrow "
     "keys. {call_again} calls the last number again, {undo} takes it back, {ask_for} asks for "
-    "help for a person who cannot, {whose_card} says whose card is whose. {inject} brings about a "
+    "help for a person who cannot, {whose_card} says whose card is whose; in an activity without "
+    "cards {tell} tells Tangy what a person answers or does. {inject} brings about a "
     "fault, on the bench. With a microphone, stop and stop the robot stop it at once when they "
     "are said, and {talk} talks where a key is pushed to talk. Esc ends the game."
 )
@@ -42,15 +43,21 @@ BINDINGS: list[BindingType] = [
     *bind("undo", "void_call", name=TAKE_CALL_BACK),
     *bind("ask_for"),
     *bind("whose_card"),
+    *bind("tell"),
     *play_keys.BINDINGS,
 ]
 
 
-def keys(*, going: bool, over: bool = False) -> tuple[str | Key, ...]:
+CARDS_ONLY, FACTS_ONLY = ("call_again", "void_call", "whose_card"), ("tell",)
+"""Actions of an activity with cards, and of one that is declared by facts."""
+
+
+def keys(*, going: bool, over: bool = False, cards: bool = True) -> tuple[str | Key, ...]:
     """Return the keys and what they do while the game goes on, stands still, or is over."""
     if over:
         return play_keys.keys(going=going, over=True)
     return (
-        "pause" if going else "pause:go on", "stop", "call_again", "ask_for", "take_over", "drive",
-        "autonomy", "why", ("1-7", "show"), "undo:call back", "filter", "back:end", "help",
+        "pause" if going else "pause:go on", "stop", "call_again" if cards else "tell", "ask_for",
+        "take_over", "drive", "autonomy", "why", ("1-7", "show"),
+        *(("undo:call back",) if cards else ()), "filter", "back:end", "help",
     )  # fmt: skip

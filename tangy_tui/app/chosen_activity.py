@@ -1,0 +1,53 @@
+"""Which activity is taught and played at a data folder where none is named: `activity.toml`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain, read_toml
+
+FILE = "activity.toml"
+
+
+def chosen_activity(folder: Path) -> str:
+    """Return the activity that was chosen: its name, or the path of its file.
+
+    Raises:
+        ProfileError: the file has a mistake.
+    """
+    path = folder / FILE
+    if not path.exists():
+        return DEFAULT_ACTIVITY
+    table = read_toml(path)
+    name = table.text("activity")
+    table.close()
+    return name
+
+
+def choose_activity(folder: Path, activity: str) -> str:
+    """Keep which activity is taught and played from now on.
+
+    Args:
+        folder: the data folder.
+        activity: its name, or the path of its file.
+
+    Returns:
+        What is kept: a path is a whole one.
+
+    Raises:
+        TangyError: there is no such activity, it has mistakes, or that cannot be written.
+    """
+    load_activity(activity)
+    kept = str(Path(activity).resolve()) if activity.endswith(".toml") else activity
+    new = folder / f"{FILE}.new"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        new.write_text(f"activity = {json.dumps(kept, ensure_ascii=False)}\n", encoding="utf-8")
+        new.replace(folder / FILE)
+    except OSError as error:
+        raise TangyError(plain(f"{folder / FILE}: cannot be written: {error.strerror}.")) from None
+    return kept
