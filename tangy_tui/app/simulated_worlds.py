@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
@@ -13,11 +13,16 @@ from tangy_profiles.store import Store
 from tangy_tui.world import World
 
 if TYPE_CHECKING:
+    from tangy_profiles.health import Health
     from tangy_sim.worlds.injection import Injection
 
 
 def game_world(
-    activity: Activity, people: Sequence[str], seed: int, injections: Sequence[Injection] | None
+    activity: Activity,
+    people: Sequence[str],
+    seed: int,
+    injections: Sequence[Injection] | None,
+    live: Callable[[], Health] | None = None,
 ) -> World:
     """Make the simulated world of games.
 
@@ -26,6 +31,7 @@ def game_world(
         people: who takes part.
         seed: of the random generators.
         injections: faults that are to come; None makes a world without any.
+        live: what real devices report, in place of the simulated ones.
 
     Raises:
         TangyError: faults are to come in an activity that has none.
@@ -36,6 +42,11 @@ def game_world(
         if injections:
             raise TangyError(f"No fault can be brought about in {activity.title} yet.")
         return DeclaredWorld(activity, people, seed=seed)
+    if live is not None:
+        from tangy_tui.app.partly_live_world import PartlyLiveWorld
+
+        to_come = injections or ()
+        return PartlyLiveWorld(activity, people, seed=seed, injections=to_come, live=live)
     if injections is None:
         from tangy_sim.worlds.world import SimulatedWorld
 

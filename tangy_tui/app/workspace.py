@@ -94,15 +94,12 @@ class Workspace:
         self.profile = activity
         """The activity as it was asked for: a name, or the path of a file."""
         self.activity = loaded
-        teams = tuple(Person(team, team) for team in loaded.teams)
-        self._sample = teams or load_people(self._users)
+        self._sample = tuple(Person(team, team) for team in loaded.teams) or load_people(
+            self._users
+        )
 
     def change_activity(self, activity: str) -> None:
-        """Teach and play another activity from now on, and where none is named.
-
-        Raises:
-            TangyError: there is no such activity, the robot cannot do it, or it cannot be kept.
-        """
+        """Teach and play another activity from now on, or raise TangyError where it cannot be."""
         self._take_up(choose_activity(self.store.folder, activity))
         self.read_people()
 
@@ -322,15 +319,8 @@ class Workspace:
 
         to_come = [read_injection(text) for text in injections]
         seed = self.game_seed(seed)
-        people = list(self.names)
-        if world is not None:
-            pass
-        elif live is None:
-            world = game_world(self.activity, people, seed, to_come)
-        else:
-            from tangy_tui.app.partly_live_world import PartlyLiveWorld
-
-            world = PartlyLiveWorld(self.activity, people, seed=seed, injections=to_come, live=live)
+        if world is None:
+            world = game_world(self.activity, list(self.names), seed, to_come, live)
         supervision = Supervision(
             self._facilitation(world, policy, seed, asks),
             load_faults(self.robot),

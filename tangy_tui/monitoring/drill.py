@@ -140,6 +140,7 @@ class Drill:
         Raises:
             TangyError: there is nothing to rehearse with, or the fault rules have a mistake.
         """
+        activity.need_cards()
         learnt = policy_for_drill(store, activity)
         tabletop = Tabletop(
             learnt.policy, learnt.effects, load_faults(robot), robot, activity, names

@@ -166,3 +166,18 @@ def people_did(doing: dict[str, str]) -> str:
 def with_activity(mode: str, activity: Activity) -> str:
     """Name the activity beside a part of the program, unless it is the usual one."""
     return mode if activity.name == DEFAULT_ACTIVITY else f"{mode}: {activity.title}"
+
+
+CHOOSE_ACTIVITY = "Which activity is taught and played?"
+
+
+def activity_note(activity: Activity) -> str:
+    """Say in a few words what an activity is made of."""
+    behaviours = len(activity.behaviours)
+    teams = f", for {len(activity.teams)} teams" if activity.teams else ""
+    return f"{behaviours} behaviours, {len(activity.situations)} situations{teams}"
+
+
+def chosen_words(title: str) -> str:
+    """Say that an activity was chosen."""
+    return f"{title} is taught and played from now on."

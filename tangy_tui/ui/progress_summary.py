@@ -33,6 +33,7 @@ def how_far(workspace: Workspace) -> Mapping[str, str]:
         "rehearse": "" if sheet is None else f"last: {sheet.points} of {sheet.most} points",
         "policy": "" if kept is None else kept.name,
         "people": people,
+        "activity": workspace.activity.title,
         "name": workspace.teacher,
     }
 

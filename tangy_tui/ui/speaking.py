@@ -148,6 +148,13 @@ class Speaker:
         if self.on and self._voice is not None and self._known:
             self._voice.prerender(self._known)
 
+    async def speak_of(self, activity: Activity) -> None:
+        """Speak the lines of another activity from now on, in a voice made for it."""
+        on, self._activity = self.on, activity
+        await self.close()
+        self._voice, self._known = None, ()
+        self.switch(on)
+
     async def close(self) -> None:
         """End all that runs for the voice."""
         self.on = False

@@ -157,6 +157,20 @@ def activity_try(
     print_json({"steps": steps, "finished": True}) if as_json else print(TRIED)
 
 
+@app.command("use")
+def activity_use(
+    activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
+    data: Data = None,
+) -> None:
+    """Teach and play this activity where none is named."""
+    from tangy_profiles.activity import load_activity
+    from tangy_tui.app.chosen_activity import choose_activity
+    from tangy_tui.app.workspace import data_folder
+    from tangy_tui.text.activities import chosen_words
+
+    print(plain(chosen_words(load_activity(choose_activity(data_folder(data), activity)).title)))
+
+
 @app.command("new")
 def activity_new(
     folder: Annotated[Path, typer.Argument(help="Where the files go.")] = Path(),

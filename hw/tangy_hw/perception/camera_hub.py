@@ -240,7 +240,7 @@ class CameraHub:
         self._cards = CardSight()
         for camera in self.streams.values():
             await camera.start()
-        if self.card_device:
+        if self.card_device and self._deck is not None and self._deck.numbers:
             self._task = asyncio.create_task(self._read())
 
     async def _end(self) -> None:

@@ -47,9 +47,7 @@ class DeclaredActivity(Activity):
         Raises:
             ProfileError: always.
         """
-        raise ProfileError(
-            f"{self.title} has no cards: so far it is taught and played in the simulated room only."
-        )
+        raise ProfileError(f"{self.title} has no cards, and this needs some.")
 
     @property
     def teams(self) -> tuple[str, ...]:

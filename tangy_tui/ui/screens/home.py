@@ -48,6 +48,7 @@ CHOICES = (
     MenuItem("o", "Policy", "what Tangy does in which situation"),
     MenuItem("e", "People", "who takes part, and what persuades them"),
     MenuItem("c", "Sensors", "cameras and devices, and the last card"),
+    MenuItem("a", "Activity", "choose what is taught and played"),
     MenuItem("d", "Demo", "the whole story in a minute"),
     MenuItem("n", "Name", "who teaches: change your name"),
     MenuItem("h", "Help", "keys, and how to begin"),
@@ -140,7 +141,7 @@ class Menu(Widget, can_focus=True):
 
     def _first(self) -> int:
         """Return the line of the first choice: what stands above it goes where room is scarce."""
-        return max(1, min(3, self.size.height - len(self._choices)))
+        return max(0, min(3, self.size.height - len(self._choices)))
 
     def _line(self, y: int) -> int | None:
         """Return which choice stands on line `y` of the content."""
@@ -211,6 +212,12 @@ class HomeScreen(TangyScreen[None]):
             "open:choose", ("letter", "go to"), ("up down", "move"), "guided", "library", "learn",
             "palette", "quit", "help",
         )  # fmt: skip
+
+    def show_activity(self, title: str) -> None:
+        """Show which activity is taught and played."""
+        self._note = title
+        self.query_one(StatusLine).show(Status(mode="home", note=title))
+        self._menu.show(self._states())
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
         """Look how far things are."""

@@ -1,0 +1,53 @@
+"""Choosing at home which activity is taught and played."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_profiles.activity import known_activities, load_activity
+from tangy_profiles.errors import ProfileError, TangyError
+from tangy_tui.text.activities import CHOOSE_ACTIVITY, activity_note, chosen_words
+
+if TYPE_CHECKING:
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.ui.program import Program
+
+
+async def choose_at_home(program: Program) -> None:
+    """Ask which activity it is to be from now on, and take it up."""
+    from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+    from tangy_tui.ui.screens.home import HomeScreen
+
+    workspace = program.workspace
+    options = [Option(*one) for one in choices(workspace)]
+    wanted = await program.push_screen_wait(ChooseDialog(CHOOSE_ACTIVITY, options))
+    if wanted is None or wanted == workspace.profile:
+        return
+    try:
+        workspace.change_activity(wanted)
+    except TangyError as error:
+        program.say(str(error), bad=True)
+        return
+    await program.speaker.speak_of(workspace.activity)
+    if program.hearing is not None:
+        program.hearing.ears.understand_by(workspace.phrasebook())
+    if isinstance(program.screen, HomeScreen):
+        program.screen.show_activity(workspace.activity.title)
+    program.say(chosen_words(workspace.activity.title))
+
+
+def choices(workspace: Workspace) -> list[tuple[str, str, str]]:
+    """Return the activities there are: word, title, and what each is like; the present one first.
+
+    A file of one's own is among them while it is the present one.
+    """
+    found = [(workspace.profile, workspace.activity.title, activity_note(workspace.activity))]
+    for name in sorted(known_activities()):
+        if name == workspace.profile:
+            continue
+        try:
+            activity = load_activity(name)
+        except ProfileError:
+            continue  # of what other packages bring; `tangy doctor` says what is wrong with it
+        found.append((name, activity.title, activity_note(activity)))
+    return found

@@ -1,0 +1,41 @@
+"""At home another activity is chosen; what is taught and played from then on is that one."""
+
+from __future__ import annotations
+
+from tangy_tui.app.chosen_activity import chosen_activity
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.teach import TeachScreen
+from tests.pilot.conftest import Run, StillClock, screen_text
+from tests.support.declared import declared
+from tests.support.waiting import until_shown
+
+
+async def test_a_chooses_the_activity_and_teaching_follows(run: Run, workspace: Workspace) -> None:
+    title = declared("trivia").title
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        await pilot.press("a", "enter")
+        await until_shown(pilot, lambda: title in screen_text(pilot.app))
+        places = list(range(20))
+        for _ in places:
+            lines = screen_text(pilot.app).splitlines()
+            if any("▸" in line and f" {title} " in line for line in lines):
+                break
+            await pilot.press("down")
+        await pilot.press("enter")
+        await until_shown(pilot, lambda: workspace.activity.name == "trivia")
+        assert chosen_activity(workspace.store.folder) == "trivia"
+        await until_shown(pilot, lambda: f"home │ {title}" in screen_text(pilot.app))
+        await pilot.press("t", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, TeachScreen))
+        await until_shown(pilot, lambda: f"teach: {title}" in screen_text(pilot.app))
+
+
+async def test_esc_leaves_the_activity_as_it_is(run: Run, workspace: Workspace) -> None:
+    before = workspace.activity.name
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        await pilot.press("a", "enter")
+        await until_shown(pilot, lambda: declared("memory").title in screen_text(pilot.app))
+        await pilot.press("escape")
+        await pilot.pause()
+        assert workspace.activity.name == before
