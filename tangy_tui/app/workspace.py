@@ -91,12 +91,9 @@ class Workspace:
     def _take_up(self, activity: str) -> None:
         loaded: Activity = load_activity(activity)
         self.robot.check(loaded)
-        self.profile = activity
-        """The activity as it was asked for: a name, or the path of a file."""
-        self.activity = loaded
-        self._sample = tuple(Person(team, team) for team in loaded.teams) or load_people(
-            self._users
-        )
+        self.activity, self.profile = loaded, activity  # the latter: as it was asked for
+        teams = tuple(Person(team, team) for team in loaded.teams)
+        self._sample = teams or load_people(self._users)
 
     def change_activity(self, activity: str) -> None:
         """Teach and play another activity from now on, or raise TangyError where it cannot be."""
