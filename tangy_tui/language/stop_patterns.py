@@ -203,7 +203,8 @@ _STILL = _any(
     "(?:do not|dont) (?:come|get|go|move|drive) (?:so |too )?(?:near|close)"
     "(?: to)?(?: (?:me|us|him|her|them|people|anybody|anyone))?",
     "(?:do not|dont) (?:drive|do anything)|do nothing|go no further|no (?:further|closer)",
-    "not another (?:inch|step|move|metre|centimetre)|nobody move|emergency|e ?stop|enough",
+    "not another (?:inch|step|move|metre|centimetre)|nobody move|e ?stop|enough",
+    "(?:(?:this is|its) an )?emergency",
     "that(?: i)?s enough|cut it out|knock it off|shut ?down|power (?:off|down)|switch off",
     "come to a (?:complete |full )?(?:stop|halt|standstill)|hit the brakes?|brakes?",
     f"(?:do not|dont) let {ROBOT} (?:move|drive|go|come|turn|run)(?: \\w+){{0,3}}",

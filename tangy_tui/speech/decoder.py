@@ -3,8 +3,9 @@
 In the usual mode each utterance is decoded twice: by an n-gram model of the phrases in which
 everyday words can stand anywhere, which says what the words were, and by a grammar of the phrases
 with a branch for any phones, which says how well anything at all can explain the sound. The
-difference of the two scores tells words that were said from words that merely fit best. In the
-paper's mode there is just the n-gram model of the phrases.
+difference of the two scores tells words that were said from words that merely fit best. Ears of
+their own listen for what stops the robot (`stop_decoder`). In the paper's mode there is just the
+n-gram model of the phrases.
 
 pocketsphinx holds the interpreter's lock, so this runs in a process of its own: see `worker`.
 """
@@ -12,7 +13,6 @@ pocketsphinx holds the interpreter's lock, so this runs in a process of its own:
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
@@ -29,13 +29,12 @@ from tangy_tui.speech.language import (
     words_of,
 )
 from tangy_tui.speech.noise_reduction import cleaned, surrounded
+from tangy_tui.speech.pocketsphinx_search import NO_PATH, add_model, best_path, make_search
+from tangy_tui.speech.stop_decoder import StopDecoder
 
 SHORTEST = 0.1  # s; less cannot hold a word, and an empty buffer raises IndexError
-SHIFT = 1024  # pocketsphinx keeps scores shifted right by ten bits
-FRAMES_A_SECOND = 100
-NOISES = ("<", "[", "+", "(")  # how silences and noises begin among the words of a path
 MODEL = "en-us/"
-NO_PATH = -1e9  # the score where no path comes to an end
+AMONG_STOPS = 1_500  # everyday words that the ears for stopping know
 UNKNOWN_MARGIN = -0.5  # that of most speech which is no command
 
 # How sure the paper's n-gram model is: a logistic over two figures of the best path, its score a
@@ -83,7 +82,8 @@ class TwoDecoders:
     def __init__(self, wanted: Wanted) -> None:
         everyday = everyday_words(EVERYDAY)
         known = _pronunciations(
-            {*words_of(wanted.phrases), *words_of(wanted.answers), *everyday},
+            words_of((*wanted.phrases, *wanted.answers, *wanted.stops, *wanted.no_stops))
+            | everyday.keys(),
             wanted.pronunciations,
         )
         self.left_out, phrases = _heard(wanted.phrases, known)
@@ -92,17 +92,19 @@ class TwoDecoders:
         own = {w: known[w] for w in (*words_of(phrases), *words_of(answers))}
         open_words = {word: p for word, p in everyday.items() if word in known}
         share = weight / (1 + weight)
-        self._words = _decoder(
+        self._words = make_search(
             dictionary({**{w: known[w] for w in open_words}, **own}), bestpath=True, active=1500
         )
-        self._grammar = _decoder(dictionary(own, phones=True), bestpath=False, active=1000)
+        self._grammar = make_search(dictionary(own, phones=True), bestpath=False, active=1000)
         for name, said in (("commands", phrases), ("answers", answers)):
             if said:
-                _add_model(self._words, name, open_model(said, open_words, share))
+                add_model(self._words, name, open_model(said, open_words, share))
                 self._grammar.add_jsgf_string(name, grammar(said, weight))
         self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
+        few = dict(list(open_words.items())[:AMONG_STOPS])
+        self._stops = StopDecoder(wanted.stops, wanted.no_stops, few, known, wanted.game)
         self._open = False
-        self._beside = ForkedWorker(self._by_grammar)
+        self._beside = ForkedWorker(self._by_others)
 
     def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         """Decode a whole utterance."""
@@ -115,16 +117,17 @@ class TwoDecoders:
         if pcm == whole:  # in noise nobody can tell what is missing
             pcm = widened(pcm)
         self._beside.ask((pcm, expecting))
-        words, score, _ = _best_path(self._words, pcm, expecting)
-        phrase, garbage = self._beside.answer()
+        words, score, _ = best_path(self._words, pcm, expecting)
+        phrase, garbage, stop = self._beside.answer()
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or a path that breaks off in the middle of a phrase
-        return AcousticEvidence(words, phrase, margin, 1.0, seconds)
+        return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop)
 
-    def _by_grammar(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
-        phrase, score, _ = _best_path(self._grammar, *asked)
-        return phrase, score
+    def _by_others(self, asked: tuple[bytes, Expecting]) -> tuple[str, float, str]:
+        """Return the grammar's phrase and its score, and what stops the robot."""
+        phrase, score, _ = best_path(self._grammar, *asked)
+        return phrase, score, self._stops.hear(asked[0])
 
     def begin(self, expecting: Expecting) -> None:
         """Begin an utterance that comes in pieces."""
@@ -157,10 +160,10 @@ class PaperDecoder:
         )
         self.left_out, phrases = _heard(wanted.phrases, known)
         _, answers = _heard(wanted.answers, known)
-        self._decoder = _decoder(dictionary(known), bestpath=True)
+        self._decoder = make_search(dictionary(known), bestpath=True)
         for name, said in (("commands", phrases), ("answers", answers)):
             if said:
-                _add_model(self._decoder, name, phrase_model(said))
+                add_model(self._decoder, name, phrase_model(said))
         self._searches = {"commands": bool(phrases), "answers": bool(answers)}
         self._open = False
 
@@ -170,7 +173,7 @@ class PaperDecoder:
         seconds = len(pcm) / 2 / RATE
         if seconds < SHORTEST or not self._searches[expecting]:
             return AcousticEvidence(seconds=seconds)
-        text, score, words = _best_path(self._decoder, pcm, expecting)
+        text, score, words = best_path(self._decoder, pcm, expecting)
         sure = (
             OFFSET + SCORE_WEIGHT * (score - SCORE_MIDDLE) + WORDS_WEIGHT * (words - WORDS_MIDDLE)
         )
@@ -248,56 +251,8 @@ def _heard(
     return tuple(sorted(unknown)), heard
 
 
-def _decoder(words: str, *, bestpath: bool, active: int = 30_000) -> Any:
-    """Make a decoder without any search in it yet.
-
-    Args:
-        words: its dictionary.
-        bestpath: search the lattice once more in the end.
-        active: how many models are followed at most; fewer are faster, and at some point wrong.
-    """
-    import pocketsphinx
-
-    with tempfile.TemporaryDirectory(prefix="tangy-speech-") as folder:
-        path = Path(folder) / "dict"
-        path.write_text(words, encoding="utf-8")
-        return pocketsphinx.Decoder(
-            lm=None, dict=str(path), cmn="batch", loglevel="ERROR", bestpath=bestpath,
-            maxhmmpf=active,
-        )  # fmt: skip
-
-
-def _add_model(decoder: Any, name: str, arpa: str) -> None:
-    with tempfile.TemporaryDirectory(prefix="tangy-speech-") as folder:
-        path = Path(folder) / "lm"
-        path.write_text(arpa, encoding="utf-8")
-        decoder.add_lm_file(name, str(path))
-
-
-def _best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float]:
-    """Return the words of the likeliest path, and the two figures that grade it.
-
-    They are log P(sound, words) a frame and the mean weighted log P(word | words before).
-    """
-    decoder.activate_search(search)
-    decoder.reinit_feat()  # else what was heard before, and the words so far, change the scores
-    decoder.start_utt()
-    decoder.process_raw(pcm, full_utt=True)
-    decoder.end_utt()
-    best = decoder.hyp()
-    if best is None:
-        return "", NO_PATH, 0.0
-    words = [_log(s.lscore) for s in decoder.seg() if not s.word.startswith(NOISES)]
-    frames = len(pcm) / 2 / RATE * FRAMES_A_SECOND
-    return str(best.hypstr), _log(best.score) / frames, sum(words) / max(1, len(words))
-
-
 def _so_far(decoder: Any, pcm: bytes) -> str:
     if pcm:
         decoder.process_raw(pcm)
     best = decoder.hyp()
     return str(best.hypstr) if best is not None else ""
-
-
-def _log(score: float) -> float:
-    return math.log(max(score, 1e-300)) * SHIFT

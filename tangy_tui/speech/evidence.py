@@ -48,7 +48,9 @@ USUAL = EvidenceSettings()
 class Wanted:
     """What is to be heard: commands, answers, and how their words are pronounced (ARPAbet).
 
-    Those that are `urgent` end an utterance as soon as they are heard.
+    Those that are `urgent` end an utterance as soon as they are heard. `stops` are many ways to
+    stop the robot, common ones several times, `no_stops` sentences with such words that stop
+    nothing, and `game` are the words that the game is called by.
     """
 
     phrases: tuple[str, ...]
@@ -56,6 +58,9 @@ class Wanted:
     urgent: tuple[str, ...] = ()
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     settings: EvidenceSettings = USUAL
+    stops: tuple[str, ...] = ()
+    no_stops: tuple[str, ...] = ()
+    game: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +70,7 @@ class AcousticEvidence:
     `words` are the likeliest ones, everyday words among them; `phrase` is the whole phrase that
     the grammar finds, or empty; `margin` is log P(sound, words) - log P(sound, grammar or any
     phones) a frame; `confidence` is that of the paper's mode, else 1; `seconds` is the length.
+    `stop` is the sentence that stops the robot, where the ears for stopping found one.
     """
 
     words: str = ""
@@ -72,3 +78,4 @@ class AcousticEvidence:
     margin: float = 0.0
     confidence: float = 0.0
     seconds: float = 0.0
+    stop: str = ""

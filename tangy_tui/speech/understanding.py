@@ -15,6 +15,7 @@ from difflib import SequenceMatcher
 from tangy_tui.language.answers import NO, YES, choice_in, choice_phrases, yes_or_no
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
 from tangy_tui.language.steering import WHILE_TEACHING, steering_of
+from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import clean
 from tangy_tui.learning.verification import Reply, Say, StopCommand
@@ -63,6 +64,9 @@ def wanted(
         STOPS,
         {**OWN_NAME, **phrasebook.pronunciations()},
         settings,
+        stop_texts(),
+        other_stop_texts(),
+        tuple(sorted(phrasebook.game)),
     )
 
 
@@ -87,6 +91,8 @@ def understand(
     near, confidence = _nearest(text, margin, phrasebook, settings)
     if confidence >= SURE and near[0].confidence >= 1:
         return _said(text, confidence, near)
+    if evidence.stop:
+        return StopCommand(evidence.stop)
     learnt = tuple(
         replace(c, confidence=sounded(c.confidence, margin, settings.shift))
         for c in phrasebook.paraphrased(text)
@@ -133,7 +139,7 @@ def commanded(
     evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings, *, live: bool
 ) -> tuple[Say | StopCommand | None, str]:
     """Return what an utterance commands, if it has words, and what is to be said of it, or ""."""
-    if evidence.words:
+    if evidence.words or evidence.stop:
         return understand(evidence, phrasebook, settings), ""
     none = live and evidence.seconds
     return None, "I heard something, but no words that I know." if none else ""
@@ -189,6 +195,8 @@ def answer(
     if settings.mode == "paper":
         return None
     reply, phrase = _reply(said, choices), _reply(evidence.phrase, choices)
+    if evidence.stop and reply is None:
+        return StopCommand(evidence.stop)
     if reply is None and phrase == Reply(False) and evidence.margin < SMALL_MARGIN:
         reply = phrase  # a no that was misheard moves nothing
     if reply is None:

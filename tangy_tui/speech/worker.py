@@ -192,7 +192,7 @@ class Worker:
         """Decode in a pause, so that the answer is there when the utterance is said to be over."""
         if self._foreseen is None and quiet >= PAUSE:
             self._foreseen = self._decode(self._said())
-            if self._is_urgent(self._foreseen.words):
+            if self._foreseen.stop or self._is_urgent(self._foreseen.words):
                 self._end()
         elif self._foreseen is not None and spoke:
             self._foreseen = None

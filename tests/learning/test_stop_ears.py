@@ -1,0 +1,64 @@
+"""The ears for stopping: what they learn from, and what follows where they found a stop."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.person import load_people
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
+from tangy_tui.language.stop_sentence import STOPS, stops
+from tangy_tui.learning.verification import Reply, Say, StopCommand
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence
+from tangy_tui.speech.understanding import answer, commanded, understand, wanted
+
+BOOK = Phrasebook(load_activity("bingo"), load_people(4))
+
+
+def heard(words: str, stop: str, margin: float = 0.3) -> AcousticEvidence:
+    return AcousticEvidence(words, "", margin, 1.0, 1.0, stop)
+
+
+def share(texts: tuple[str, ...]) -> float:
+    """Return which part of some texts stops the robot."""
+    some = texts[::7]
+    return sum(stops(text, BOOK.game) for text in some) / len(some)
+
+
+def test_nearly_all_texts_of_stops_stop_and_of_others_do_not() -> None:
+    assert share(stop_texts()) > 0.9
+    assert share(other_stop_texts()) < 0.05
+
+
+def test_the_texts_are_the_same_each_time_and_have_words_alone() -> None:
+    texts = stop_texts()
+    stop_texts.cache_clear()
+    assert stop_texts() == texts
+    assert set(STOPS) <= set(texts)
+    assert not [text for text in (*texts, *other_stop_texts()) if set("{}_") & set(text)]
+
+
+def test_what_is_listened_for_has_stops_others_and_what_the_game_is_called() -> None:
+    found = wanted(BOOK, USUAL)
+    assert found.stops
+    assert found.no_stops
+    assert "bingo" in found.game
+
+
+@pytest.mark.parametrize("words", ["they stop", "that cannot stop", "", "tell a nice joke now"])
+def test_a_stop_that_was_found_stops_whatever_the_words_were(words: str) -> None:
+    assert understand(heard(words, "hey stop"), BOOK, USUAL) == StopCommand("hey stop")
+    said, _ = commanded(heard(words, "hey stop"), BOOK, USUAL, live=True)
+    assert said == StopCommand("hey stop")
+
+
+def test_a_phrase_that_was_heard_well_is_no_stop() -> None:
+    said = understand(heard("call number", "don't come closer"), BOOK, USUAL)
+    assert isinstance(said, Say)
+    assert said.sure
+
+
+def test_a_stop_that_was_found_stops_while_a_question_is_open_but_for_an_answer() -> None:
+    assert answer(heard("they stop", "hey stop"), USUAL) == StopCommand("hey stop")
+    assert answer(heard("no thank you", "don't move", 0.5), USUAL) == Reply(False)
