@@ -11,11 +11,15 @@ from typing import Any, Literal, get_args
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 
-GameWorld = Literal["simulated", "bench", "live"]
+GameWorld = Literal["unknown", "simulated", "bench", "live"]
+"""`unknown`: an old log does not tell; it counts for none of the others."""
+UNKNOWN: GameWorld = "unknown"
 SIMULATED: GameWorld = "simulated"
 BENCH: GameWorld = "bench"
 LIVE: GameWorld = "live"
 GAME_WORLDS: tuple[GameWorld, ...] = get_args(GameWorld)
+PLAYED_WORLDS: tuple[GameWorld, ...] = tuple(w for w in GAME_WORLDS if w != UNKNOWN)
+"""In which games are played."""
 
 
 def game_world(value: Any) -> GameWorld | None:

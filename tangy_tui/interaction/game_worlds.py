@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from datetime import datetime, timedelta
 
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import GameBeginning, GameStep, GameWorldSet
-from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, GameWorld, game_world
+from tangy_profiles.game_world import BENCH, SIMULATED, UNKNOWN, GameWorld, game_world
 from tangy_profiles.store import Event, Store
+
+FEWEST_CALLS = 2
+"""Of fewer calls nobody can tell whether they all take the same time."""
 
 
 class GameWorlds:
@@ -18,6 +21,7 @@ class GameWorlds:
         """Read from a log."""
         self._store = store
         self._worlds: dict[str, GameWorld] = {}
+        self._said: set[str] = set()
         self._read = 0
 
     @property
@@ -37,7 +41,19 @@ class GameWorlds:
         if unmarked:
             self._worlds.update(_told_by_time(self._store, unmarked))
         self._worlds.update(said)
+        self._said.update(said)
         return self._worlds
+
+    @property
+    def unasked(self) -> list[str]:
+        """The games of which nobody knows where they were played, and nobody was asked yet."""
+        return [g for g, world in self.all.items() if world == UNKNOWN and g not in self._said]
+
+    def settle(self, games: Collection[str], world: GameWorld, by: str = "") -> None:
+        """Say where some games were played; `unknown`: nobody can say, and is not asked again."""
+        with self._store.transaction():
+            for game in games:
+                self._store.append(GameWorldSet(game=game, world=world, by=by))
 
     def set(self, game: str, world: GameWorld, by: str = "") -> None:
         """Say in which world a game was played; beliefs are counted anew by that.
@@ -52,8 +68,9 @@ class GameWorlds:
 
     @property
     def last(self) -> GameWorld:
-        """The world of the last game; before any game: simulated."""
-        return next(reversed(list(self.all.values())), SIMULATED)
+        """The world of the last game of which it is known; before any game: simulated."""
+        known = [world for world in self.all.values() if world != UNKNOWN]
+        return known[-1] if known else SIMULATED
 
     def of(self, game: object, said: object = None) -> GameWorld:
         """Return the world that something in the log belongs to.
@@ -66,12 +83,13 @@ class GameWorlds:
 
 
 def _told_by_time(store: Store, begun: Mapping[str, Event[EventRecord]]) -> dict[str, GameWorld]:
-    """Tell the world of games of before worlds were logged, by how long their calls took.
+    """Tell the world of games of before worlds were logged, as far as their times tell it.
 
-    A simulated call always takes the same time, and a robot's is measured. A game that was
-    over sooner than its own steps say was played on the bench.
+    Simulated calls always take the same time, and those of devices are measured. A game with
+    devices that was over sooner than its own steps say was played on the bench. All else is
+    unknown: a game on the bench may have taken as long as one with a robot among people.
     """
-    calls: dict[str, set[float]] = {game: set() for game in begun}
+    calls: dict[str, list[float]] = {game: [] for game in begun}
     lasted = dict.fromkeys(begun, 0.0)
     until = {game: event.at for game, event in begun.items()}
     for done in store.events(GameStep, after=min(event.seq for event in begun.values())):
@@ -81,10 +99,15 @@ def _told_by_time(store: Store, begun: Mapping[str, Event[EventRecord]]) -> dict
         lasted[game] += step.seconds
         until[game] = done.at
         if step.numbers and step.target is None:
-            calls[game].add(round(step.seconds, 3))
+            calls[game].append(round(step.seconds, 3))
     found: dict[str, GameWorld] = {}
     for game, event in begun.items():
         took = datetime.fromisoformat(until[game]) - datetime.fromisoformat(event.at)
         hurried = took < timedelta(seconds=lasted[game] / 2)
-        found[game] = SIMULATED if len(calls[game]) < 2 else BENCH if hurried else LIVE
+        if len(calls[game]) < FEWEST_CALLS:
+            found[game] = UNKNOWN
+        elif len(set(calls[game])) == 1:
+            found[game] = SIMULATED
+        else:
+            found[game] = BENCH if hurried else UNKNOWN
     return found

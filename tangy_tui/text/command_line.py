@@ -36,6 +36,8 @@ def recordings_deleted(count: int) -> str:
 
 def counts_as(game: int, world: str) -> str:
     """Say in which world a game was played, from now on."""
+    if world == "unknown":
+        return f"Game {game} counts as played nobody knows where."
     return f"Game {game} counts as a {world} game."
 
 

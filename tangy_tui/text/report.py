@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import MoveKind
-from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, GameWorld
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.monitoring.attention import Attention, Call
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
@@ -16,6 +16,7 @@ from tangy_tui.text.situations import Name
 from tangy_tui.text.times import length, time_of_day
 
 WORLD_WORDS: Mapping[GameWorld, str] = {
+    UNKNOWN: "played where the log does not tell",
     SIMULATED: "simulated",
     BENCH: "on the bench of simulated devices",
     LIVE: "live, with a robot",

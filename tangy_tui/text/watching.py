@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, GameWorld
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.game_commands import Phase
 from tangy_tui.app.game_view import GameView
 from tangy_tui.text.situations import Name
 
 WORLDS: dict[GameWorld, str] = {
+    UNKNOWN: "nobody knows where",
     SIMULATED: "simulated",
     BENCH: "on the bench",
     LIVE: "live, with the robot",

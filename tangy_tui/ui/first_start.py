@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.teacher_profile import change_name, read_profile
 from tangy_tui.text.who import renamed_teacher
+from tangy_tui.ui.old_games import ask_about_old_games
 
 if TYPE_CHECKING:
     from tangy_tui.ui.program import Program
@@ -27,7 +28,10 @@ async def first_start(
         program.new_teacher = await ask_name(program) is not None
     if start is not None:
         await start(program)
-    elif program.new_teacher:
+        return
+    if asks:
+        await ask_about_old_games(program)
+    if program.new_teacher:
         program.teach(program.workspace.teaching(program.workspace.teacher, None, guided=True))
 
 

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.games import NONE_YET, Game
 from tangy_tui.text.log import HOW_TO_GO_ON
@@ -18,7 +18,7 @@ from tangy_tui.text.times import local_time
 
 SHORT = 6
 """Characters of an id that are printed."""
-SHORT_WORLDS = {SIMULATED: "sim", BENCH: "bench", LIVE: "live"}
+SHORT_WORLDS = {UNKNOWN: "?", SIMULATED: "sim", BENCH: "bench", LIVE: "live"}
 COLUMNS = ("", "id", "when", "activity", "policy", "steps", "faults", "end", "games")
 FOLDED = ("activity", "policy")
 """What people name as they like; all else fits 80 columns, with numbers of five digits too."""

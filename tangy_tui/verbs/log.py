@@ -61,9 +61,12 @@ def log_list(data: Data = None, as_json: Json = False) -> None:
     if as_json:
         print_json([game.to_json() for game in games])
         return
+    from tangy_tui.text.old_games import unknown_words
     from tangy_tui.ui.log_report import print_games
 
     print_games(games)
+    if unknown := sum(game.world == "unknown" for game in games):
+        print_line(unknown_words(unknown))
 
 
 @app.command("show")
@@ -103,20 +106,28 @@ def log_report(
 
 @app.command("world")
 def log_world(
-    game: Which,
+    game: Annotated[
+        str,
+        typer.Argument(
+            metavar="GAME", help="A number, an id, 'last'; 'unknown': all whose world is unknown."
+        ),
+    ],
     world: Annotated[
-        str, typer.Argument(metavar="WORLD", help="Where it was played: simulated, bench, live.")
+        str,
+        typer.Argument(
+            metavar="WORLD", help="Where it was played: simulated, bench, live, or unknown."
+        ),
     ],
     by: Annotated[str, typer.Option("--by", help="Who says so; stands in the log.")] = "",
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Say where a game was played, if the list of games has that wrong.
+    """Say where a game was played, if the list of games has that wrong, or does not know it.
 
-    Games of version 0.6.0 and before do not tell that themselves, and it is guessed by their times.
+    Games of version 0.6.0 and before do not tell that themselves, and their times do not always.
     What people did counts only for games of the same world.
     """
-    from tangy_profiles.game_world import read_game_world
+    from tangy_profiles.game_world import UNKNOWN, read_game_world
     from tangy_profiles.store import Store
     from tangy_tui.app.workspace import data_folder
     from tangy_tui.interaction.game_worlds import GameWorlds
@@ -125,13 +136,20 @@ def log_world(
     wanted = read_game_world(world)
     with Store.open(data_folder(data)) as store:
         say_notices(store.notices)
-        found = find_game(read_games(store), game)
-        GameWorlds(store).set(found.id, wanted, plain(by))
-        (now,) = (one for one in read_games(store) if one.id == found.id)
+        games = read_games(store)
+        if game == UNKNOWN:
+            changed = {one.id for one in games if one.world == UNKNOWN}
+            GameWorlds(store).settle(sorted(changed), wanted, plain(by))
+        else:
+            one = find_game(games, game)
+            changed = {one.id}
+            GameWorlds(store).set(one.id, wanted, plain(by))
+        now = [found for found in read_games(store) if found.id in changed]
     if as_json:
-        print_json(now.to_json())
-    else:
-        print_line(plain(counts_as(now.number, now.world)))
+        told = [found.to_json() for found in now]
+        print_json(told if game == UNKNOWN else told[0])
+    for found in [] if as_json else now:
+        print_line(plain(counts_as(found.number, found.world)))
 
 
 @contextmanager

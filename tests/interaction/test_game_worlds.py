@@ -11,9 +11,10 @@ from tangy_profiles.codec import written
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import (
     BENCH,
-    GAME_WORLDS,
     LIVE,
+    PLAYED_WORLDS,
     SIMULATED,
+    UNKNOWN,
     GameWorld,
     read_game_world,
 )
@@ -49,7 +50,7 @@ def test_each_world_has_its_own_beliefs(tmp_path: Path) -> None:
         game(store, "s", SIMULATED, 5, 1)
         game(store, "b", BENCH, 2)
         game(store, "l", LIVE, 0, 3)
-        assert [believed(store, world) for world in GAME_WORLDS] == [(6, 2), (3, 1), (1, 4)]
+        assert [believed(store, world) for world in PLAYED_WORLDS] == [(6, 2), (3, 1), (1, 4)]
 
 
 def test_staff_can_say_where_a_game_was_played(tmp_path: Path) -> None:
@@ -62,7 +63,7 @@ def test_staff_can_say_where_a_game_was_played(tmp_path: Path) -> None:
         worlds.set("b", BENCH)  # it is that already: nothing is logged
         assert dict(worlds.all) == dict(GameWorlds(store).all) == {"a": LIVE, "b": BENCH}
         assert [event.body["world"] for event in store.events("game world set")] == [LIVE, BENCH]
-        assert [believed(store, world) for world in GAME_WORLDS] == [(1, 1), (3, 1), (6, 2)]
+        assert [believed(store, world) for world in PLAYED_WORLDS] == [(1, 1), (3, 1), (6, 2)]
 
 
 def test_the_world_of_the_last_game_is_shown_unless_another_is_asked_for(tmp_path: Path) -> None:
@@ -129,12 +130,13 @@ def test_a_record_tells_of_one_world_with_the_numbers_of_the_whole_log(tmp_path:
     [
         ([31.0, 31.0, 31.0], True, SIMULATED),
         ([31.0, 31.0, 31.0], False, SIMULATED),
-        ([], False, SIMULATED),
+        ([], False, UNKNOWN),
+        ([31.0], True, UNKNOWN),
         ([33.2, 33.4, 31.9], True, BENCH),
-        ([33.2, 33.4, 31.9], False, LIVE),
+        ([33.2, 33.4, 31.9], False, UNKNOWN),
     ],
 )
-def test_games_of_before_count_as_simulated_unless_a_robot_played_them(
+def test_the_times_of_old_games_tell_only_what_they_can(
     tmp_path: Path, calls: list[float], hurried: bool, world: GameWorld
 ) -> None:
     clock = [datetime(2026, 1, 1, tzinfo=UTC)]
@@ -150,6 +152,27 @@ def test_games_of_before_count_as_simulated_unless_a_robot_played_them(
         assert GameWorlds(store).all == {"old": world}
         game(store, "new", BENCH, 0)
         assert believed(store, world) == (2, 1)
+
+
+def test_what_nobody_can_tell_counts_for_no_world_and_is_asked_about_once(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        game(store, "old", None, 3)
+        game(store, "older", None, 2)
+        game(store, "new", LIVE, 1)
+        assert [believed(store, world) for world in PLAYED_WORLDS] == [(1, 1), (1, 1), (2, 1)]
+        assert GameWorlds(store).unasked == ["old", "older"]
+        GameWorlds(store).settle(["old"], UNKNOWN, "Ada")
+        GameWorlds(store).settle(["older"], LIVE, "Ada")
+        assert GameWorlds(store).unasked == []
+        assert GameWorlds(store).all == {"old": UNKNOWN, "older": LIVE, "new": LIVE}
+        assert believed(store, LIVE) == (4, 1)
+
+
+def test_the_newest_game_of_which_it_is_known_says_what_is_shown(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        game(store, "l", LIVE, 1)
+        game(store, "old", None, 4)
+        assert GameWorlds(store).last == LIVE
 
 
 def test_an_unknown_world_is_refused_with_the_nearest_word() -> None:

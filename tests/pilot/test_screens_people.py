@@ -48,7 +48,8 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Works
         store.rename("user1", "Rosa")
         for number, (days, people) in enumerate(GAMES):
             at[0] = NOW - timedelta(days=days, minutes=60 * number)
-            append_body(store, "game begun", {"game": f"g{number}", "people": list(people)})
+            begun = {"game": f"g{number}", "people": list(people), "world": "simulated"}
+            append_body(store, "game begun", begun)
             for person, told in people.items():
                 for one in told.split():
                     at[0] += timedelta(minutes=7)

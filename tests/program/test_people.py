@@ -29,7 +29,8 @@ def data(tmp_path: Path) -> Path:
     then = datetime.now(UTC) - timedelta(days=23)
     with Store.open(tmp_path / "mine", now=lambda: then) as store:
         store.rename("user1", "Rosa")
-        append_body(store, "game begun", {"game": "g", "people": ["user1", "user2"]})
+        begun = {"game": "g", "people": ["user1", "user2"], "world": "simulated"}
+        append_body(store, "game begun", begun)
         told = [("praise", n < 7) for n in range(9)] + [("neutral", False)] * 3
         told += [("suggestion", False)] * 2
         for strategy, complied in [*told, ("scarcity", False), ("scarcity", False)]:

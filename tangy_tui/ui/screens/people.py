@@ -10,7 +10,7 @@ from textual.binding import BindingType
 from textual.containers import Container
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_world import GAME_WORLDS
+from tangy_profiles.game_world import PLAYED_WORLDS
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
@@ -92,7 +92,7 @@ class PeopleScreen(TangyScreen[None]):
 
     def action_world(self) -> None:
         """Show what is known from the games of the next world."""
-        self._world = GAME_WORLDS[(GAME_WORLDS.index(self._world) + 1) % len(GAME_WORLDS)]
+        self._world = PLAYED_WORLDS[(PLAYED_WORLDS.index(self._world) + 1) % len(PLAYED_WORLDS)]
         self._feedback = self._workspace.memory(self._world).feedback
         self.query_one(StatusLine).show(self._status)
         self._read()
