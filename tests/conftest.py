@@ -154,8 +154,8 @@ def store(tmp_path: Path) -> Iterator[Store]:
 
 @pytest.fixture(scope="session")
 def _taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    from tangy_tui.app.training import learn
     from tangy_tui.app.workspace import Workspace
-    from tangy_tui.console.demo import learn
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
     from tangy_tui.learning.teaching_events import Next
 

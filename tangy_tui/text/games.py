@@ -143,7 +143,6 @@ STOPPED = "The game stopped"
 LEADS_HOME = "Esc leads home, where you can teach; {next} plays another game."
 GOES_ON, PLAYS_AGAIN = "{pause} goes on", "{next} plays again"
 TRIES_AGAIN = "{pause} tries again; esc leads home."
-NOT_IN_THE_DEMO = "The demo shows a game in which nothing goes wrong."
 NOTHING_DECIDED = "Nothing has been decided yet."
 NO_UNSEEN_FAULT = "No fault that nobody has seen."
 

@@ -1,11 +1,10 @@
-"""Closing a screen with what was said on it, and closing one by itself after a while."""
+"""Closing a screen with what was said on it."""
 
 from __future__ import annotations
 
-import asyncio
 from typing import TypeVar
 
-from tangy_tui.ui.base import TangyScreen, on_top
+from tangy_tui.ui.base import TangyScreen
 
 ResultT = TypeVar("ResultT")
 
@@ -15,10 +14,3 @@ def close(screen: TangyScreen[ResultT], result: ResultT) -> None:
     if screen.is_active:
         screen.app.clear_notifications()
         screen.close(result)
-
-
-async def close_after(screen: TangyScreen[ResultT], result: ResultT, seconds: float) -> None:
-    """Close a screen after so many seconds, or when nothing lies over it any more."""
-    await asyncio.sleep(seconds)
-    await on_top(screen)
-    close(screen, result)

@@ -11,14 +11,14 @@ if TYPE_CHECKING:
     from tangy_tui.ui.program import Program
 
 
-async def open_policy(program: Program, policy: Policy, leave_after: float | None) -> None:
-    """Open the screen of a policy, for so many s at most, and wait until it is left."""
+async def open_policy(program: Program, policy: Policy) -> None:
+    """Open the screen of a policy, and wait until it is left."""
     from tangy_tui.learning.library import effects_of
     from tangy_tui.ui.screens.policy import PolicyScreen
 
     workspace = program.workspace
     effects = effects_of(workspace.store, workspace.activity, policy)
-    await program.push_screen_wait(PolicyScreen(workspace, policy, effects, leave_after))
+    await program.push_screen_wait(PolicyScreen(workspace, policy, effects))
 
 
 async def load_policy(program: Program, wanted: str) -> Policy | None:

@@ -211,7 +211,7 @@ class Program(SoundingApp):
         self.run_worker(self._learn())
 
     async def _learn(self) -> None:
-        from tangy_tui.console.demo import learn
+        from tangy_tui.app.training import learn
         from tangy_tui.ui.screens.conflicts import ConflictsScreen, settle_conflicts
 
         if self._busy or any(isinstance(s, ConflictsScreen) for s in self.screen_stack):
@@ -337,9 +337,9 @@ class Program(SoundingApp):
         if policy is not None:
             await self.open_policy(policy)
 
-    async def open_policy(self, policy: Policy, leave_after: float | None = None) -> None:
-        """Open the screen of a policy, for so many s at most, and wait until it is left."""
-        await policy_opening.open_policy(self, policy, leave_after)
+    async def open_policy(self, policy: Policy) -> None:
+        """Open the screen of a policy, and wait until it is left."""
+        await policy_opening.open_policy(self, policy)
 
     async def load_policy(self, wanted: str = "") -> Policy | None:
         """Learn the kept policy again; what must be said of it is said before it is used."""

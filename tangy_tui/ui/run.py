@@ -195,7 +195,7 @@ def run_demo(workspace: Workspace, *, seed: int, ascii_only: bool, voice: bool =
     """Tell the whole story in the program; return the exit status."""
 
     async def start(program: Program) -> None:
-        await tell_story(program, seed)
+        await tell_story(program, workspace, seed)
         program.leave()
 
     return _run(workspace, start, ascii_only, voice=voice)

@@ -176,7 +176,7 @@ def demo(
     as_json: common.Json = False,
     ascii_only: common.Ascii = False,
 ) -> None:
-    """See the whole story in a minute: three demonstrations, learning, one game."""
+    """See the whole story in six scenes: teaching, learning, a game, a fault."""
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory(prefix="tangy-demo-") as scratch, open_workspace(

@@ -19,8 +19,8 @@ from time import perf_counter, process_time
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import AT_ONCE, KINDS
+from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.demo import learn
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.monitoring.fault import Fault

@@ -26,15 +26,12 @@ def playing(
     policy: Policy,
     *injections: str,
     speed: float = 1,
-    leave_after: float | None = None,
 ) -> Program:
     """Make the program with the playing screen open; at speed 1 only keys move the game."""
 
     async def start(program: Program) -> None:
         supervision = workspace.supervision(policy, 5, asks=True, injections=injections)
-        screen = PlayScreen(
-            workspace, supervision, speed=speed, leave_after=leave_after, teacher="ann"
-        )
+        screen = PlayScreen(workspace, supervision, speed=speed, teacher="ann")
         await program.push_screen(screen)
 
     return Program(workspace, start, clock=StillClock())

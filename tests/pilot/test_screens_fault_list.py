@@ -238,14 +238,3 @@ async def test_all_kinds_can_be_chosen(run: Run) -> None:
         assert [kind.name for kind in dialog.kinds] == list(KINDS)
         pilot.type(*"covered")  # what the console calls the fault, which the kind's name is not
         await until_shown(pilot, lambda: [k.name for k in dialog.kinds] == ["camera-occluded"])
-
-
-async def test_no_fault_can_be_brought_about_in_the_demo(
-    run: Run, workspace: Workspace, policy: Policy
-) -> None:
-    async with run(app=playing(workspace, policy, leave_after=1000)) as pilot:
-        screen = game_of(pilot)[0]
-        await pilot.press("f")
-        await pilot.pause()
-        assert pilot.app.screen is screen
-        assert "nothing goes wrong" in sentences(screen)[-1]

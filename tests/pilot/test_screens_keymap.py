@@ -11,8 +11,8 @@ from textual.binding import Binding
 from textual.widgets import Input
 
 from tangy_tui.app.keymap import ACTIONS, BY_ID, Keymap, is_letter
+from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.demo import learn
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.ui.listing import listed
 from tangy_tui.ui.program import Program

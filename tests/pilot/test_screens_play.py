@@ -9,8 +9,8 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
+from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.demo import learn
 from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher

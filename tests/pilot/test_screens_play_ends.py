@@ -12,10 +12,9 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import ForestSettings, Policy
-from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.policy_options import comparison_options
 from tangy_tui.ui.program import Program
-from tangy_tui.ui.screens.help import HelpScreen, help_for
+from tangy_tui.ui.screens.help import help_for
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.screens.policy import PolicyScreen
@@ -48,14 +47,12 @@ def gappy(workspace: Workspace, cover: Cover) -> Policy:
     return learnt(workspace.store, workspace.activity, shown, FEW)
 
 
-def playing(workspace: Workspace, policy: Policy, leave_after: float | None = None) -> Program:
+def playing(workspace: Workspace, policy: Policy) -> Program:
     """Make the program with the playing screen open; what it leads to is kept in `results`."""
 
     async def start(program: Program) -> None:
         supervision = workspace.supervision(policy, 5, asks=True)
-        screen = PlayScreen(
-            workspace, supervision, speed=1000, leave_after=leave_after, teacher="ann"
-        )
+        screen = PlayScreen(workspace, supervision, speed=1000, teacher="ann")
         program.results = [await program.push_screen_wait(screen)]  # type: ignore[attr-defined]
 
     return Program(workspace, start, clock=StillClock())
@@ -75,42 +72,6 @@ async def over(pilot: TangyPilot) -> PlayScreen:
         await pilot.pause(0.02)
     await pilot.pause()
     return screen
-
-
-# ------------------------------------------------------------------------- left by themselves
-
-
-async def test_a_game_that_ends_under_a_dialog_is_left_when_the_dialog_is(
-    run: Run, workspace: Workspace, policy: Policy
-) -> None:
-    async with run(app=playing(workspace, policy, leave_after=0.8)) as pilot:
-        await over(pilot)
-        await pilot.press("question_mark")
-        await pilot.pause(1.2)
-        assert isinstance(pilot.app.screen, HelpScreen)
-        assert len(pilot.app.screen_stack) == 3
-        await pilot.press("escape")
-        await pilot.pause(0.3)
-        assert isinstance(pilot.app.screen, HomeScreen)
-        (tally,) = pilot.app.results  # type: ignore[attr-defined]
-        assert tally.games == 1
-
-
-async def test_a_policy_that_closes_by_itself_waits_for_the_dialog_over_it(
-    run: Run, workspace: Workspace, policy: Policy
-) -> None:
-    async def start(program: Program) -> None:
-        effects = effects_of(workspace.store, workspace.activity, policy)
-        await program.push_screen_wait(PolicyScreen(workspace, policy, effects, 0.8))
-
-    async with run(app=Program(workspace, start, clock=StillClock())) as pilot:
-        await pilot.press("w")
-        await pilot.pause(1.2)
-        assert isinstance(pilot.app.screen, WhyDialog)
-        assert len(pilot.app.screen_stack) == 3
-        await pilot.press("escape")
-        await pilot.pause(0.3)
-        assert isinstance(pilot.app.screen, HomeScreen)
 
 
 async def test_leaving_twice_at_once_leaves_once(

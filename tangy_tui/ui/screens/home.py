@@ -49,7 +49,7 @@ CHOICES = (
     MenuItem("e", "People", "who takes part, and what persuades them"),
     MenuItem("c", "Sensors", "cameras and devices, and the last card"),
     MenuItem("a", "Activity", "choose what is taught and played"),
-    MenuItem("d", "Demo", "the whole story in a minute"),
+    MenuItem("d", "Demo", "the whole story, in four minutes"),
     MenuItem("n", "Name", "who teaches: change your name"),
     MenuItem("h", "Help", "keys, and how to begin"),
     MenuItem("q", "Quit", "leave Tangy"),

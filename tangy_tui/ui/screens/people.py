@@ -18,7 +18,7 @@ from tangy_tui.speech.aloud import hear
 from tangy_tui.text import people as text
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.closing import close, close_after
+from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodChoice, MethodDialog
@@ -63,11 +63,10 @@ class PeopleScreen(TangyScreen[None]):
         *bind("back", "leave"),
     ]
 
-    def __init__(self, workspace: Workspace, leave_after: float | None = None) -> None:
-        """Make the screen; `leave_after` so many seconds it closes by itself."""
+    def __init__(self, workspace: Workspace) -> None:
+        """Make the screen."""
         super().__init__()
         self._workspace = workspace
-        self._leave_after = leave_after
         self._feedback = workspace.memory().feedback
         self._world = workspace.memory().world
         self._records: dict[str, Record] = {}
@@ -102,8 +101,6 @@ class PeopleScreen(TangyScreen[None]):
         """Fill the panels from the log."""
         self._read()
         self._list("people").focus()
-        if self._leave_after is not None:
-            self.run_worker(close_after(self, None, self._leave_after), name="close")
 
     def on_choice_list_moved(self, event: ChoiceList.Moved) -> None:
         """Show another person, or what another strategy does."""

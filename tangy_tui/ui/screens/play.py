@@ -25,7 +25,7 @@ from tangy_tui.interaction.voiding import void_last
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text import games as text
 from tangy_tui.text.control import noted_words
-from tangy_tui.ui.closing import close, close_after
+from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.messages import Stop
@@ -62,7 +62,6 @@ class PlayScreen(PlayStaff):
         *,
         games: int = 1,
         speed: float = 20,
-        leave_after: float | None = None,
         teacher: str = "",
         robot: LiveWorld | None = None,
         past: PastGame | None = None,
@@ -74,7 +73,6 @@ class PlayScreen(PlayStaff):
             supervision: what runs the games.
             games: how many are played one after another.
             speed: times life.
-            leave_after: seconds after the last game at which the screen closes by itself.
             teacher: who answers where Tangy asks (default: whoever is logged in).
             robot: the world of a robot that is there.
             past: a game that was interrupted, which is taken up first.
@@ -88,7 +86,6 @@ class PlayScreen(PlayStaff):
         super().__init__(workspace, control)
         self.games = games
         self._speed = speed
-        self._leave_after = leave_after
         self.tally = Tally()
         self.skipping = False
         self._left = 0.0  # s of a drive that STOP or a fault broke off
@@ -168,7 +165,7 @@ class PlayScreen(PlayStaff):
             steps.release()
         elif (asking := self._asking) is not None:
             asking.ask_to_give_up()
-        elif self.at_rest or self._leave_after is not None:
+        elif self.at_rest:
             close(self, self.tally)
         elif not self._leaving:
             self.run_worker(self._leave(), name="leave")
@@ -232,13 +229,10 @@ class PlayScreen(PlayStaff):
                 await self._play_game()
             except TangyError as error:  # the log could not be written, so nothing more is done
                 await self._hold(str(error))
-        if self._leave_after is not None:
-            await close_after(self, self.tally, self._leave_after)
 
     async def _may_begin(self) -> bool:
         """Ask before a game begins after one that ended with what nobody cleared."""
-        begun = not self._supervision.over or self._leave_after is not None
-        if begun or await self._faults.all_well():
+        if not self._supervision.over or await self._faults.all_well():
             return True
         self.games = self.tally.games
         if not self._supervision.games:
@@ -355,18 +349,10 @@ class PlayScreen(PlayStaff):
 
     async def _say_why(self, reason: str, then: str) -> None:
         """Tell why a game could not go on, at every size of the window."""
-        if self._leave_after is None:
-            dialog = MessageDialog(text.stopped_words(reason, self._told(then)), title=text.STOPPED)
-            await self.app.push_screen_wait(dialog)
+        dialog = MessageDialog(text.stopped_words(reason, self._told(then)), title=text.STOPPED)
+        await self.app.push_screen_wait(dialog)
 
     # -------------------------------------------------------------------------------- status
-
-    def action_inject(self) -> None:
-        """Bring about a fault in the simulated room, or lift one."""
-        if self._leave_after is not None:
-            self._tell_now(text.NOT_IN_THE_DEMO, "warn")
-        else:
-            super().action_inject()
 
     def show_status(self) -> None:
         """Show in the line above how the game stands."""

@@ -14,7 +14,7 @@ from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.closing import close, close_after
+from tangy_tui.ui.closing import close
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.policy_options import DIGEST_SHOWN
@@ -67,14 +67,12 @@ class PolicyScreen(TangyScreen[None]):
         workspace: Workspace,
         policy: Policy,
         effects: Effects,
-        leave_after: float | None = None,
     ) -> None:
-        """Make the screen; `leave_after` so many seconds it closes by itself."""
+        """Make the screen."""
         super().__init__()
         self._workspace = workspace
         self.policy = policy
         self._effects = effects
-        self._leave_after = leave_after
 
     def compose(self) -> ComposeResult:
         """Lay out the table and the effects."""
@@ -102,8 +100,6 @@ class PolicyScreen(TangyScreen[None]):
             else:
                 told = (f"{v} {' or '.join(sorted(seen))}" for v, seen in variables.items())
                 effects.write(f"{behaviour}: {'; '.join(told)}")
-        if self._leave_after is not None:
-            self.run_worker(close_after(self, None, self._leave_after), name="close")
 
     def action_why(self) -> None:
         """Tell why, for the chosen row (the first, where none is)."""
