@@ -54,6 +54,9 @@ def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | No
         top = read_toml(path)
         for entry in top.tables("faults"):
             read = False
+            if (needs := entry.text("needs", "")) and needs not in robot.devices:
+                read = True  # it is of a device that this robot has not
+                continue
             try:
                 rule = _read_rule(entry, robot, known)
                 _check_order(entry, rule, rules)

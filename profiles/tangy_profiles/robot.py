@@ -183,7 +183,7 @@ def read_robot(top: Table, path: Path) -> Robot:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
     limbs: dict[str, Limb] = {}
-    for entry in top.tables("limbs"):
+    for entry in top.tables("limbs", optional=True):
         name_of_limb = entry.text("name")
         joints = entry.words("joints")
         low = entry.numbers("low", len(joints), -360, 360)

@@ -20,6 +20,7 @@ FILE_RATE = 10.0  # pictures a second of a video that does not say
 MOST_PIXELS = 50_000_000  # of a picture in a folder
 LARGEST_FILE = 200_000_000  # bytes
 LOWEST, ALIKE = 8, 12  # rows, and of 255: what is filled in for what did not come
+ROS = ("ros://", "ros2://")
 UNUSABLE = "it holds no pictures that can be read"
 
 
@@ -58,6 +59,10 @@ class Grabber(Protocol):
 
 def make_grabber(source: CameraSource) -> Grabber:
     """Return what reads a source; nothing is opened yet."""
+    if source.target.lower().startswith(ROS):
+        from tangy_hw.drivers.camera_ros import RosPictures
+
+        return RosPictures(source)
     return Folder(source) if source.kind == "folder" else Capture(source)
 
 

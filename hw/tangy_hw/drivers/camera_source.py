@@ -2,6 +2,7 @@
 
 0, /dev/video2         a camera of this machine (V4L2)
 http://..., rtsp://... a stream: MJPEG over HTTP, or what a network camera sends
+ros://HOST:9090/TOPIC  a topic of a rosbridge server, sensor_msgs/CompressedImage; ros2:// for ROS 2
 FILE.avi               a recorded video, as fast as it was recorded
 DIR, FILE.png          a folder of pictures in the order of their names, or one of them
 """
@@ -19,7 +20,7 @@ from tangy_profiles.reading import plain
 
 Kind = Literal["device", "stream", "file", "folder"]
 
-SCHEMES = ("http", "https", "rtsp", "rtsps")
+SCHEMES = ("http", "https", "rtsp", "rtsps", "ros", "ros2")
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff", ".pgm", ".ppm")
 FOLDER_RATE = 5.0
 """Pictures a second that a folder gives, unless it is told otherwise."""
@@ -121,12 +122,13 @@ def _stream(url: str) -> str:
     try:
         parts = urlsplit(url)
         sound = parts.scheme.lower() in SCHEMES and bool(parts.hostname) and (parts.port or 1) > 0
+        sound &= not parts.scheme.lower().startswith("ros") or len(parts.path) > 1
     except ValueError:
         sound = False
     if not sound or any(ord(sign) <= 32 or ord(sign) == 127 for sign in url):
         raise CameraError(
             f"{_without_password(url)}: is no address of a stream; "
-            f"give http://HOST/..., https://, rtsp:// or rtsps://."
+            f"give http://HOST/..., https://, rtsp://, rtsps:// or ros://HOST:9090/TOPIC."
         )
     return url
 

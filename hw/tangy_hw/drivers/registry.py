@@ -126,6 +126,7 @@ Opens = Callable[[Wiring, DriverSettings], Device]
 def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
     from tangy_hw.drivers.ros_arms import RosArms
     from tangy_hw.drivers.ros_base import REPEAT_SECONDS, RosBase
+    from tangy_hw.drivers.ros_battery import RosBattery
     from tangy_hw.drivers.ros_laser import RosLaser
     from tangy_hw.drivers.ros_navigator import RosNavigator
     from tangy_hw.drivers.ros_status import RosStopButton
@@ -152,6 +153,8 @@ def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
                 turned=settings.number("turned", 0.0),
                 diagnostics=diagnostics,
             )
+        case "battery":
+            return RosBattery(link, topic=settings.text("topic", "/battery_state"))
         case "stop_button":
             return RosStopButton(
                 link,
@@ -256,7 +259,7 @@ class DriverKind(NamedTuple):
 
 DRIVERS: Mapping[str, DriverKind] = {
     "rosbridge": DriverKind(
-        ("base", "laser", "stop_button", "arms", "voice", "navigator"), _rosbridge
+        ("base", "laser", "stop_button", "arms", "voice", "battery", "navigator"), _rosbridge
     ),
     "scip": DriverKind(("laser",), _scip),
     "page": DriverKind(("screen",), _page),

@@ -164,7 +164,7 @@ def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:
             raise DeviceError(
                 f"{wiring.robot.title} has no driver for {needed}: it must drive and see where."
             )
-    own = [devices["navigator"]] if "navigator" in devices else []
+    own = [devices[name] for name in ("navigator", "battery") if name in devices]
     return Body(
         base=devices["base"],
         laser=devices["laser"],

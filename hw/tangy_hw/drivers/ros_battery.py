@@ -1,0 +1,69 @@
+"""A robot's battery behind ROS: sensor_msgs/BatteryState."""
+
+from __future__ import annotations
+
+from tangy_hw.drivers.ros_messages import Message, number
+from tangy_hw.drivers.ros_newest import Newest
+from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_profiles.health import OK, Fact, Reading
+
+CHARGING, FULL = 1, 4  # of power_supply_status
+
+
+class RosBattery:
+    """Says how full the battery is, and whether it is being charged."""
+
+    def __init__(
+        self, bridge: Rosbridge, *, name: str = "battery", topic: str = "/battery_state"
+    ) -> None:
+        """Name its topic.
+
+        Args:
+            bridge: the link to the robot.
+            name: of the device, as in the profile of the robot.
+            topic: its name.
+        """
+        self.name = name
+        self._bridge, self._topic = bridge, topic
+        self._newest: Newest[dict[str, Fact]] = Newest(bridge.clock)
+        self._begun = False
+
+    async def start(self) -> None:
+        """Begin to hear it."""
+        await self._bridge.start()
+        if not self._begun:
+            self._begun = True
+            self._newest.restart()
+            self._bridge.subscribe(self._topic, "sensor_msgs/BatteryState", self._hear)
+
+    async def close(self) -> None:
+        """End."""
+        self._begun = False
+        self._bridge.unsubscribe(self._topic, self._hear)
+
+    def reading(self) -> Reading:
+        """Return `charge` from 0 to 1 and `charging`, and how old they are."""
+        stamped = self._newest.stamped
+        return self._newest.reading(self.name, OK, {} if stamped is None else stamped.value)
+
+    def _hear(self, message: Message) -> None:
+        status = message["power_supply_status"]
+        charge = charge_of(message)
+        self._newest.take({"charge": charge, "charging": status in (CHARGING, FULL)})
+
+
+def charge_of(message: Message) -> float:
+    """Return how full a battery is, from 0 to 1.
+
+    What is not measured is NaN, which JSON has as null: then it is charge by capacity. Some robots
+    count `percentage` to 100.
+
+    Raises:
+        ValueError, KeyError, TypeError: the message does not tell.
+    """
+    share = message["percentage"]
+    if share is None:
+        full = message["capacity"] or message["design_capacity"]
+        share = number(message["charge"]) / number(full)
+    share = number(share)
+    return min(max(share / 100 if share > 1.0 else share, 0.0), 1.0)
