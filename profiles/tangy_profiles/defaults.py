@@ -15,4 +15,7 @@ DEFAULT_ACTIVITY = _TOP.text("activity")
 PRESSING_STRATEGIES = _TOP.words("pressing_strategies")
 """The strategies that press people in an activity that does not name its own."""
 
+QUESTIONS_ACTIVITY = _TOP.text("questions")
+"""The name of the activity whose file is written anew for questions that are imported."""
+
 _TOP.close()

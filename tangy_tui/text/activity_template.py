@@ -10,6 +10,12 @@ ASK_TURNS = "Do people take turns? (y/n) "
 ASK_AGAIN = "Please give it a name with at least one letter. "
 
 
+OR = "{} or {}"
+"""The options of a question in a sentence: all but the last one, and the last one."""
+HINT = "It is not {}."
+"""The hint of a question that came without one, with a wrong option."""
+
+
 @dataclass(frozen=True, slots=True)
 class NewActivity:
     """What an author says of a new activity: its title, what a round brings, whether in turns."""

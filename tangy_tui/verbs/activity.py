@@ -27,6 +27,7 @@ app = typer.Typer(
     help="Which activities there are, and what is wrong with their files. Without a verb: list.",
 )
 
+LARGEST_QUESTIONS = 1_000_000  # bytes of a file of questions
 SHOWN = 4  # people with whom phrases are tried: most behaviours can be asked for by a name
 
 
@@ -157,6 +158,30 @@ def activity_try(
     print_json({"steps": steps, "finished": True}) if as_json else print(TRIED)
 
 
+@app.command("import")
+def activity_import(
+    file: Annotated[Path, typer.Argument(help="Questions: Aiken format, or CSV of Kahoot.")],
+    title: Annotated[str, typer.Option(help="What the activity is called.")],
+    folder: Annotated[Path, typer.Option(help="Where the files go.")] = Path(),
+) -> None:
+    """Make an activity of the questions in a file: a table, and a file that can be played."""
+    from tangy_profiles.activity import known_activities
+    from tangy_profiles.defaults import QUESTIONS_ACTIVITY
+    from tangy_profiles.given_file import read_given_text
+    from tangy_tui.app import question_files
+    from tangy_tui.text import activity_template as template
+
+    questions = question_files.read_questions(
+        read_given_text(file, LARGEST_QUESTIONS).lstrip("\ufeff"), file.name
+    )
+    new = template.NewActivity(plain(title), "", turns=True)
+    if not new.name:
+        raise TangyError("--title: must have at least one letter.")
+    base = known_activities()[QUESTIONS_ACTIVITY].read_text(encoding="utf-8")
+    toml = question_files.questions_activity(base, new.name, new.title, questions)
+    _write_new(folder, new.name, toml, question_files.questions_table(questions))
+
+
 @app.command("use")
 def activity_use(
     activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
@@ -184,18 +209,26 @@ def activity_new(
     item = _asked(template.ASK_ITEMS).strip()
     turns = _asked(template.ASK_TURNS).strip().lower().startswith("y")
     new = template.NewActivity(title, item, turns)
-    toml, table = folder / f"{new.name}.toml", folder / f"{new.name}.csv"
+    table = template.items_table(new) if item else ""
+    _write_new(folder, new.name, template.activity_file(new), table)
+
+
+def _write_new(folder: Path, name: str, activity: str, items: str) -> None:
+    """Write the file of a new activity, and its table if it has one, over nothing."""
+    from tangy_tui.text import activity_template as template
+
+    toml, table = folder / f"{name}.toml", folder / f"{name}.csv"
     for path in (toml, table):
         if path.exists():
             raise TangyError(plain(f"{path} is there already: give it another title."))
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        toml.write_text(template.activity_file(new), encoding="utf-8")
-        if item:
-            table.write_text(template.items_table(new), encoding="utf-8")
+        toml.write_text(activity, encoding="utf-8")
+        if items:
+            table.write_text(items, encoding="utf-8")
     except OSError as error:
         raise TangyError(plain(f"{toml}: cannot be written ({error.strerror}).")) from None
-    for line in template.written_lines(str(toml), str(table) if item else ""):
+    for line in template.written_lines(str(toml), str(table) if items else ""):
         print(plain(line))
 
 
