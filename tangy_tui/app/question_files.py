@@ -1,8 +1,8 @@
 """Questions with answers to choose from, read from files of other programs.
 
-The Aiken format (Moodle and others): the question in a line, `A. answer` or `A) answer` in the next
-ones, then `ANSWER: B`. The spreadsheet of Kahoot as CSV: a header with a question, answers 1 to 4 and
-the numbers of the correct ones, under any number of lines of instruction.
+The Aiken format (Moodle and others): the question in a line, `A. answer` or `A) answer` in the
+next ones, then `ANSWER: B`. The spreadsheet of Kahoot as CSV: a header with a question, answers 1
+to 4 and the numbers of the correct ones, under any number of lines of instruction.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ ANSWER: a
 """
 KAHOOT = """Quiz template,,,,,,,
 Read this first,,,,,,,
-,Question - max 120 characters,Answer 1 - max 75,Answer 2 - max 75,Answer 3,Answer 4,Time limit (sec),Correct answer(s)
+,Question - max 120 characters,Answer 1,Answer 2,Answer 3,Answer 4,Time limit,Correct answer(s)
 1,"Which is red, mostly?",a tomato,a leek,a pea,a plum,20,1
 2,What is sown in spring?,peas,beans,garlic,,20,"1,2"
 3,,,,,,,

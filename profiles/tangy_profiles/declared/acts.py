@@ -53,11 +53,11 @@ def raw(game: DeclaredGame, fact: Fact, value: str) -> str:
     if not fact.checks:
         return value
     items, row = game.declaration.items, game.row
-    right = items.value(row, fact.checks).split("|")[0]
+    right = items.value(row, fact.checks).split("|")
     if value == fact.values[1]:
-        return right
+        return right[0]
     others = [items.value(row, column) for column in fact.options]
-    return next((one for one in others if one != right), NO_IDEA)
+    return next((one for one in others if one and one not in right), NO_IDEA)
 
 
 def _chosen(habit: Habit, share: float) -> str:
