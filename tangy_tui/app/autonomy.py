@@ -29,7 +29,7 @@ class AutonomyDial:
 
     def propose(self, decision: Decision, target: str | None) -> None:
         """Keep what would be done next, for staff to be asked about."""
-        self.proposal = Proposal(decision.behaviour, target, decision.share)
+        self.proposal = Proposal(decision.behaviour, target, decision.share, decision.seen)
 
     def confirm(self, *, yes: bool) -> bool:
         """Keep what staff said to the proposal: it alone is done next. False: there was none."""

@@ -346,3 +346,5 @@ class Proposal:
     behaviour: str
     target: str | None
     share: float
+    seen: int = 0
+    """How often it was shown in this situation."""

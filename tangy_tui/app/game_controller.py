@@ -1,8 +1,7 @@
 """The controller of games: every door by which staff act leads here, and each game runs by it.
 
 A game goes on in one thread (`next`, again and again), commands come from another (`apply`). What
-must not wait, a STOP above all, goes to the robot at once; what has to do with the game waits for
-its turn. All that staff did is in the log with who did it.
+must not wait goes to the robot at once, the rest waits for its turn. All of it is in the log.
 """
 
 from __future__ import annotations
@@ -13,6 +12,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.declared.whom import target_of
 from tangy_profiles.errors import TangyError
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
@@ -191,8 +191,8 @@ class GameController:
         decision = game.policy.decide(state.situation)
         if self.robot.rests(decision):
             return False
-        behaviour = game.world.activity.behaviours.get(decision.behaviour)
-        target = state.attended if behaviour is not None and behaviour.attends else None
+        does = game.world.activity.behaviours.get(decision.behaviour)
+        target = target_of(game.policy.whom, does, state)
         if not decision.sure or self.autonomy.permits(decision, target):
             return True
         self.autonomy.propose(decision, target)

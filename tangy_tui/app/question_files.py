@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.activity_template import HINT, OR
 
 MOST_OPTIONS = 6
 LETTERS = "abcdef"
@@ -117,10 +116,13 @@ def _wrong(name: str, number: int, problem: str) -> TangyError:
     return TangyError(plain(f"{name}, line {number}: {problem}."))
 
 
-def questions_table(questions: Sequence[ChoiceQuestion]) -> str:
+def questions_table(questions: Sequence[ChoiceQuestion], either: str, hint: str) -> str:
     """Return the table of an activity: question, each option, all of them, the right one, a hint.
 
-    The hint names an option that is wrong, where there are more than two.
+    Args:
+        questions: what they are.
+        either: how the options are put into a sentence: all but the last one, and the last one.
+        hint: a hint that names a wrong option, for questions with more than two.
     """
     most = max(len(one.options) for one in questions)
     out = io.StringIO()
@@ -129,15 +131,15 @@ def questions_table(questions: Sequence[ChoiceQuestion]) -> str:
     for one in questions:
         *first, last = one.options
         wrong = [option for place, option in enumerate(one.options) if place not in one.right]
-        hint = HINT.format(wrong[-1]) if len(one.options) > 2 and wrong else ""
+        told = hint.format(wrong[-1]) if len(one.options) > 2 and wrong else ""
         writer.writerow([
             one.ask,
             *one.options,
             *[""] * (most - len(one.options)),
-            OR.format(", ".join(first), last),
+            either.format(", ".join(first), last),
             "  ".join(f"{LETTERS[n].upper()} {option}" for n, option in enumerate(one.options)),
             "|".join(one.options[place] for place in one.right),
-            hint,
+            told,
         ])  # fmt: skip
     return out.getvalue()
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.state import FRONT
+from tangy_tui.text.votes import shown_here
 
 if TYPE_CHECKING:
     from tangy_tui.app.game_commands import Autonomy, NoteKind, Proposal, StaffNote
@@ -65,8 +66,8 @@ def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
 def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
     """Ask whether the next behaviour is to be done."""
     whom = f" ({name(proposal.target)})" if proposal.target else ""
-    share = f"{proposal.share:.0%} of the votes"
-    return f"Next: {proposal.behaviour}{whom}, {share}. Y does it, N lets you say what else."
+    because = shown_here(proposal.seen, proposal.share)
+    return f"Next: {proposal.behaviour}{whom}, {because}. Y does it, N lets you say what else."
 
 
 REFUSALS: tuple[NoteKind, ...] = (
@@ -221,7 +222,7 @@ NOT_WHILE_WORKING = "Not now: Tangy is busy. p pauses it, ctrl+x stops it."
 BUSY = "Not now: Tangy is busy."
 VOID_DETAIL = "It will count as not called, and come again later."
 WHO_NEEDS_HELP = "Who needs help?"
-VOTES_DETAIL = "{:.0%} of the votes. After this, i turns the questions off."
+BECAUSE_DETAIL = "It is {}. After this, i turns the questions off."
 
 
 def void_call_words(label: str) -> str:
@@ -232,4 +233,6 @@ def void_call_words(label: str) -> str:
 def confirmed_words(proposal: Proposal, name: Callable[[str], str]) -> tuple[str, str]:
     """Ask whether the next behaviour is to be done, and say how sure Tangy is of it."""
     whom = f" ({name(proposal.target)})" if proposal.target else ""
-    return f"Next: {proposal.behaviour}{whom}?", VOTES_DETAIL.format(proposal.share)
+    return f"Next: {proposal.behaviour}{whom}?", BECAUSE_DETAIL.format(
+        shown_here(proposal.seen, proposal.share)
+    )

@@ -5,13 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from tangy_profiles.declared.whom import addressee
 from tangy_tui.learning.policy import SURE
+from tangy_tui.text.activities import SELECTORS
 from tangy_tui.text.numbers import listed
+from tangy_tui.text.votes import shown_here
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
+    from tangy_profiles.behaviour import Action
+    from tangy_profiles.state import ActivityState
     from tangy_tui.learning.conflicts import Shown
     from tangy_tui.learning.explanation import Why
+    from tangy_tui.learning.policy import Decision, Policy
 
 
 def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
@@ -45,7 +51,7 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
             sentences.append(
                 f"Fewer than {SURE:.0%} of the trees agree: Tangy does not act here, it asks."
             )
-    if votes:
+    if votes and (len(decision.votes) > 1 or not decision.seen):
         shares = ", ".join(
             f"{activity.behaviour_words(b)} {share:.0%}" for b, share in decision.votes
         )
@@ -54,6 +60,36 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
         guesses = dict.fromkeys(activity.in_words(s.step.state.situation) for s in why.near)
         sentences.append(f"The trees guess from what was shown nearby: {'; '.join(guesses)}.")
     return sentences
+
+
+def because_words(decision: Decision) -> str:
+    """Say in a few words what decided: a teacher, what was shown, or a guess of the trees."""
+    if decision.behaviour in decision.right:
+        return "as a teacher said"
+    return shown_here(decision.seen, decision.share)
+
+
+def addressed_words(
+    policy: Policy, action: Action, state: ActivityState, name: Callable[[str], str]
+) -> str:
+    """Say whom an action is for, and what decided that: " (Rosa, who asked first)".
+
+    Args:
+        policy: by which it was decided.
+        action: what was done.
+        state: the state in which it was.
+        name: what people are called.
+    """
+    if not action.target:
+        return ""
+    ways = addressee(policy.whom, action.behaviour, state)
+    because = (
+        SELECTORS[ways.selectors[0]].removeprefix("the person ")
+        if len(action.behaviour.to) > 1
+        else ""
+    )
+    right = ways.sure and ways.person == action.target and because
+    return f" ({name(action.target)}, {because})" if right else f" ({name(action.target)})"
 
 
 def shown_words(activity: Activity, shown: Shown, name: Callable[[str], str]) -> str:

@@ -21,7 +21,7 @@ from tangy_tui.interaction.game_events import (
 from tangy_tui.learning.explanation import explain
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.text.changes import changed_lines
-from tangy_tui.text.decisions import why_words
+from tangy_tui.text.decisions import addressed_words, because_words, why_words
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.numbers import counted
@@ -54,9 +54,9 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
         case ResumedGame(_, number, steps, _):
             return [resumed_words(number, steps)]
         case Acted(number, state, decision, choice, action, outcome, _, speech):
-            target = f" ({name(action.target)})" if action.target else ""
+            target = addressed_words(supervision.policy, action, state, name)
             how = f", {choice.strategy}" if choice else ""
-            why = f"as {teacher} said" if teacher else f"{decision.share:.0%} of the votes"
+            why = f"as {teacher} said" if teacher else because_words(decision)
             return [
                 f"{number}. {activity.in_words(state.situation)} -> "
                 f"{action.behaviour.question}{target}{how}, {why}",

@@ -179,7 +179,8 @@ def activity_import(
         raise TangyError("--title: must have at least one letter.")
     base = known_activities()[QUESTIONS_ACTIVITY].read_text(encoding="utf-8")
     toml = question_files.questions_activity(base, new.name, new.title, questions)
-    _write_new(folder, new.name, toml, question_files.questions_table(questions))
+    table = question_files.questions_table(questions, template.OR, template.HINT)
+    _write_new(folder, new.name, toml, table)
 
 
 @app.command("use")

@@ -6,7 +6,6 @@ import asyncio
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -154,6 +153,7 @@ def _teach_by_lines(
     resume: bool,
     tour: bool,
 ) -> None:
+    from tangy_tui.app.chosen_activity import chosen_activity
     from tangy_tui.app.teacher_profile import change_name
     from tangy_tui.app.workspace import data_folder
     from tangy_tui.console.inputs import is_typed, line_reader
@@ -162,7 +162,7 @@ def _teach_by_lines(
     from tangy_tui.text.documents import demonstration_document
 
     folder = workspace.store.folder
-    usual = signature(teach).parameters["activity"].default
+    usual = chosen_activity(folder)
     options = {
         "activity": None if workspace.profile == usual else workspace.profile,
         "data": None if folder == data_folder(None).absolute() else str(folder),

@@ -270,7 +270,7 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(
     supervision = workspace.supervision(policy, 3)
     said = play_by_turns(supervision, games=3, name=workspace.name, scripted=True)
     assert said[0] == "Game 1 begins."
-    assert said[1] == "1. the game has not begun -> greet everyone, 100% of the votes"
+    assert said[1] == "1. the game has not begun -> greet everyone, as shown 2 times"
     assert sum(line.startswith("The game is over after ") for line in said) == 3
     late = " followed, but late, which counts as no ("
     learnt = [line for line in said if " complied (" in line or late in line]

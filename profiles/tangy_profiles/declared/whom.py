@@ -95,5 +95,12 @@ def addressee(whom: Whom, behaviour: Behaviour, state: ActivityState) -> Address
     )
 
 
+def target_of(whom: Whom, behaviour: Behaviour | None, state: ActivityState) -> str | None:
+    """Return whom a behaviour is for in a state, where nobody says otherwise (None: the group)."""
+    if behaviour is None or not behaviour.attends:
+        return None
+    return addressee(whom, behaviour, state).person if behaviour.to else state.attended
+
+
 def _key(step: Step) -> tuple[str, str]:
     return step.state.stage, step.behaviour

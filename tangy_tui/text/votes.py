@@ -1,0 +1,12 @@
+"""How often something was shown, and which votes it has, in a few words."""
+
+from __future__ import annotations
+
+
+def shown_here(seen: int, share: float) -> str:
+    """Say how often something was shown, and the votes where they are not all for it."""
+    votes = f"{share:.0%} of the votes"
+    if not seen:
+        return f"a guess of the trees, {votes}"
+    times = "once" if seen == 1 else f"{seen} times"
+    return f"as shown {times}" if share >= 1 else f"as shown {times}, {votes}"
