@@ -62,6 +62,8 @@ WAYS: dict[Steering, tuple[str, ...]] = {
 }
 WHILE_TEACHING: tuple[Steering, ...] = ("undo", "redo", "phrases", "help")
 """What a teacher asks for while showing a game."""
+IN_GAMES: tuple[Steering, ...] = ("pause", "go on", "call again")
+"""What staff ask for while Tangy plays."""
 
 
 def steering_of(text: str) -> Steering | None:

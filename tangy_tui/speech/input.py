@@ -6,12 +6,13 @@ import asyncio
 import contextlib
 from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 from tangy_hw.audio.meter import Meter
 from tangy_hw.audio.source import SpokenRecording
 from tangy_hw.audio.sources import open_source
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.steering import Steering
 from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, AcousticEvidence, EvidenceSettings
@@ -19,17 +20,13 @@ from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.recogniser import Recogniser, SpeechUnavailable
 from tangy_tui.speech.recordings import Recorder
 from tangy_tui.speech.understanding import commanded, replied, sounds_of, understand, wanted
-from tangy_tui.speech.utterance import LONGEST_TALK, Utterance
+from tangy_tui.speech.utterance import MOST_TALK, State, Utterance
 
-MOST_TALK = LONGEST_TALK + 0.5  # s, by the clock: also where no more sound comes
 RINGING = 0.3  # s for which a microphone stays shut after the robot has spoken
 FAILURES = 3  # utterances in a row that cannot be decoded, until it is no use to go on by itself
 
 Heard: TypeAlias = Say | StopCommand | Reply
 WAITS = {"starting": "The decoder is getting ready.", "thinking": "Still thinking."}
-
-State: TypeAlias = Literal["starting", "off", "listening", "speaking", "thinking", "shut", "over"]
-"""off: waiting for the key; listening: for an utterance to begin; speaking: somebody speaks."""
 
 
 class SpeechInput:
@@ -97,6 +94,7 @@ class SpeechInput:
         self._free.set()
         self._shuts = 0  # those who have shut it, and not opened it again
         self._asking, self._choices = False, tuple[str, ...]()
+        self.steering: tuple[Steering, ...] = ()  # taken while no command is
         self._renew = False  # there are other phrases to listen for
         self._noticed: set[str] = set()
         if recorder is not None:
@@ -375,7 +373,9 @@ class SpeechInput:
     def _understand(self, evidence: AcousticEvidence) -> Heard | None:
         heard: Heard | None
         if self._asking:
-            heard, told = replied(evidence, self._settings, self._choices, answers=self.answers)
+            heard, told = replied(
+                evidence, self._settings, self._choices, self.steering, answers=self.answers
+            )
         else:
             heard, told = commanded(evidence, self._phrasebook, self._settings, live=self.live)
         self._told(told)

@@ -8,13 +8,13 @@ robot do so in every mode. In the paper's mode there is one tier: n-gram and key
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 
 from tangy_tui.language.answers import NO, YES, choice_in, choice_phrases, yes_or_no
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
-from tangy_tui.language.steering import WHILE_TEACHING, steering_of
+from tangy_tui.language.steering import WHILE_TEACHING, Steering, steering_of
 from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import clean
@@ -86,7 +86,7 @@ def understand(
     text, margin = best_words(evidence, phrasebook)
     if stops(text, phrasebook.game):
         return StopCommand(text)
-    if text not in phrasebook.phrases and _steers(evidence, settings):
+    if text not in phrasebook.phrases and _steers(evidence, settings, WHILE_TEACHING):
         return Say(text, 1.0, None)
     near, confidence = _nearest(text, margin, phrasebook, settings)
     if confidence >= SURE and near[0].confidence >= 1:
@@ -108,10 +108,12 @@ def understand(
     return _said(text, confidence, rest[:MOST_ALTERNATIVES])
 
 
-def _steers(evidence: AcousticEvidence, settings: EvidenceSettings) -> bool:
+def _steers(
+    evidence: AcousticEvidence, settings: EvidenceSettings, ways: Collection[Steering]
+) -> bool:
     """Say whether an utterance asks the program itself for something, by words and by sound."""
-    way = steering_of(evidence.words)
-    return way in WHILE_TEACHING and evidence.margin - settings.shift >= LEAST_STEERING
+    clear = evidence.margin - settings.shift >= LEAST_STEERING
+    return clear and steering_of(evidence.words) in ways
 
 
 def _nearest(
@@ -149,15 +151,18 @@ def replied(
     evidence: AcousticEvidence,
     settings: EvidenceSettings,
     choices: Sequence[str] = (),
+    steering: Collection[Steering] = (),
     *,
     answers: bool,
-) -> tuple[Reply | StopCommand | None, str]:
+) -> tuple[Reply | Say | StopCommand | None, str]:
     """Return what an utterance answers to a question, and what is to be said of it, or "".
 
-    Where no `answers` are taken, only what stops the robot counts; `choices` are the words of
-    what can be chosen instead.
+    Where no `answers` are taken, only what stops the robot counts, and what steers the program in
+    one of the ways of `steering`; `choices` are the words of what can be chosen instead.
     """
     said = answer(evidence, settings, choices)
+    if not isinstance(said, StopCommand) and _steers(evidence, settings, steering):
+        return Say(evidence.words, 1.0, None), ""
     none = answers and said is None and evidence.seconds
     told = "I heard something, but no yes, no or stop." if none else ""
     return (said if answers or isinstance(said, StopCommand) else None), told

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+from typing import Literal, TypeAlias
 
 from tangy_tui.speech.evidence import RATE
 
 LONGEST_TALK = 6.0  # s after which push-to-talk ends by itself
+MOST_TALK = LONGEST_TALK + 0.5  # s, by the clock: also where no more sound comes
 PIECE = 3_200  # bytes, 0.1 s: words are shown as they come if they come in pieces
 STALLED = 3.0  # s without any sound, after which what comes continues nothing
 QUIET = bytes(2 * RATE)  # 1 s: with it an utterance is over
 MOST_WAITING = 60  # s of a stream that wait for the decoder
+
+
+State: TypeAlias = Literal["starting", "off", "listening", "speaking", "thinking", "shut", "over"]
+"""off: waiting for the key; listening: for an utterance to begin; speaking: somebody speaks."""
 
 
 class _Chunks(asyncio.Queue[bytes]):

@@ -88,6 +88,7 @@ class Hearing:
         self._failed = ""
         self._state = ""
         self._about: VerifyingDialog | None = None  # the question when somebody began to speak
+        self._steer: Callable[[str], None] | None = None
         ears.changed = self._changed
         ears.tell = self.tell
 
@@ -146,6 +147,13 @@ class Hearing:
         if self._listeners and (spoken := self._listeners[-1].spoken) is not self._understood:
             self._understood = spoken
             self.ears.understand_by(spoken)
+
+    def steer_by(self, steer: Callable[[str], None] | None) -> None:
+        """Give what steers a game to this while nobody takes commands; None: to nobody any more."""
+        from tangy_tui.language.steering import IN_GAMES
+
+        self._steer = steer
+        self.ears.steering = () if steer is None else IN_GAMES
 
     def pause(self, paused: bool) -> None:
         """Take no commands by voice for a while, or take them again."""
@@ -219,6 +227,10 @@ class Hearing:
                 self.tell(f"Heard: {text}.", "warn")
             case Reply():
                 self._answer(heard)
+            case Say(text, commands=None) if self._steer is not None and not self._free:
+                self.tell(f"Heard: {text}.")
+                if self.on:
+                    self._steer(text)
             case Say() if self._listeners and self.on:
                 self._kept.append(heard)
                 self.look()
@@ -281,16 +293,20 @@ def hearing_of(app: object) -> Hearing | None:
 class HearingLine(MicrophoneLine):
     """The microphone of the program on one line, for as long as it is on a screen."""
 
-    def __init__(self, hearing: Hearing) -> None:
-        """Make the line."""
+    def __init__(self, hearing: Hearing, steer: Callable[[str], None] | None = None) -> None:
+        """Make the line; `steer` takes what steers the screen while it takes no commands."""
         super().__init__(hearing.ears, lambda: hearing.expects)
         self._hearing = hearing
+        self._steer = steer
 
     def on_mount(self) -> None:
         """Follow the ears, and what has the keys."""
         self._hearing.watch(self.look)
+        self._hearing.steer_by(self._steer)
         self.watch(self.screen, "focused", self.look, init=False)
 
     def on_unmount(self) -> None:
         """Follow no longer."""
         self._hearing.watch_no_more(self.look)
+        if self._steer is not None:
+            self._hearing.steer_by(None)

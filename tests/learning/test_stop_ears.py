@@ -7,11 +7,12 @@ import pytest
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.steering import IN_GAMES
 from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence
-from tangy_tui.speech.understanding import answer, commanded, understand, wanted
+from tangy_tui.speech.understanding import answer, commanded, replied, understand, wanted
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
 
@@ -57,6 +58,24 @@ def test_a_phrase_that_was_heard_well_is_no_stop() -> None:
     said = understand(heard("call number", "don't come closer"), BOOK, USUAL)
     assert isinstance(said, Say)
     assert said.sure
+
+
+@pytest.mark.parametrize(
+    ("words", "margin", "steers"),
+    [
+        ("let's take a break", -0.2, True),
+        ("carry on", -0.2, True),
+        ("carry on", -1.5, False),  # the sound was hardly that
+        ("undo that", 0.2, False),  # which no game has
+        ("carry on with the bag", 0.2, False),
+    ],
+)
+def test_in_games_what_steers_them_is_taken_where_it_was_heard_well(
+    words: str, margin: float, steers: bool
+) -> None:
+    said, _ = replied(heard(words, "", margin), USUAL, steering=IN_GAMES, answers=False)
+    assert said == (Say(words, 1.0, None) if steers else None)
+    assert replied(heard(words, "", margin), USUAL, answers=False) == (None, "")
 
 
 def test_a_stop_that_was_found_stops_while_a_question_is_open_but_for_an_answer() -> None:

@@ -10,7 +10,7 @@ from textual.app import App
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import ForestSettings, Policy
-from tangy_tui.learning.verification import Reply, StopCommand
+from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.phrases import PhrasesScreen
@@ -37,6 +37,14 @@ def gappy(
     return learnt(workspace.store, workspace.activity, shown, ForestSettings(trees=5))
 
 
+@pytest.fixture
+def whole(
+    workspace: Workspace, cover: Callable[[str, int, int], tuple[Demonstration, ...]]
+) -> Policy:
+    """A policy that was shown everything."""
+    return learnt(workspace.store, workspace.activity, cover("bingo", 1, 4), ForestSettings(5))
+
+
 def playing(
     workspace: Workspace, policy: Policy, ears: FakeEars, *, speed: float = 1000
 ) -> Program:
@@ -54,6 +62,13 @@ async def asked(pilot: TangyPilot) -> PlayScreen:
     while not (isinstance(pilot.app.screen, PlayScreen) and pilot.app.screen.query(AskingPanel)):
         await pilot.pause(0.02)
     while not pilot.app.screen.query_one(AskingPanel).listens:
+        await pilot.pause(0.02)
+    return pilot.app.screen
+
+
+async def played(pilot: TangyPilot) -> PlayScreen:
+    """Wait until a game is played."""
+    while not (isinstance(pilot.app.screen, PlayScreen) and pilot.app.screen.control.going):
         await pilot.pause(0.02)
     return pilot.app.screen
 
@@ -78,6 +93,36 @@ async def test_an_answer_is_said_asked_about_and_learnt(
             await pilot.pause(0.02)
         while "Learnt from ann" not in " ".join(screen.query_one(LogView).sentences):
             await pilot.pause(0.02)
+
+
+async def test_a_game_is_paused_and_goes_on_by_voice(
+    run: Run, workspace: Workspace, whole: Policy
+) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=playing(workspace, whole, ears, speed=1)) as pilot:
+        screen = await played(pilot)
+        ears.hear(Say("let's take a break", 1.0, None))
+        while screen.control.going:
+            await pilot.pause(0.02)
+        ears.hear(Say("carry on", 1.0, None))
+        while not screen.control.going:
+            await pilot.pause(0.02)
+
+
+async def test_after_a_stop_no_voice_lets_the_robot_go_on(
+    run: Run, workspace: Workspace, whole: Policy
+) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=playing(workspace, whole, ears, speed=1)) as pilot:
+        screen = await played(pilot)
+        ears.hear(StopCommand("stop"))
+        while not screen.control.stopped:
+            await pilot.pause(0.02)
+        ears.hear(Say("carry on", 1.0, None))
+        for _ in range(3):
+            await pilot.pause()
+        assert screen.control.stopped
+        assert not screen.control.going
 
 
 async def test_a_spoken_no_leaves_nothing_in_the_line_and_it_listens_again(

@@ -59,6 +59,10 @@ class PlayPanels(TangyScreen[Tally]):
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         raise NotImplementedError
 
+    def steer(self, text: str) -> None:
+        """Do what somebody said that steers the game."""
+        raise NotImplementedError
+
     def _fail(self, reason: str) -> None:
         """Stand still because something could not be kept."""
         raise NotImplementedError
@@ -77,7 +81,7 @@ class PlayPanels(TangyScreen[Tally]):
                 yield panel(PolicyTable())
                 yield panel(Posteriors(world=self._supervision.world.played_in))
         if (hearing := hearing_of(self.app)) is not None:
-            yield HearingLine(hearing)
+            yield HearingLine(hearing, self.steer)
         yield KeyLine(*keys(going=True))
 
     def action_panel(self, name: str) -> None:

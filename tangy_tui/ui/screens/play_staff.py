@@ -6,13 +6,16 @@ import asyncio
 from collections.abc import Sequence
 from contextlib import suppress
 
+from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
     Accept,
+    CallAgain,
     Confirm,
     GameCommand,
     GiveBack,
     GoOn,
+    Pause,
     Proposal,
     StaffNote,
 )
@@ -77,6 +80,15 @@ class PlayStaff(PlayPanels):
                 said = noted_words(result, self._workspace.name, by_keys=True)
                 self._tell_now(said, "warn" if result.kind in REFUSALS else "dim")
         self._tell([result for result in results if not isinstance(result, StaffNote)])
+
+    def steer(self, text: str) -> None:
+        """Pause, go on or call again, as somebody said; after a STOP only a key goes on."""
+        command = read_command(text, lambda name: self._workspace.find_person(name).id)
+        if isinstance(command, GoOn) and not self.control.going:
+            if not self._refused():
+                self.action_pause()
+        elif isinstance(command, Pause | CallAgain):
+            self._do(command)
 
     def on_asking_panel_commanded(self, event: AskingPanel.Commanded) -> None:
         """Carry out what was typed while Tangy asks."""
