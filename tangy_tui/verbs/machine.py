@@ -48,8 +48,9 @@ def doctor(
     """Say what of this machine works: terminal, store, speech, voice, microphone, camera.
 
     With --robot each driver that the robot's profile names is tried, too; nothing is moved. So is
-    every person whom it names to be called: they get a message that says that it is a test. The
-    exit status is 1 where the data folder, a device of that robot, or a call is broken.
+    every person whom it names to be called: they get a message that says that it is a test. Its
+    body is drawn as the profile describes it. The exit status is 1 where the data folder, a device
+    of that robot, or a call is broken.
     """
     from tangy_tui.app.workspace import data_folder
 
@@ -60,17 +61,20 @@ def doctor(
 
     findings = examine(data_folder(data))
     wanted = {"data folder"}  # what was asked for: what else is missing, Tangy does without
+    drawing: list[str] = []
     if robot is not None:
         from tangy_hw.perception.camera_hub import camera_sources
         from tangy_profiles.activity import load_activity
         from tangy_profiles.robot import load_robot
         from tangy_tui.app.chosen_activity import chosen_activity
+        from tangy_tui.text.body import draw_body
 
         body = load_robot(robot)
         game = load_activity(activity or chosen_activity(data_folder(data)))
         cameras = camera_sources(body)
         tried = examine_robot(body, game, cameras, folder=data_folder(data))
         tried += examine_contacts(body)
+        drawing = draw_body(body.body)
         wanted |= {finding.part for finding in tried}
         findings += tried
     if as_json:
@@ -80,5 +84,7 @@ def doctor(
     else:
         for finding in findings:
             print(f"{finding.state:<7}  {finding.part}: {finding.text}")
+        if drawing:
+            print("", *drawing, sep="\n")
     if any(finding.broken and finding.part in wanted for finding in findings):
         raise typer.Exit(1)

@@ -1,0 +1,88 @@
+"""A robot's body, drawn from above."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil
+
+from tangy_profiles.body import BodyProfile, Mount
+
+FINEST, ROWS = 0.05, 16  # metres of a row at least, and rows of a body at most
+EDGE, INSIDE, WHEELS = "#", "·", "+"
+LASER, CAMERA = "L", "C"
+NEAR = 1e-9  # m^2 within which a point is on the edge
+
+
+def draw_body(body: BodyProfile) -> list[str]:
+    """Return lines that show a body from above, ahead at the top, and say how large all is."""
+    high = max(FINEST, 2 * body.radius / ROWS)  # metres of a row
+    wide = high / 2  # of a column: signs are twice as high as wide
+    half = ceil(body.radius / high)  # rows from the middle to the edge, or a little more
+    rows, columns = 2 * half + 1, 4 * half + 1
+    picture = [
+        [
+            _sign(body, (half - row) * high, (2 * half - column) * wide, high)
+            for column in range(columns)
+        ]
+        for row in range(rows)
+    ]
+
+    def put(sign: str, x: float, y: float) -> None:
+        row, column = half - round(x / high), 2 * half - round(y / wide)
+        if 0 <= row < rows and 0 <= column < columns:
+            picture[row][column] = sign
+
+    put(WHEELS, 0.0, 0.0)
+    for mount in body.cameras.values():
+        put(CAMERA, mount.x, mount.y)
+    put(LASER, body.laser.x, body.laser.y)
+    lines = ["".join(row).rstrip() for row in picture]
+    return [line for line in lines if line] + _words(body)
+
+
+def _sign(body: BodyProfile, x: float, y: float, high: float) -> str:
+    """Return what is drawn at a point on the floor; a row is so many m high."""
+    if not _within(body, x, y):
+        return " "
+    beside = ((x + high, y), (x - high, y), (x, y + high / 2), (x, y - high / 2))
+    return INSIDE if all(_within(body, *point) for point in beside) else EDGE
+
+
+def _within(body: BodyProfile, x: float, y: float) -> bool:
+    if not body.corners:
+        return x * x + y * y <= body.radius**2 + NEAR
+    ends: Sequence[tuple[float, float]] = (*body.corners[1:], body.corners[0])
+    turns = [
+        (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+        for (ax, ay), (bx, by) in zip(body.corners, ends, strict=True)
+    ]
+    return min(turns) >= -NEAR
+
+
+def _words(body: BodyProfile) -> list[str]:
+    """Say what is drawn, and what cannot be."""
+    if body.corners:
+        xs, ys = zip(*body.corners, strict=True)
+        size = f"{max(xs) - min(xs):.2f} m long and {max(ys) - min(ys):.2f} m wide"
+    else:
+        size = f"round, {2 * body.radius:.2f} m across"
+    lines = [
+        f"The robot from above, ahead is up: {size}.",
+        f"{WHEELS} the middle between its wheels; {LASER} the laser scanner, {_place(body.laser)}.",
+    ]
+    lines += [f"{CAMERA} {name}, {_place(mount)}." for name, mount in body.cameras.items()]
+    if body.arms:
+        lines.append(f"Its arms reach {body.arms:.2f} m out from the middle.")
+    lines.append(f"It brakes at {body.braking:.1f} m/s²: measure that with nobody near.")
+    return lines
+
+
+def _place(mount: Mount) -> str:
+    """Say where a device sits, and which way it looks where that is not straight ahead."""
+    aside = f"{abs(mount.y):.2f} m to the {'left' if mount.y > 0 else 'right'}, " * bool(mount.y)
+    along = f"{abs(mount.x):.2f} m {'ahead' if mount.x > 0 else 'behind'}, " * bool(mount.x)
+    turned = ""
+    if mount.yaw:
+        turned = f", turned {abs(mount.yaw):.0f}° to the {'left' if mount.yaw > 0 else 'right'}"
+    high = f"{mount.height:.2f} m high" if mount.height else "of a height that nobody has told"
+    return f"{along}{aside}{high}{turned}"
