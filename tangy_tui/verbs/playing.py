@@ -159,6 +159,7 @@ def _lines(
     speed: float | None = None,
     past: PastGame | None = None,
 ) -> StaffLines:
+    from tangy_tui.app.freeze_watch import FreezeGuard
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.live_games import LiveGames
     from tangy_tui.console.inputs import is_typed, line_reader
@@ -166,6 +167,7 @@ def _lines(
     from tangy_tui.console.typed_yes import TypedYes
     from tangy_tui.interaction.voiding import void_last
     from tangy_tui.learning.library import read_library
+    from tangy_tui.text.freezes import told_words
     from tangy_tui.text.live_news import news_lines
     from tangy_tui.text.watching import stopped_by_guest
 
@@ -183,6 +185,7 @@ def _lines(
 
     control = GameController(supervision, teacher, robot=robot, void=void, past=past)
     workspace.door.attach(control, lambda who: print_line(stopped_by_guest(who)))
+    FreezeGuard(control, lambda seconds: print_line(told_words(seconds))).keep_looking()
     return StaffLines(
         control,
         workspace.name,

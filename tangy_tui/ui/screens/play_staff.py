@@ -8,6 +8,7 @@ from contextlib import suppress
 
 from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.fault_commands import Result
+from tangy_tui.app.freeze_watch import LOOK_SECONDS, FreezeGuard
 from tangy_tui.app.game_commands import (
     Accept,
     CallAgain,
@@ -23,7 +24,9 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.verification import Verified
+from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
+from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
 from tangy_tui.text.watching import stopped_by_guest
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.game_voice import GameVoice
@@ -42,6 +45,7 @@ class PlayStaff(PlayPanels):
         super().__init__(workspace, control)
         self._voice = GameVoice(workspace)
         self._learning = False
+        self._guard: FreezeGuard | None = None
         self.nudge = asyncio.Event()
         """Is set when something is done that the game's time is not to be waited for."""
 
@@ -64,6 +68,26 @@ class PlayStaff(PlayPanels):
         self._workspace.door.attach(
             self.control, lambda who: loop.call_soon_threadsafe(stopped, who)
         )
+        self._guard = FreezeGuard(
+            self.control, lambda s: loop.call_soon_threadsafe(self._stood_still, s)
+        )
+        self.set_interval(LOOK_SECONDS, self._guard.look)
+
+    def _next(self) -> list[Event]:
+        """Do the next thing, unless the program has just stood still."""
+        guard = self._guard
+        return [] if guard is not None and guard.look() else self.control.next()
+
+    def _stood_still(self, seconds: float) -> None:
+        """Ask whether the game goes on, after the program stood still for so many s."""
+        self.show_status()
+        self._write(question(seconds), "warn")
+        self.run_worker(self._ask_to_go_on(seconds), name="freeze", group="freeze", exclusive=True)
+
+    async def _ask_to_go_on(self, seconds: float) -> None:
+        dialog = ConfirmDialog(question(seconds), DETAIL, yes=GO_ON, no=STAY)
+        if await self.app.push_screen_wait(dialog) and self.control.phase == "paused":
+            self._do(GoOn())
 
     def action_pause(self) -> None:
         """Pause, or go on."""
