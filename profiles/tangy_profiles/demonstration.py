@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from tangy_profiles.codec import Unlogged
+from tangy_profiles.codec import Sparse, Unlogged
 from tangy_profiles.state import ActivityState, Situation
 
 Origin = Literal["shown", "again", "asked", "merged", "split"]
@@ -52,6 +52,8 @@ class Resolution:
     situation: Situation
     right: tuple[str, ...]
     wrong: frozenset[int]
+    whatever: Sparse[tuple[str, ...]] = ()
+    """Where it is a rule: the facts that make no difference here, so that nobody need show it."""
 
     def sets_aside(self, step: Step) -> bool:
         """Say whether a step is not to be learnt from."""

@@ -57,6 +57,7 @@ from tangy_tui.learning.teaching_events import (
     Redo,
     Remark,
     RemarkAnswer,
+    SameWhatever,
     Settle,
     Undo,
 )
@@ -92,6 +93,9 @@ class AgainFrom:
     step: int | None
 
 
+_WHATEVER = re.compile(r"(?:always )?(?:it is |do |that is )?the same whatever(.*)")
+
+
 @dataclass(frozen=True, slots=True)
 class Perform:
     """Do what a key does: `action` is one of the keymap; `on` where it was said, of a switch."""
@@ -109,6 +113,7 @@ class TeachAs:
 
 TeachingWord: TypeAlias = (
     Undo
+    | SameWhatever
     | Redo
     | Next
     | Discard
@@ -308,6 +313,8 @@ def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
         return StopCommand(text)
     if called := _CALLED.fullmatch(" ".join(text.split()).rstrip(".!")):
         return TeachAs(called[1])
+    if rule := _WHATEVER.fullmatch(words):
+        return SameWhatever(_named_facts(rule[1]))
     if again := _AGAIN.fullmatch(words):
         number = again[1]
         return AgainFrom(int(number) if number and number.isdecimal() else None)
@@ -316,6 +323,12 @@ def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
     if words in TEACHING:
         return TEACHING[words]
     return Leave() if words in LEAVING else read_program(words)
+
+
+def _named_facts(words: str) -> tuple[str, ...]:
+    """Return the facts that words name: "the clock and hinted are"."""
+    kept = re.sub(r"\b(?:is|are|the|happens|comes)\b", " ", words)
+    return tuple(" ".join(one.split()) for one in re.split(r",| and | or ", kept) if one.strip())
 
 
 def read_program(text: str) -> Perform | Inquiry | None:

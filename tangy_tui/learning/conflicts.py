@@ -53,7 +53,7 @@ def joined(resolutions: Iterable[Resolution]) -> dict[Situation, Resolution]:
     for said in resolutions:
         before = settled.get(said.situation)
         wrong = said.wrong if before is None else said.wrong | before.wrong
-        settled[said.situation] = Resolution(said.situation, said.right, wrong)
+        settled[said.situation] = Resolution(said.situation, said.right, wrong, said.whatever)
     return settled
 
 
@@ -101,7 +101,8 @@ def training_rows(
     """Return the training set, situation and behaviour: what was shown, and what was only said.
 
     Shown is every step, in order, but for those that a resolution calls wrong and copies of a
-    step. Said is an answer that a resolution calls right where all steps showed others.
+    step. Said is an answer that a resolution calls right where all steps showed others, or
+    that a rule covers.
     """
     settled = joined(resolutions)
     rows: list[tuple[Situation, str]] = []
@@ -117,6 +118,6 @@ def training_rows(
         (situation, behaviour)
         for situation, said in settled.items()
         for behaviour in said.right
-        if situation in met and (situation, behaviour) not in learnt
+        if (situation in met or said.whatever) and (situation, behaviour) not in learnt
     ]
     return rows, told

@@ -61,6 +61,8 @@ class Decision:
     seen: int
     contested: bool = False
     right: tuple[str, ...] = ()
+    whatever: tuple[str, ...] = ()
+    """The facts of a teacher's rule that covers it: whatever they are, it is the same."""
 
     @property
     def sure(self) -> bool:
@@ -160,6 +162,7 @@ def learn_policy(
     rows = shown + told
     contested = {conflict.situation for conflict in find_conflicts(demonstrations, resolutions)}
     right = {resolution.situation: resolution.right for resolution in resolutions}
+    rules = {one.situation: one.whatever for one in resolutions if one.whatever}
     situations = list(all_situations(activity))
     strange = set(rows) - set(product(situations, activity.behaviours))
     if strange:
@@ -183,6 +186,7 @@ def learn_policy(
             seen[situation],
             situation in contested,
             right.get(situation, ()),
+            rules.get(situation, ()),
         )
     ids = tuple(d.id for d in demonstrations)
     whom = learn_whom(demonstrations, activity.behaviours)

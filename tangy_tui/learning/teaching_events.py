@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.scene import Arranged
-from tangy_profiles.state import Outcome
+from tangy_profiles.state import Outcome, Situation
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.verification import (
     Asked,
@@ -72,7 +72,16 @@ class Settle:
     answer: RemarkAnswer
 
 
-TeacherCommand: TypeAlias = Say | Reply | Undo | Redo | Next | Discard | Finish | Again | Settle
+@dataclass(frozen=True, slots=True)
+class SameWhatever:
+    """Say that the last step would be the same whatever these facts are (none: all of them)."""
+
+    facts: tuple[str, ...] = ()
+
+
+TeacherCommand: TypeAlias = (
+    Say | Reply | Undo | Redo | Next | Discard | Finish | Again | Settle | SameWhatever
+)
 
 
 # ---------------------------------------------------------------------------- what follows
@@ -167,6 +176,32 @@ class StepUndone:
 
 
 @dataclass(frozen=True, slots=True)
+class Ruled:
+    """Step `number` got a rule: whatever some `facts` are, it is the same; `covers` is where."""
+
+    number: int
+    step: Step
+    facts: tuple[str, ...]
+    covers: tuple[Situation, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NoRule:
+    """A rule could not be added: why, of which fact, among which Tangy goes by."""
+
+    why: Literal["no step", "no facts", "not gone by", "all shown"]
+    fact: str = ""
+    known: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class RuleUndone:
+    """A rule was taken back; its step stays."""
+
+    rule: Ruled
+
+
+@dataclass(frozen=True, slots=True)
 class Begun:
     """A demonstration was begun, or taken up again with the steps it had."""
 
@@ -192,6 +227,9 @@ TeachingEvent: TypeAlias = (
     | Settled
     | Announced
     | StepUndone
+    | Ruled
+    | RuleUndone
+    | NoRule
     | Begun
     | Finished
 )

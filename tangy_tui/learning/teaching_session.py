@@ -38,6 +38,7 @@ from tangy_tui.learning.game_replay import (
 )
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.remarks import Remarks
+from tangy_tui.learning.step_rules import StepRules
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -49,6 +50,7 @@ from tangy_tui.learning.teaching_events import (
     Redo,
     Remark,
     RemarkAnswer,
+    SameWhatever,
     Settle,
     StepUndone,
     TeacherCommand,
@@ -114,6 +116,7 @@ class TeachingSession:
         self.guided, self._first = guided, again
         self._verifier: Verifier
         self._undone: list[Step] = []
+        self._rules = StepRules(activity, store)
         self._announcements, self._logged = Announcements(), False
         self._people = {person.id: person for person in people}
         self._names = {person.id: person.name for person in people}
@@ -161,11 +164,8 @@ class TeachingSession:
     def begin(self, *, resume: bool = True) -> list[TeachingEvent]:
         """Take up this teacher's unfinished demonstration, or begin a new one.
 
-        An unfinished one is replayed in a world of the same seed. Where that leads to other states
-        (the simulator has changed), it stays as it is in the log, and a new one is begun.
-
-        Raises:
-            TangyError: the demonstration that is to be shown again cannot be.
+        An unfinished one is replayed. Where that leads to other states (the simulator has changed),
+        it stays as it is, and a new one is begun. What cannot be shown again raises TangyError.
         """
         if self._first is not None:
             return self.check()
@@ -182,11 +182,7 @@ class TeachingSession:
         return [Begun(kept, resumed=True)]
 
     def check(self) -> list[TeachingEvent]:
-        """Try what is to be shown again, before a screen is opened for it.
-
-        Raises:
-            TangyError: it cannot be shown again; says why.
-        """
+        """Try what is to be shown again, before a screen is opened; raises TangyError if not."""
         events = self._begin_again(self._first) if self._first is not None else []
         if events and isinstance(events[0], Refused):
             raise TangyError(events[0].reason)
@@ -209,6 +205,8 @@ class TeachingSession:
                 return self._settle(answer)
             case Reply():
                 return self._told(self._verifier.reply(command))
+            case SameWhatever():
+                return [self._rules.note(self.demonstration, command)]
             case Undo():
                 return self._undo()
             case Redo():
@@ -359,6 +357,8 @@ class TeachingSession:
     def _undo(self) -> list[TeachingEvent]:
         if not self.demonstration.steps:
             return [Refused("There is no step to undo.")]
+        if (rule := self._rules.take_back(self.demonstration)) is not None:
+            return [rule]
         last, number = self.demonstration.steps[-1], len(self.demonstration.steps)
         shorter = self.demonstration.without_last()
         if (replay := self._replay(shorter)) is None:

@@ -21,7 +21,13 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.people_records import RecordingConsent, RecordingsForgotten
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
-from tangy_tui.learning.teaching_events import Begun, Executed, StepUndone, TeachingEvent
+from tangy_tui.learning.teaching_events import (
+    Begun,
+    Executed,
+    RuleUndone,
+    StepUndone,
+    TeachingEvent,
+)
 from tangy_tui.learning.verification import (
     Asked,
     NotUnderstood,
@@ -163,7 +169,7 @@ class Recorder:
             match event:
                 case Executed(step=step):
                     self.verified(step.behaviour, step.target)
-                case Rejected() | NotUnderstood() | Begun() | StepUndone():
+                case Rejected() | NotUnderstood() | Begun() | StepUndone() | RuleUndone():
                     self._pcm = b""
                 case Refused(heard=text) if text:  # without: the answer was, and the question stays
                     self._pcm = b""

@@ -38,7 +38,10 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
             "Demonstrations disagree about it, and nobody has said yet which is right: "
             "Tangy does not act here, it asks."
         )
-    elif not decision.seen:
+    elif decision.whatever and not why.rests_on:
+        whatever = listed(decision.whatever, "or")
+        sentences.append(f"A rule covers it: {done!r}, whatever {whatever}. Nobody showed it here.")
+    elif not decision.seen and not decision.sure:
         sentences.append("Nobody has shown Tangy what to do here: it does not act, it asks.")
     elif not why.rests_on:
         sentences.append(f"A teacher said that {done!r} is right here.")
@@ -64,6 +67,8 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
 
 def because_words(decision: Decision) -> str:
     """Say in a few words what decided: a teacher, what was shown, or a guess of the trees."""
+    if decision.whatever and not decision.seen:
+        return f"by a rule: whatever {listed(decision.whatever, 'or')}"
     if decision.behaviour in decision.right:
         return "as a teacher said"
     return shown_here(decision.seen, decision.share)

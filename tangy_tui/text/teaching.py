@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from tangy_profiles.reading import nearest
 from tangy_tui.learning.teaching_events import (
     Announced,
     Begun,
@@ -13,7 +14,10 @@ from tangy_tui.learning.teaching_events import (
     Executed,
     Finished,
     NewWording,
+    NoRule,
     Overlooked,
+    Ruled,
+    RuleUndone,
     Settled,
     StepUndone,
     TeachingEvent,
@@ -21,7 +25,7 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
 from tangy_tui.text.coach import GUIDED, arranged_words
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.remarks import remark_lines, settled_words
 from tangy_tui.text.situations import step_words, verification_lines
 
@@ -48,6 +52,8 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
             return [settled_words(event, teaching.activity)]
         case Announced(arranged):
             return [f"   {arranged_words(teaching.activity, arranged, teaching.name)}"]
+        case Ruled() | RuleUndone() | NoRule():
+            return [rule_words(event, teaching.activity)]
         case StepUndone(number, step):
             done = teaching.activity.behaviour_words(step.behaviour)
             return [f"Step {number} is undone: {done}."]
@@ -149,3 +155,27 @@ def beginning_words(teaching: TeachingSession, *, resumed: bool) -> str:
 def complete_words(steps: int) -> str:
     """Say that a game was shown to its end."""
     return f"The game is complete: {counted(steps, 'step')}."
+
+
+def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:
+    """Say which rule a step got, that it was taken back, or why there is none."""
+    if isinstance(event, NoRule):
+        return _no_rule(event)
+    rule = event if isinstance(event, Ruled) else event.rule
+    same = f"{activity.behaviour_words(rule.step.behaviour)}, whatever {listed(rule.facts, 'or')}"
+    covers = counted(len(rule.covers), "situation")
+    if isinstance(event, Ruled):
+        return f"   Step {rule.number} is a rule now: {same}. It covers {covers} more."
+    return f"The rule of step {rule.number} is taken back: {same}. The step stays."
+
+
+def _no_rule(event: NoRule) -> str:
+    match event.why:
+        case "no step":
+            return "Show a step first: a rule is about the last one."
+        case "no facts":
+            return "Tangy goes by no fact here, so there is nothing that could be otherwise."
+        case "all shown":
+            return "All that this covers was shown already."
+        case "not gone by":
+            return f"Tangy does not go by {event.fact!r} here. {nearest(event.fact, event.known)}"

@@ -20,8 +20,11 @@ from tangy_tui.learning.teaching_events import (
     Executed,
     Finished,
     NewWording,
+    NoRule,
     Overlooked,
     Remark,
+    Ruled,
+    RuleUndone,
     Settled,
     StepUndone,
     TeachingEvent,
@@ -83,6 +86,8 @@ class TeachingPicture:
             case Announced(arranged):
                 words = arranged_words(self._teaching.activity, arranged, self._teaching.name)
                 self._log.write(words, "good")
+            case Ruled() | RuleUndone() | NoRule():
+                self._log.write(text.rule_words(event, self._teaching.activity), "good")
             case StepUndone():
                 self._screen.query_one(Transcript).remove_last()
             case Begun(_, resumed):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tangy_tui.app.command_grammar import AgainFrom, Leave, Perform, TeachAs, TeachingWord
-from tangy_tui.learning.teaching_events import Discard, Finish, Next, Redo, Undo
+from tangy_tui.learning.teaching_events import Discard, Finish, Next, Redo, SameWhatever, Undo
 from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.ui.performing import perform
 from tangy_tui.ui.widgets.command_bar import CommandBar
@@ -21,7 +21,7 @@ def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> N
             screen.follow(Say(typed))
         case StopCommand():
             screen.app.run_worker(screen.run_action("app.stop"))
-        case Undo() | Redo() | Finish() | Next():
+        case Undo() | Redo() | Finish() | Next() | SameWhatever():
             screen.follow(word)
         case Discard():
             screen.action_discard()

@@ -1,0 +1,82 @@
+"""Rules that a teacher adds to a step: it would be the same whatever some fact is.
+
+A rule covers the situations of the step's stage that differ from its own in those facts alone, and
+that nobody has shown yet. Each is noted as what a teacher says of a conflict is; so library,
+policy, and a later demonstration that says otherwise treat it as that.
+"""
+
+from __future__ import annotations
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.situations import seen_facts
+from tangy_profiles.demonstration import Demonstration, Resolution, Step
+from tangy_profiles.state import Situation
+from tangy_profiles.store import Store
+from tangy_tui.learning.conflicts import shown_steps
+from tangy_tui.learning.editing import Editor
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.teaching_events import NoRule, Ruled, RuleUndone, SameWhatever
+
+
+class StepRules:
+    """The rules of one teaching session."""
+
+    def __init__(self, activity: Activity, store: Store) -> None:
+        """Take the activity, and the log that rules are noted in."""
+        self._activity, self._store = activity, store
+        self._noted: list[tuple[str, Ruled, int]] = []
+
+    def note(self, shown: Demonstration, command: SameWhatever) -> Ruled | NoRule:
+        """Add a rule to the last step of a demonstration, or say why it cannot be."""
+        activity = self._activity
+        if not shown.steps:
+            return NoRule("no step")
+        step = shown.steps[-1]
+        facts = seen_facts(step.state.situation)
+        if not isinstance(activity, DeclaredActivity) or not facts:
+            return NoRule("no facts")
+        whatever = command.facts or tuple(facts)
+        for fact in whatever:
+            if fact not in facts:
+                return NoRule("not gone by", fact, tuple(facts))
+        covers = self._covered(activity, step, whatever)
+        if not covers:
+            return NoRule("all shown")
+        editor = Editor(self._store, activity)
+        with self._store.transaction():
+            for situation in covers:
+                said = Resolution(situation, (step.behaviour,), frozenset(), whatever)
+                editor.settle(said)
+        ruled = Ruled(len(shown.steps), step, whatever, tuple(covers))
+        self._noted.append((shown.id, ruled, len(covers)))
+        return ruled
+
+    def take_back(self, shown: Demonstration) -> RuleUndone | None:
+        """Take back the rule of the last step, if it has one that was added in this session."""
+        if not self._noted:
+            return None
+        demonstration, ruled, edits = self._noted[-1]
+        if (demonstration, ruled.number) != (shown.id, len(shown.steps)):
+            return None
+        editor = Editor(self._store, self._activity)
+        with self._store.transaction():
+            for _ in range(edits):
+                editor.undo()
+        self._noted.pop()
+        return RuleUndone(ruled)
+
+    def _covered(
+        self, activity: DeclaredActivity, step: Step, whatever: tuple[str, ...]
+    ) -> list[Situation]:
+        library = read_library(self._store, activity.name)
+        met = {one.step.state.situation for one in shown_steps(library.demonstrations)}
+        own = step.state.situation
+        kept = {f: v for f, v in seen_facts(own).items() if f not in whatever}
+
+        def differs_so(one: Situation) -> bool:
+            facts = seen_facts(one)
+            same = all(facts.get(fact) == value for fact, value in kept.items())
+            return one.stage == own.stage and one != own and same and one not in met
+
+        return [one for one in activity.situations if differs_so(one)]

@@ -1,0 +1,104 @@
+"""A step can be made a rule: it covers what nobody showed, is learnt, and is undone like a step."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.declared.situations import seen_facts
+from tangy_tui.app.command_grammar import read_teaching
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policy import learn_policy
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.teaching_events import (
+    NoRule,
+    Ruled,
+    RuleUndone,
+    SameWhatever,
+    StepUndone,
+    Undo,
+)
+from tangy_tui.learning.teaching_session import TeachingSession
+from tangy_tui.text.decisions import because_words
+
+STAGE = "listen"
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    return Workspace(tmp_path, activity="trivia")
+
+
+@pytest.fixture
+def teaching(workspace: Workspace) -> TeachingSession:
+    """Return a session whose last step was taken while an answer is waited for."""
+    session = workspace.teaching("Mary", 1)
+    session.begin()
+    teacher = ScriptedTeacher(session)
+    while not session.demonstration.steps or session.demonstration.steps[-1].state.stage != STAGE:
+        session.apply(teacher.command())
+    return session
+
+
+def ruled(teaching: TeachingSession, *facts: str) -> Ruled:
+    (event,) = teaching.apply(SameWhatever(facts))
+    assert isinstance(event, Ruled)
+    return event
+
+
+@pytest.mark.parametrize(
+    ("words", "facts"),
+    [
+        ("the same whatever clock", ("clock",)),
+        ("It is the same whatever the clock is", ("clock",)),
+        ("always the same whatever the clock and hinted are", ("clock", "hinted")),
+        ("the same whatever happens", ()),
+    ],
+)
+def test_it_is_said_in_words(words: str, facts: tuple[str, ...]) -> None:
+    assert read_teaching(words) == SameWhatever(facts)
+
+
+def test_it_covers_what_differs_in_that_fact_alone(teaching: TeachingSession) -> None:
+    own = teaching.demonstration.steps[-1].state.situation
+    rule = ruled(teaching, "clock")
+    assert rule.covers and own not in rule.covers
+    for situation in rule.covers:
+        assert situation.stage == own.stage
+        assert seen_facts(situation)["hinted"] == seen_facts(own)["hinted"]
+
+
+def test_what_it_covers_is_sure_and_says_that_it_is_a_rule(
+    workspace: Workspace, teaching: TeachingSession
+) -> None:
+    rule, done = ruled(teaching, "clock"), teaching.demonstration.steps[-1].behaviour
+    library = read_library(workspace.store, "trivia")
+    shown = [teaching.demonstration]
+    policy = learn_policy(teaching.activity, shown, resolutions=library.resolutions)
+    for situation in rule.covers:
+        decision = policy.decide(situation)
+        assert (decision.behaviour, decision.sure, decision.seen) == (done, True, 0)
+        assert "rule" in because_words(decision)
+    others = [s for s in teaching.activity.situations if s.stage == "judge"]
+    assert not any(policy.decide(situation).sure for situation in others)
+
+
+def test_undo_takes_the_rule_back_first_and_then_the_step(
+    workspace: Workspace, teaching: TeachingSession
+) -> None:
+    ruled(teaching, "clock")
+    steps = len(teaching.demonstration.steps)
+    (event,) = teaching.apply(Undo())
+    assert isinstance(event, RuleUndone) and len(teaching.demonstration.steps) == steps
+    assert read_library(workspace.store, "trivia").resolutions == ()
+    assert isinstance(teaching.apply(Undo())[0], StepUndone)
+
+
+@pytest.mark.parametrize("facts", [("weather",), ("answer",)])
+def test_a_fact_that_is_not_gone_by_is_refused(
+    workspace: Workspace, teaching: TeachingSession, facts: tuple[str, ...]
+) -> None:
+    assert isinstance(teaching.apply(SameWhatever(facts))[0], NoRule)
+    assert read_library(workspace.store, "trivia").resolutions == ()
