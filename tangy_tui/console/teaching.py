@@ -63,6 +63,7 @@ from tangy_tui.text.teaching_commands import (
     next_or_quit,
 )
 from tangy_tui.text.tour import tour_line
+from tangy_tui.text.voice import OR_SAY_WHICH, OR_SAY_YES
 from tangy_tui.text.who import renamed_teacher, teaches_as
 
 Read = Callable[[], str | None]
@@ -371,6 +372,8 @@ class TeachingLines:
                     self._drop_answer()
                     self._yes.ask()
             self._write_all(teaching_lines(event, self._teaching, self._yes.key))
+            if isinstance(event, Asked | Offered) and self._answers:
+                self._write(OR_SAY_YES if isinstance(event, Asked) else OR_SAY_WHICH)
             if isinstance(event, Finished):
                 self._write_all(self._seen()[:1])
                 self._write(next_or_quit(self._learn))

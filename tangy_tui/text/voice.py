@@ -17,6 +17,8 @@ ON = "Tangy speaks now. At x1 it finishes every line; v switches the voice off."
 OFF = "Tangy is quiet now: what it says is shown as text."
 OR_SAY = "Or say"
 OR_KEY_AND_SAY = "Or ctrl+t, and say"
+OR_SAY_YES = "  Or say yes or no."
+OR_SAY_WHICH = "  Or say the number or the words of one, or no."
 RECORDING = "A recording is listened to: no key is needed."
 HANDS_FREE = "No key is needed: just speak."
 

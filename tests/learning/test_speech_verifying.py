@@ -30,6 +30,7 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.speech.input import Heard
 from tangy_tui.text.teaching_commands import STOPPED
+from tangy_tui.text.voice import OR_SAY_YES
 
 ACTIVITY = load_activity("bingo")
 PEOPLE = load_people(4)
@@ -266,7 +267,7 @@ class TestBySpeech:
         session = Session(workspace, ScriptedEars(live=True, answers=True))
         session.script = [
             ("Now: Nobody has been", GREET),
-            ("Did you say", Reply(yes)),
+            (OR_SAY_YES, Reply(yes)),
             ("-> greet everyone" if yes else "Not done", "quit"),
         ]
         session.run()
