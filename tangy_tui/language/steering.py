@@ -1,11 +1,12 @@
 """How people ask the program itself for something: to take a step back, to pause, for help.
 
-Each way stands for the word that can be typed for it; a whole sentence has to be one of them. The
-decoder has them from everyday words alone: listened for as phrases, they cost sentences that stop.
+Each way stands for the word that can be typed for it; a whole sentence has to be one of them. They
+are listened for like phrases: from everyday words alone, most of them are misheard.
 """
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import cache
 from typing import Literal, TypeAlias
 
@@ -64,6 +65,11 @@ WHILE_TEACHING: tuple[Steering, ...] = ("undo", "redo", "phrases", "help")
 """What a teacher asks for while showing a game."""
 IN_GAMES: tuple[Steering, ...] = ("pause", "go on", "call again")
 """What staff ask for while Tangy plays."""
+
+
+def steering_texts(ways: Collection[Steering]) -> tuple[str, ...]:
+    """Return the sentences by which people ask for some ways of steering."""
+    return tuple(text for way in ways for text in WAYS[way])
 
 
 def steering_of(text: str) -> Steering | None:

@@ -14,7 +14,13 @@ from difflib import SequenceMatcher
 
 from tangy_tui.language.answers import NO, YES, choice_in, choice_phrases, yes_or_no
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
-from tangy_tui.language.steering import WHILE_TEACHING, Steering, steering_of
+from tangy_tui.language.steering import (
+    IN_GAMES,
+    WHILE_TEACHING,
+    Steering,
+    steering_of,
+    steering_texts,
+)
 from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import clean
@@ -43,7 +49,7 @@ LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The margins from which words are an answer: where the grammar finds it too, and where not."""
 
 LEAST_STEERING = -0.6
-"""The margin from which words steer the program: the grammar does not know them."""
+"""The margin from which words steer the program where the grammar does not find them, too."""
 
 SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "eight"}
 
@@ -58,9 +64,14 @@ def wanted(
         settings: how it is listened.
         phrases: those that can be told apart by their sound, if that is known.
     """
+    learnt = settings.mode != "paper"  # which has phrases and keywords alone
+    teaching, games = (
+        steering_texts(ways) if learnt else () for ways in (WHILE_TEACHING, IN_GAMES)
+    )
+    answers = (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions)
     return Wanted(
-        (*(phrasebook.spoken() if phrases is None else phrases), *STOPS),
-        (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions, *STOPS),
+        (*(phrasebook.spoken() if phrases is None else phrases), *STOPS, *teaching),
+        (*answers, *STOPS, *games),
         STOPS,
         {**OWN_NAME, **phrasebook.pronunciations()},
         settings,
@@ -86,7 +97,7 @@ def understand(
     text, margin = best_words(evidence, phrasebook)
     if stops(text, phrasebook.game):
         return StopCommand(text)
-    if text not in phrasebook.phrases and _steers(evidence, settings, WHILE_TEACHING):
+    if text not in phrasebook.phrases and _steers(text, evidence, settings, WHILE_TEACHING):
         return Say(text, 1.0, None)
     near, confidence = _nearest(text, margin, phrasebook, settings)
     if confidence >= SURE and near[0].confidence >= 1:
@@ -109,11 +120,12 @@ def understand(
 
 
 def _steers(
-    evidence: AcousticEvidence, settings: EvidenceSettings, ways: Collection[Steering]
+    text: str, evidence: AcousticEvidence, settings: EvidenceSettings, ways: Collection[Steering]
 ) -> bool:
     """Say whether an utterance asks the program itself for something, by words and by sound."""
-    clear = evidence.margin - settings.shift >= LEAST_STEERING
-    return clear and steering_of(evidence.words) in ways
+    way = steering_of(text)
+    least = LEAST_ANSWER if steering_of(evidence.phrase) == way else LEAST_STEERING
+    return way in ways and evidence.margin - settings.shift >= least
 
 
 def _nearest(
@@ -161,7 +173,7 @@ def replied(
     one of the ways of `steering`; `choices` are the words of what can be chosen instead.
     """
     said = answer(evidence, settings, choices)
-    if not isinstance(said, StopCommand) and _steers(evidence, settings, steering):
+    if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):
         return Say(evidence.words, 1.0, None), ""
     none = answers and said is None and evidence.seconds
     told = "I heard something, but no yes, no or stop." if none else ""

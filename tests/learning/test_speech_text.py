@@ -23,6 +23,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.phones import PHONES
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.steering import IN_GAMES, WHILE_TEACHING, steering_texts
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import transcription
@@ -116,12 +117,14 @@ class TestLanguage:
         assert found[3] == plain[3]
         assert model.endswith("\\end\\\n")
 
-    def test_what_is_wanted_is_every_phrase_what_stops_and_answers(self) -> None:
+    def test_what_is_wanted_is_every_phrase_what_stops_what_steers_and_answers(self) -> None:
         found = wanted(BOOK, USUAL)
-        assert found.phrases == (*BOOK.spoken(), *STOPS)
-        assert set(STOPS) < set(found.answers)
+        teaching = steering_texts(WHILE_TEACHING)
+        assert found.phrases == (*BOOK.spoken(), *STOPS, *teaching)
+        assert {*STOPS, *steering_texts(IN_GAMES)} < set(found.answers)
         assert found.urgent == STOPS
-        assert wanted(BOOK, USUAL, ["tell a joke"]).phrases == ("tell a joke", *STOPS)
+        assert wanted(BOOK, USUAL, ["tell a joke"]).phrases == ("tell a joke", *STOPS, *teaching)
+        assert wanted(BOOK, PAPER).phrases == (*BOOK.spoken(), *STOPS)
 
     @given(
         st.builds(
