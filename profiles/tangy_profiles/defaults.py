@@ -19,3 +19,6 @@ QUESTIONS_ACTIVITY = _TOP.text("questions")
 """The name of the activity whose file is written anew for questions that are imported."""
 
 _TOP.close()
+
+REGISTERED = -1
+"""As a count of people: as many as are registered, those of before and those who were added."""

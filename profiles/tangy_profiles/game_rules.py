@@ -9,7 +9,7 @@ from tangy_profiles.cards import PATTERNS, Deck
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import Table, nearest, plain
 
-LONGEST_PACE, SHORTEST_PACE = 60.0, 5.0
+LONGEST_PACE, SHORTEST_PACE, USUAL_PACE = 60.0, 5.0, 30.0
 PACES = (5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0)
 """The paces, in s from one call to the next, that faster and slower step through."""
 

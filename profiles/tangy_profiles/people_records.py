@@ -37,6 +37,20 @@ class Renamed(EventRecord):
     """A person has another name, which the log does not hold."""
 
 
+@kind("person added", about="person")
+class PersonAdded(EventRecord):
+    """A person takes part from now on; a guest only in the session of that day."""
+
+    guest: Sparse[bool] = False
+
+
+@kind("person archived", about="person")
+class PersonArchived(EventRecord):
+    """A person takes part no more (`on`), or again; what is known of them stays."""
+
+    on: bool = True
+
+
 @kind("forgotten", about="person")
 class PersonForgotten(EventRecord):
     """A person's name was forgotten; it was erased from so many events."""

@@ -12,7 +12,7 @@ from tangy_profiles.reading import plain, read_toml
 from tangy_profiles.state import FRONT
 from tangy_profiles.voice import VoicePreference
 
-MOST_PEOPLE = 8
+MOST_PEOPLE = 24
 LONGEST_NAME = 40  # characters
 AS_EVERYBODY = VoicePreference()
 
@@ -66,7 +66,7 @@ def load_people(count: int, path: Path | None = None) -> tuple[Person, ...]:
     """Load the first `count` sample people; beyond the listed ones they are numbered on.
 
     Raises:
-        ProfileError: the count is not from 1 to 8, or the file has a mistake.
+        ProfileError: the count is not from 1 to 24, or the file has a mistake.
     """
     if not 1 <= count <= MOST_PEOPLE:
         raise ProfileError(f"{count} people cannot play: choose from 1 to {MOST_PEOPLE}.")

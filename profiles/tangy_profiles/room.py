@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
+from itertools import pairwise
 from math import hypot
 from pathlib import Path
 
@@ -16,6 +17,9 @@ from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
 from tangy_profiles.reading import Table, nearest, read_toml
 from tangy_profiles.state import FRONT
+
+AT_ONE_TABLE = 8
+"""People who sit at the one table of a common room; more need a hall."""
 
 
 @dataclass(frozen=True)
@@ -52,11 +56,13 @@ class Room:
     seats: tuple[Point, ...]
     seat_word: str = ""
     seat_names: tuple[str, ...] = ()
+    tables: tuple[tuple[float, float, float, float], ...] = ()
+    """Each of several tables in a row; `table` is what they take together."""
 
     def seated(self, count: int) -> tuple[Point, ...]:
         """Return a seat for each of `count` people: the room's own, or as many spread evenly."""
-        if count == len(self.seats):
-            return self.seats
+        if count == len(self.seats) or (self.tables and count < len(self.seats)):
+            return self.seats[:count]
         left, _, right, _ = self.table
         y = self.seats[0].y
         return tuple(Point(left + (right - left) * (i + 0.5) / count, y) for i in range(count))
@@ -100,7 +106,13 @@ def load_room(name: str = "common-room") -> Room:
     width = top.number("width", 2, 100)
     depth = top.number("depth", 2, 100)
     front_x, front_y = top.numbers("front", 2, 0, max(width, depth))
-    left, near, right, far = top.numbers("table", 4, 0, max(width, depth))
+    tables = _tables(top, max(width, depth))
+    left, near, right, far = (
+        min(table[0] for table in tables),
+        min(table[1] for table in tables),
+        max(table[2] for table in tables),
+        max(table[3] for table in tables),
+    )
     reach = top.number("reach", 0.2, 3)
     seats, names = [], []
     for entry in top.tables("seats"):
@@ -126,9 +138,31 @@ def load_room(name: str = "common-room") -> Room:
         tuple(seats),
         _words(top, "seat_word"),
         tuple(names),
+        tables if len(tables) > 1 else (),
     )
     top.close()
     return room
+
+
+def _tables(top: Table, most: float) -> tuple[tuple[float, float, float, float], ...]:
+    """Take the table of a room, or its tables in a row."""
+    if "tables" not in top:
+        left, near, right, far = top.numbers("table", 4, 0, most)
+        return ((left, near, right, far),)
+    found = []
+    for entry in top.tables("tables"):
+        left, near, right, far = entry.numbers("at", 4, 0, most)
+        found.append((left, near, right, far))
+        entry.close()
+    if not found or any(a[2] > b[0] for a, b in pairwise(found)):
+        raise top.wrong("tables", "must be at least one, from the left to the right.")
+    return tuple(found)
+
+
+def room_for(people: int) -> Room:
+    """Return the first of the rooms that come with Tangy in which so many people fit."""
+    room = load_room()
+    return room if people <= AT_ONE_TABLE else load_room("hall")
 
 
 def _words(table: Table, key: str) -> str:

@@ -66,6 +66,8 @@ ACTIONS: tuple[KeyAction, ...] = (
     _line("again", ("ctrl+r",), "again"),
     _line("shown", ("ctrl+o",), "shown"),
     # games
+    KeyAction("begin", ("B",), "begin"),
+    KeyAction("inside", ("u",), "inside"),
     KeyAction("pause", ("p",), "pause"),
     KeyAction("step", ("full_stop",), "step"),
     KeyAction("faster", ("greater_than_sign",), "faster"),
@@ -81,6 +83,8 @@ ACTIONS: tuple[KeyAction, ...] = (
     KeyAction("drive", ("d",), "drive"),
     KeyAction("call_again", ("c",), "call again"),
     KeyAction("ask_for", ("h",), "ask for"),
+    KeyAction("claim", ("K",), "check a card"),
+    KeyAction("presence", ("L",), "who is here"),
     KeyAction("whose_card", ("b",), "whose card"),
     KeyAction("tell", ("l",), "tell"),
     # lists

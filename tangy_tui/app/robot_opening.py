@@ -108,6 +108,7 @@ def open_bench(
         stepped=stepped,
         activity=workspace.profile,
         robot=str(workspace.robot.file),
+        room=workspace.room.name,
         log=folder / BENCH_LOG,
         cancellation=cancellation,
     )
@@ -117,6 +118,7 @@ def open_bench(
             robot=str(workspace.robot.file),
             activity=workspace.profile,
             people=tuple(workspace.names),
+            room=workspace.room.name,
             drivers={
                 **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE},
                 "laser": {"kind": "scip", "at": bench.wires.scip},
@@ -194,6 +196,7 @@ def open_robot(
         robot=str(workspace.robot.file),
         activity=workspace.profile,
         people=tuple(workspace.names),
+        room=workspace.room.name,
         courtesies=courtesies or {},
         cameras=dict(named.split("=", 1) for named in cameras),
         requests=requests,

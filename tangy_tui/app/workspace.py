@@ -12,16 +12,18 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.defaults import REGISTERED
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.person import Person, folded, load_people, unaccented
 from tangy_profiles.process_log import logging_to
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
-from tangy_profiles.room import Room, load_room
+from tangy_profiles.room import room_for
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
 from tangy_tui.app.chosen_activity import choose_activity, chosen_activity
+from tangy_tui.app.register import known_people, participants
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 from tangy_tui.app.session_door import SessionDoor
@@ -49,11 +51,9 @@ if TYPE_CHECKING:
 
 def data_folder(chosen: Path | None) -> Path:
     """Return the data folder: the chosen one, or the platform's folder for a person's data."""
-    if chosen is not None:
-        return chosen
     from platformdirs import user_data_path
 
-    return user_data_path("tangy", appauthor=False)
+    return chosen or user_data_path("tangy", appauthor=False)
 
 
 class Workspace:
@@ -64,7 +64,7 @@ class Workspace:
         folder: Path,
         *,
         activity: str = "",
-        users: int = 4,
+        users: int = REGISTERED,
         write: bool = True,
         robot: str = "tangy",
         now: Callable[[], datetime] | None = None,
@@ -79,14 +79,14 @@ class Workspace:
         self._users = users
         self.robot: Robot = load_robot(robot)
         self._take_up(activity or chosen_activity(folder))
-        self.room: Room = load_room()
+        load_people(1 if users == REGISTERED else users)  # before a store is opened for them
         self.store = Store.open(folder, write=write, now=now)
         self.door = SessionDoor(folder)
         self._logging = ExitStack()
         if write:
             self._logging.enter_context(logging_to(folder))
         self.people: tuple[Person, ...] = ()
-        self.read_people()
+        self.register(users)
 
     def _take_up(self, activity: str) -> None:
         loaded: Activity = load_activity(activity)
@@ -113,19 +113,19 @@ class Workspace:
 
     def read_people(self) -> None:
         """Read anew what is known of the people: names, how they are said, voices, seats."""
-        names, said = self.store.names(), self.store.pronunciations()
-        voices = self.store.voices()
-        self.people = self.room.placed(
-            [
-                Person(
-                    p.id,
-                    names.get(p.id, p.name),
-                    said.get(p.id, p.pronunciation),
-                    voices.get(p.id, p.voice),
-                )
-                for p in self._sample
-            ]
-        )
+        self.people = self.room.placed(known_people(self.store, self._sample))
+
+    def register(self, users: int = REGISTERED) -> None:
+        """Let the first of those who are registered take part, or all of them."""
+        teams = tuple(Person(team, team) for team in self.activity.teams)
+        self._sample = teams or participants(self.store, users)
+        self.room = room_for(len(self._sample))
+        self.read_people()
+
+    def seat(self, order: Sequence[str]) -> None:
+        """Let people sit in another order of their ids."""
+        self._sample = tuple(sorted(self._sample, key=lambda person: order.index(person.id)))
+        self.read_people()
 
     def name(self, person: str) -> str:
         """Return a person's name."""

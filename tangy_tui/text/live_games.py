@@ -21,11 +21,6 @@ SWITCH_ON_DETAIL = (
     "Make sure that it stands at the front and faces the people, that nobody is close to it, and "
     "that someone is near its stop button. In the game ctrl+x stops it, too."
 )
-BENCH = "Play on the bench?"
-BENCH_DETAIL = (
-    "No robot is named, so Tangy simulates its devices and the people at the table. All else is "
-    "as in a live game. `tangy --robot FILE` names a robot."
-)
 
 
 def switch_on_words(robot: str) -> str:

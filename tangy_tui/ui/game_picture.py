@@ -13,6 +13,7 @@ from tangy_tui.interaction.game_events import (
     BeliefUpdated,
     DoneOnce,
     GameBegun,
+    GameChanged,
     GameEnded,
     ResumedGame,
     Taught,
@@ -21,6 +22,7 @@ from tangy_tui.interaction.game_events import (
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.activities import with_activity
+from tangy_tui.text.changes import changed_lines
 from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.games import (
     begun_words,
@@ -109,6 +111,11 @@ class GamePicture:
                     self._screen.notify(once, markup=False)
                 case Diagnosed() | Moved():
                     write_fault(self._screen, event)
+                    self.show_scene(0, drive=False, pace=pace)
+                case GameChanged():
+                    lines = changed_lines(event, self._workspace.activity, self._workspace.name)
+                    for line in lines:
+                        log.write(line.strip())
                     self.show_scene(0, drive=False, pace=pace)
                 case GameEnded(_, steps, None):
                     log.write(over_words(steps), "good")

@@ -72,7 +72,7 @@ def works(screen: Screen[Any], action: str) -> bool:
     """Say whether a key that is the program's own does anything on a screen."""
     match action:
         case "command":
-            return bool(screen.query("#command-input"))
+            return bool(screen.query("#command-input")) or hasattr(screen, "action_type")
         case "zoom":
             panel = screen.focused
             return screen.maximized is not None or (panel is not None and panel.allow_maximize)

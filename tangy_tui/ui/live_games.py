@@ -9,13 +9,15 @@ from textual.constants import ESCAPE_DELAY
 
 from tangy_profiles import game_world
 from tangy_profiles.errors import TangyError
-from tangy_tui.text.live_games import BENCH, BENCH_DETAIL, SWITCH_ON_DETAIL, switch_on_words
+from tangy_profiles.game_rules import USUAL_PACE
+from tangy_tui.text.live_games import SWITCH_ON_DETAIL, switch_on_words
 from tangy_tui.ui.interruption import ask_about_interrupted
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.past_game import PastGame
     from tangy_tui.app.robot_opening import Opening
+    from tangy_tui.app.set_up import SetUp
     from tangy_tui.app.switching_on import SwitchingOn
     from tangy_tui.learning.policy import Policy
     from tangy_tui.ui.program import Program
@@ -25,26 +27,20 @@ TYPED_AHEAD_SECONDS = 1.5 * ESCAPE_DELAY
 
 
 async def play_from_home(program: Program, policy: Policy) -> None:
-    """Ask first, and play: with the robot, if its file names drivers, or on the bench."""
+    """Set up and play: with the robot, if its file names drivers, or on the bench."""
     from tangy_tui.app.robot_opening import opening_of
-    from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 
     workspace = program.workspace
     bench = not workspace.robot.drivers
-    if bench:
-        dialog = ConfirmDialog(BENCH, BENCH_DETAIL, yes="play", no="back")
-    else:
-        question = switch_on_words(workspace.robot.title)
-        dialog = ConfirmDialog(question, SWITCH_ON_DETAIL, yes="switch it on, and play", no="back")
-    world = game_world.BENCH if bench else game_world.LIVE
-    if await program.push_screen_wait(dialog):
-        chosen = await ask_about_interrupted(program, world)
-        if chosen is None:
-            return
-        past = chosen.past
-        seed = workspace.game_seed(None) if past is None else past.beginning.seed
-        opening = opening_of(workspace, bench=bench, seed=seed)
-        await play_live(program, opening, policy, games=1, seed=seed, teacher="", past=past)
+    chosen = await ask_about_interrupted(program, game_world.BENCH if bench else game_world.LIVE)
+    if chosen is None:
+        return
+    past = chosen.past
+    seed = workspace.game_seed(None) if past is None else past.beginning.seed
+    opening = opening_of(workspace, bench=bench, seed=seed)
+    await play_live(
+        program, opening, policy, games=1, seed=seed, teacher="", past=past, set_up=past is None
+    )
 
 
 async def play_live(
@@ -56,29 +52,57 @@ async def play_live(
     seed: int,
     teacher: str,
     past: PastGame | None = None,
+    set_up: bool = False,
+    pace: float = USUAL_PACE,
 ) -> None:
     """Switch the robot on, play on the live screen, and switch it off again.
 
     It is left off where somebody calls it off meanwhile. A past game, which was interrupted, is
-    taken up first.
+    taken up first. Where staff `set_up` the game first, the robot is switched on when they say.
     """
+    from tangy_tui.app.set_up import SetUp
     from tangy_tui.app.switching_on import SwitchingOn
 
     workspace = program.workspace
     robot = SwitchingOn(opening)
+    setup = SetUp.of(workspace, pace)
     try:
-        world = await _switch_on(program, robot)
+        if set_up:
+            world = await _set_up(program, setup, robot)
+        else:
+            world = await _switch_on(program, robot)
         if world is None:
             return
         from tangy_tui.ui.screens.live import LiveScreen
 
+        if set_up:
+            setup.carry_out(world)
         supervision = workspace.supervision(policy, seed, asks=True, world=world)
         screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher, past=past)
+        screen.minutes = setup.minutes
         if program.hearing is not None:
             program.hearing.ears.begin()
         await program.push_screen_wait(screen)
     finally:
         await asyncio.shield(asyncio.to_thread(robot.close))
+
+
+async def _set_up(program: Program, setup: SetUp, robot: SwitchingOn) -> LiveWorld | None:
+    """Let staff set the game up; None where they leave."""
+    from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+    from tangy_tui.ui.screens.set_up import SetUpScreen
+
+    async def switch_on() -> LiveWorld | None:
+        profile = program.workspace.robot
+        if profile.drivers:
+            question = switch_on_words(profile.title)
+            dialog = ConfirmDialog(question, SWITCH_ON_DETAIL, yes="switch it on", no="back")
+            if not await program.push_screen_wait(dialog):
+                return None
+        return await _switch_on(program, robot)
+
+    begins = await program.push_screen_wait(SetUpScreen(setup, switch_on))
+    return setup.world if begins else None
 
 
 async def _switch_on(program: Program, robot: SwitchingOn) -> LiveWorld | None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tangy_profiles.game_rules import USUAL_PACE
 from tangy_profiles.store import Store
 from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
@@ -117,8 +118,10 @@ def run_live(
     world: GameWorld,
     ears: SpeechInput | None = None,
     past: PastGame | None = None,
+    set_up: bool = True,
+    pace: float = USUAL_PACE,
 ) -> int:
-    """Switch the robot on, play on the live screen, and end with it; return the exit status.
+    """Set up, play on the live screen with the robot on, and end; return the exit status.
 
     Args:
         workspace: whose games.
@@ -131,6 +134,8 @@ def run_live(
         world: in which is played.
         ears: hear what stops the robot, and what answers Tangy.
         past: a game that was interrupted, and is taken up first; None: it is asked about.
+        set_up: staff set a new game up first.
+        pace: s from one call to the next, unless they choose another.
     """
 
     async def start(program: Program) -> None:
@@ -147,6 +152,8 @@ def run_live(
                 seed=of,
                 teacher=teacher,
                 past=chosen.past,
+                set_up=set_up and chosen.past is None,
+                pace=pace,
             )
         program.leave()
 

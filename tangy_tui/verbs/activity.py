@@ -14,7 +14,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.remarks import no_own_phrase
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, print_json
+from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, Users, print_json
 from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def activity_show(
 @app.command("try")
 def activity_try(
     activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
-    users: Users = 4,
+    users: Users = REGISTERED,
     seed: Seed = 1,
     as_json: Json = False,
 ) -> None:
@@ -251,7 +251,7 @@ def activity_phrases(
         str | None, typer.Option(metavar="PHRASE", help="Remove a phrase of your own.")
     ] = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
     """Show the phrasebook: what can be said for what, and how every word is said."""

@@ -60,6 +60,9 @@ VERBS = {
         below=(
             ("pronounce", "people_speech", "people_pronounce"),
             ("voice", "people_speech", "people_voice"),
+            ("add", "people_register", "people_add"),
+            ("archive", "people_register", "people_archive"),
+            ("bring-back", "people_register", "people_bring_back"),
             ("forget", "people_forget", "people_forget"),
         ),
     ),

@@ -9,21 +9,29 @@ from typing import Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import REGISTERED as REGISTERED
+
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, nothing else.")]
 Seed = Annotated[int | None, typer.Option(help="Repeat the same simulated games.")]
 Data = Annotated[Path | None, typer.Option(help="The data folder, instead of your own.")]
 ActivityName = Annotated[
     str, typer.Option("--activity", help="An activity, or its TOML; usually the chosen one.")
 ]
-Users = Annotated[int, typer.Option(help="How many people take part, 1 to 8.")]
+Users = Annotated[
+    int,
+    typer.Option(
+        help="How many people take part, 1 to 24; usually all who are registered.",
+        show_default=False,
+    ),
+]
 Ascii = Annotated[bool, typer.Option("--ascii", help="Draw with plain ASCII characters only.")]
 Games = Annotated[int, typer.Option(min=1, help="How many games.")]
 
 
-def as_given(data: Path | None, users: int = 4) -> str:
+def as_given(data: Path | None, users: int = REGISTERED) -> str:
     """Return the options that a command to copy needs, so that it means the same data folder."""
     folder = "" if data is None else f" --data {shlex.quote(str(data))}"
-    return folder + ("" if users == 4 else f" --users {users}")
+    return folder + ("" if users == REGISTERED else f" --users {users}")
 
 
 def print_line(line: str) -> None:

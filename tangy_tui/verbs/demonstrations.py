@@ -11,7 +11,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text import settling
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
+from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def list_them(
     from tangy_tui.learning.library import read_library
     from tangy_tui.ui import reports
 
-    with open_workspace(data, activity, 4, write=False) as workspace:
+    with open_workspace(data, activity, REGISTERED, write=False) as workspace:
         rows = list_rows(workspace.activity, read_library(workspace.store, workspace.activity.name))
         if as_json:
             print_json([row.to_json() for row in rows])
@@ -164,7 +164,7 @@ def conflicts(
     from tangy_tui.text.documents import conflict_document
     from tangy_tui.text.situations import conflict_lines
 
-    with open_workspace(data, activity, 4, write=False) as workspace:
+    with open_workspace(data, activity, REGISTERED, write=False) as workspace:
         library = read_library(workspace.store, workspace.activity.name)
         found = library.all_conflicts if unfinished else library.conflicts
         if as_json:
@@ -252,7 +252,7 @@ def _change(
     from tangy_tui.learning.editing import Editor
     from tangy_tui.text.numbers import counted
 
-    with open_workspace(data, activity, 4) as workspace:
+    with open_workspace(data, activity, REGISTERED) as workspace:
         editor = Editor(workspace.store, workspace.activity)
         edit = change(editor)
         if as_json:
@@ -294,7 +294,7 @@ def accepted(
     from tangy_tui.monitoring.evidence import mismatch_words
     from tangy_tui.text.times import local_time
 
-    with open_workspace(data, activity, 4, write=take_back is not None) as workspace:
+    with open_workspace(data, activity, REGISTERED, write=take_back is not None) as workspace:
         name = workspace.activity.name
         if take_back is not None:
             take_it_back(workspace.store, name, take_back)

@@ -9,6 +9,7 @@ import typer
 from tangy_profiles.person import read_name
 from tangy_tui.text.command_line import PREPARING_DRILL
 from tangy_tui.verbs.common import (
+    REGISTERED,
     ActivityName,
     Ascii,
     Data,
@@ -28,7 +29,7 @@ def drill(
     scores: Annotated[bool, typer.Option("--scores", help="List earlier score sheets.")] = False,
     plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
     activity: ActivityName = "",
-    users: Users = 4,
+    users: Users = REGISTERED,
     data: Data = None,
     as_json: Json = False,
     ascii_only: Ascii = False,

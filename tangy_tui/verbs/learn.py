@@ -11,7 +11,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.text.learnt import changed_lines, grounds, learnt_lines, only_unfinished
 from tangy_tui.text.settling import LEFT_OPEN, WHICH_IS_RIGHT, how_to_settle
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
+from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace, say_notices
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def learn(
     if forest not in FORESTS:
         raise TangyError(f"--forest {plain(forest)}: {nearest(forest, FORESTS)}")
     check_name(name)
-    with open_workspace(data, activity, 4) as workspace:
+    with open_workspace(data, activity, REGISTERED) as workspace:
         if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
             _settle_conflicts(workspace)
         library = read_library(workspace.store, workspace.activity.name)
@@ -115,7 +115,7 @@ def policy(
     as_json: Json = False,
 ) -> None:
     """Show what was learnt: every situation, what Tangy does there, and why; or compare two."""
-    with open_workspace(data, activity, 4, write=False) as workspace:
+    with open_workspace(data, activity, REGISTERED, write=False) as workspace:
         if list_all:
             _list_policies(workspace, as_json)
         elif compare is not None:

@@ -15,7 +15,16 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import WHAT_TO_LISTEN_TO, cut_off, recordings_deleted
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, as_given, print_json, print_line
+from tangy_tui.verbs.common import (
+    REGISTERED,
+    ActivityName,
+    Data,
+    Json,
+    Seed,
+    as_given,
+    print_json,
+    print_line,
+)
 from tangy_tui.verbs.opening import open_workspace, say_notices
 
 if TYPE_CHECKING:
@@ -67,7 +76,7 @@ def listen(
 
     if bool(files) + (bench is not None) + (text is not None) + forget_recordings != 1:
         raise TangyError(WHAT_TO_LISTEN_TO)
-    with open_workspace(data, activity, 4, write=forget_recordings) as workspace:
+    with open_workspace(data, activity, REGISTERED, write=forget_recordings) as workspace:
         if forget_recordings:
             _forget(workspace, as_json)
             return

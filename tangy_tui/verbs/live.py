@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.live_games import LiveGames
     from tangy_tui.app.robot_opening import Opening
     from tangy_tui.app.workspace import Workspace
+    from tangy_tui.console.set_up import SetUpLines
     from tangy_tui.monitoring.supervision import Event
 
 PACE = 30.0  # as in tangy_hw.robot_client.live_world, which is not to be imported here
@@ -51,7 +52,7 @@ def live(
         typer.Option("--bench", help="Without a robot: its devices are simulated, and its people."),
     ] = False,
     games: common.Games = 1,
-    users: common.Users = 4,
+    users: common.Users = common.REGISTERED,
     headless: Annotated[
         bool, typer.Option("--headless", help="Without a screen, on the bench as fast as it goes.")
     ] = False,
@@ -102,6 +103,9 @@ def live(
     hands_free: HandsFree = False,
     spoken_answers: SpokenAnswers = False,
     mode: Mode = None,
+    begin: Annotated[
+        bool, typer.Option("--begin", help="Begin at once, without the page to set the game up.")
+    ] = False,
     resume: Resume = False,
     discard: Discard = False,
     seed: common.Seed = None,
@@ -174,6 +178,8 @@ def live(
                     ascii_only=ascii_only,
                     world=world,
                     past=past,
+                    set_up=not begin,
+                    pace=pace,
                     ears=listening.ears(
                         workspace,
                         workspace.phrasebook(),
@@ -183,6 +189,9 @@ def live(
                     ),
                 )
             )
+        lines = _set_up(workspace, pace) if plain_lines and not begin and past is None else None
+        if lines is not None and not lines.run():
+            return
         if not as_json:
             print(SWITCHING_ON, file=sys.stderr)
         from tangy_tui.app.live_games import LiveGames
@@ -192,6 +201,11 @@ def live(
             if not as_json and (plain_lines or not bench) and there.link.tablet:
                 print(plain(there.link.tablet), file=sys.stderr)
             asks = plain_lines or who == SCRIPTED
+            if lines is not None:
+                lines.setup.world = there
+                if not lines.begins_anyway():
+                    return
+                lines.setup.carry_out(there)
             supervision = workspace.supervision(learnt, number, asks=asks, world=there)
             if plain_lines:
                 to_their_end = play_with_staff(
@@ -202,6 +216,17 @@ def live(
                 to_their_end = _play(workspace, played, games, as_json, expert=bool(expert))
         if not to_their_end:
             raise typer.Exit(1)  # so that a script knows that games did not come to their end
+
+
+def _set_up(workspace: Workspace, pace: float) -> SetUpLines | None:
+    """Return what sets a game up by lines, None where nobody types them."""
+    from tangy_tui.app.set_up import SetUp
+    from tangy_tui.console.inputs import is_typed, line_reader
+    from tangy_tui.console.set_up import SetUpLines
+
+    if not is_typed(None):
+        return None
+    return SetUpLines(SetUp.of(workspace, pace), line_reader(None), common.print_line)
 
 
 def _listed(given: list[str]) -> tuple[Injection, ...]:

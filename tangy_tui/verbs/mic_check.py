@@ -10,7 +10,7 @@ import typer
 
 from tangy_profiles.reading import plain
 from tangy_tui.text.mic_check import checked_lines
-from tangy_tui.verbs.common import ActivityName, Data, Json, print_json, print_line
+from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, print_json, print_line
 from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def check(
     from tangy_tui.speech.calibration import forget as forget_check
     from tangy_tui.speech.calibration import keep
 
-    with open_workspace(data, activity, 4, write=not listed) as workspace:
+    with open_workspace(data, activity, REGISTERED, write=not listed) as workspace:
         if listed:
             _list(workspace, as_json)
             return

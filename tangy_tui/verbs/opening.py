@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tangy_profiles.defaults import REGISTERED
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import more_left_out
 from tangy_tui.ui.terminal import terminal_kind
@@ -57,7 +58,7 @@ def open_program(
     from tangy_tui.ui.run import run_program
 
     try:
-        with open_workspace(data, "", 4, robot=robot) as workspace:
+        with open_workspace(data, "", REGISTERED, robot=robot) as workspace:
             load_faults(workspace.robot)  # what is wrong with its file is said before any screen
             return run_program(workspace, ascii_only=ascii_only)
     except StoreBusy:

@@ -14,7 +14,16 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GameWorld, read_game_world
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.text.names import known_now, renamed, say_otherwise
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, as_given, print_json
+from tangy_tui.verbs.common import (
+    REGISTERED,
+    ActivityName,
+    Data,
+    Json,
+    Seed,
+    Users,
+    as_given,
+    print_json,
+)
 from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
@@ -46,13 +55,13 @@ def people(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
     """List the people, where no verb is given."""
     if context.invoked_subcommand is None:
         people_list(activity, seed, data, users, as_json=as_json)
-    elif (activity, seed, data, users, as_json) != ("", None, None, 4, False):
+    elif (activity, seed, data, users, as_json) != ("", None, None, REGISTERED, False):
         verb = context.invoked_subcommand
         raise TangyError(f"Options of `tangy people {verb}` stand after {verb}.")
 
@@ -62,7 +71,7 @@ def people_list(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
@@ -84,7 +93,7 @@ def people_show(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
@@ -103,7 +112,7 @@ def people_history(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
@@ -129,7 +138,7 @@ def people_void(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
@@ -156,7 +165,7 @@ def people_feedback(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
@@ -183,7 +192,7 @@ def people_switch(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
     """Switch a strategy off for a person, or on again."""
@@ -209,7 +218,7 @@ def people_method(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
     """Choose how Tangy persuades one person; what is not said stays as it is for them.
@@ -230,7 +239,7 @@ def people_undo(
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
     """Take back the last void, feedback, switch or method of a person; again: the one before.
@@ -251,7 +260,7 @@ def people_rename(
     name: Annotated[str, typer.Argument(help="The new name.")],
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
     """Give a person another name; what Tangy has learnt of them stays."""

@@ -11,7 +11,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.names import if_right, voice_words
-from tangy_tui.verbs.common import Data, Json, Seed, Users, as_given, print_json
+from tangy_tui.verbs.common import REGISTERED, Data, Json, Seed, Users, as_given, print_json
 from tangy_tui.verbs.opening import open_workspace
 from tangy_tui.verbs.people import Who
 
@@ -37,7 +37,7 @@ def people_pronounce(
     sink: Sink = "auto",
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
     """Say how a person's name is pronounced, so that it is heard when it is spoken."""
@@ -78,7 +78,7 @@ def people_voice(
     usual: Annotated[bool, typer.Option("--usual", help="As with everybody else.")] = False,
     seed: Seed = None,
     data: Data = None,
-    users: Users = 4,
+    users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
     """Choose how fast and in which voice Tangy speaks to a person."""

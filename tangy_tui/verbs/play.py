@@ -50,7 +50,7 @@ SPEED = 20.0  # times life, as on the screen
 
 def play(
     games: common.Games = 1,
-    users: common.Users = 4,
+    users: common.Users = common.REGISTERED,
     headless: Annotated[bool, typer.Option("--headless", help="Without a screen.")] = False,
     plain_lines: Plain = False,
     activity: common.ActivityName = "",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.verbs.common import Data, Json, Seed, Users, print_json
+from tangy_tui.verbs.common import REGISTERED, Data, Json, Seed, Users, print_json
 
 if TYPE_CHECKING:
     from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
@@ -32,7 +32,7 @@ def requests(
     room: Annotated[str, typer.Option(help="A shipped room, or its TOML, for signs.")] = (
         "common-room"
     ),
-    users: Users = 4,
+    users: Users = REGISTERED,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

@@ -10,7 +10,7 @@ import typer
 from tangy_profiles.card_face import USUAL_SEED
 from tangy_tui.text.cameras import NO_SOURCE
 from tangy_tui.verbs.cards import DeckSeed
-from tangy_tui.verbs.common import ActivityName, Ascii, Data, Json, Seed, print_json
+from tangy_tui.verbs.common import REGISTERED, ActivityName, Ascii, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import full_screen, open_workspace
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def sensors(
     from tangy_hw.perception.camera_hub import sensors_of
 
     screen = full_screen() and not (plain_lines or as_json)
-    with open_workspace(data, activity, 4, write=False, robot=robot) as workspace:
+    with open_workspace(data, activity, REGISTERED, write=False, robot=robot) as workspace:
         deck, folder = workspace.activity.deck, workspace.store.folder
         opened = sensors_of(workspace.robot, deck, folder, camera or (), deck_seed=deck_seed)
         if screen:

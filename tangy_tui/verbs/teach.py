@@ -53,7 +53,7 @@ def teach(
         float | None,
         typer.Option(min=0.1, max=1000, help="Watch the scripted teacher, x times life."),
     ] = None,
-    users: common.Users = 4,
+    users: common.Users = common.REGISTERED,
     guided: Annotated[
         bool, typer.Option("--guided", help="A game in which every situation comes about.")
     ] = False,

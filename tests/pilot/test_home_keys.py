@@ -17,6 +17,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.live import LiveScreen
+from tangy_tui.ui.screens.set_up import SetUpScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, screen_text
 from tests.pilot.live_games import HeldLink, live, live_world
@@ -77,12 +78,12 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
     monkeypatch.setattr(robot_opening, "open_bench", bench)
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await until_shown(pilot, lambda: "no robot is named" in screen_text(pilot.app))
-        for answer in ("n", "y"):
+        for answer in ("escape", "B"):
             assert opened == []
             await pilot.press("v", "enter")
-            await until_shown(pilot, lambda: "Play on the bench?" in screen_text(pilot.app))
+            await until_shown(pilot, lambda: isinstance(pilot.app.screen, SetUpScreen))
             await pilot.press(answer)
-            await until_shown(pilot, lambda: not screen_text(pilot.app).count("Play on the bench?"))
+            await until_shown(pilot, lambda: not isinstance(pilot.app.screen, SetUpScreen))
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)
         assert opened == [True]

@@ -94,7 +94,7 @@ def test_without_lines_there_is_no_sheet_and_nothing_is_kept(tangy: Tangy, tmp_p
         (("--seed", "x"), "--seed"),
         (("--who", " "), "--who"),
         (("--who", "x" * 41), "--who"),
-        (("--users", "9"), "from 1 to 8"),
+        (("--users", "25"), "from 1 to 24"),
         (("--activity", "bingoo"), "did you mean 'bingo'?"),
         (("--json",), "'7': choose one of: 0, 1, 2, 3, 4."),
     ],

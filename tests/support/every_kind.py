@@ -25,6 +25,7 @@ from tangy_profiles.people_records import (
 from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.store import Store
 from tangy_profiles.voice import VoicePreference
+from tangy_tui.app.register import add_person, archive_person
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import Feedback
@@ -116,6 +117,7 @@ def _play(workspace: Workspace) -> None:
 
 def _tell_of_people(workspace: Workspace) -> None:
     store, feedback = workspace.store, Feedback(workspace.store)
+    archive_person(store, add_person(store))
     rosa = workspace.people[0]
     workspace.rename(rosa, "Rosa")
     rosa = workspace.people[0]

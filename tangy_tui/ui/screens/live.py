@@ -30,6 +30,7 @@ from tangy_tui.app.game_commands import (
     AUTONOMY,
     AskFor,
     CallAgain,
+    ChangePace,
     GameCommand,
     GiveBack,
     GoOn,
@@ -41,6 +42,7 @@ from tangy_tui.app.seats import Seats
 from tangy_tui.app.sensing import LinkedSensors
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.game_events import GameBegun, ResumedGame
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.control import (
@@ -65,12 +67,15 @@ from tangy_tui.ui.screens.live_cards import LiveCards
 from tangy_tui.ui.screens.live_keys import CARDS_ONLY, FACTS_ONLY, NOT_LIVE
 from tangy_tui.ui.screens.live_marks import track
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.play_panels import STAFF
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status
 
 TRACK_SECONDS = 0.2
 SLOW_TRACK_SECONDS = 1.0
 """Between two pictures of where the robot is."""
+STAFF_SECONDS = 1.0
+"""Between two pictures of what staff have to see."""
 REST_SECONDS = 5.0  # in which what it does is broken off
 
 T = TypeVar("T")
@@ -80,6 +85,7 @@ class LiveScreen(PlayScreen):
     """Games among people. Dismissed with what they added up to."""
 
     MODE = "live"
+    FIRST = STAFF
     HELP = live_keys.HELP
     BINDINGS: ClassVar[list[BindingType]] = live_keys.BINDINGS
 
@@ -115,6 +121,7 @@ class LiveScreen(PlayScreen):
     def on_mount(self) -> None:
         """Show what is known of the robot, and follow it; the playing screen begins the game."""
         self.show_status()
+        self.set_interval(STAFF_SECONDS, self.show_staff)
         if self.world.link.tablet:
             self._write(self.world.link.tablet, "text")
             # the log has no room in a small window, and the tablet may have to be opened again
@@ -195,6 +202,11 @@ class LiveScreen(PlayScreen):
         level = AUTONOMY[(AUTONOMY.index(self.control.autonomy.level) + 1) % len(AUTONOMY)]
         self._do(SetAutonomy(level))
 
+    def action_speed(self, by: int) -> None:
+        """Call faster or slower."""
+        self._do(ChangePace(1 if by > 0 else -1))
+        self.show_staff()
+
     def action_leave(self) -> None:
         """Take back that staff want to say what is done next, or leave."""
         if self.control.taking_over:
@@ -226,10 +238,8 @@ class LiveScreen(PlayScreen):
             self._do(CallAgain())
 
     def action_void_call(self) -> None:
-        """Take the last call back."""
-        if self.working:
-            self._tell_now(BUSY, "dim")
-        elif not self.world.called:
+        """Take the last call back; what is being done comes to its end first."""
+        if not self.world.called:
             self._do(TakeBackCall())
         else:
             self.run_worker(self._void_call(), name="void", group="call", exclusive=True)
@@ -304,12 +314,15 @@ class LiveScreen(PlayScreen):
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events, and who was seen where somebody else usually sits."""
         super()._tell(events, known)
+        if any(isinstance(event, GameBegun | ResumedGame) for event in events):
+            self._watch.begin(self.world.seconds)
+        if events:
+            self.show_staff()
         for seated in self._seats.news(events, self.world.sitting):
             self._write(seated_words(seated, self._workspace.name), "warn")
         self._cards.tell(events)
 
     def track(self) -> None:
-        """Show where the robot is and where it goes, as its link has it now."""
         """Draw where the robot is, and what it knows of the floor; and tell it that this lives."""
         self.world.link.alive()
         self._cards.tell()

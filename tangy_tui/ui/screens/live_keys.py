@@ -9,7 +9,7 @@ from tangy_tui.text.control import TAKE_CALL_BACK
 from tangy_tui.ui.keys import Key, bind
 from tangy_tui.ui.screens import play_keys
 
-NOT_LIVE = ("one_step", "speed", "skip")
+NOT_LIVE = ("one_step", "skip")
 """What can be done in a simulated game, and not to a robot among people."""
 
 DIAL: dict[Autonomy, str] = {
@@ -30,9 +30,12 @@ HELP = (
     "it does next, and Esc lets it go on by itself after all. {drive} drives it with the arrow "
     "keys. {call_again} calls the last number again, {undo} takes it back, {ask_for} asks for "
     "help for a person who cannot, {whose_card} says whose card is whose; in an activity without "
-    "cards {tell} tells Tangy what a person answers or does. {inject} brings about a "
-    "fault, on the bench. With a microphone, stop and stop the robot stop it at once when they "
-    "are said, and {talk} talks where a key is pushed to talk. Esc ends the game."
+    "cards {tell} tells Tangy what a person answers or does. {faster} and {slower} "
+    "change the pace, {claim} checks whether a card wins, {presence} says who has come or left, "
+    "{command} takes all of these and more in words, and {inside} shows how Tangy decides. "
+    "{inject} brings about a fault, on the bench. With a microphone, stop and stop the robot stop "
+    "it at once when they are said, and {talk} talks where a key is pushed to talk. Esc ends the "
+    "game."
 )
 
 BINDINGS: list[BindingType] = [
@@ -57,7 +60,9 @@ def keys(*, going: bool, over: bool = False, cards: bool = True) -> tuple[str | 
     if over:
         return play_keys.keys(going=going, over=True)
     return (
-        "pause" if going else "pause:go on", "stop", "call_again" if cards else "tell", "ask_for",
-        "take_over", "drive", "autonomy", "why", ("1-7", "show"),
-        *(("undo:call back",) if cards else ()), "filter", "back:end", "help",
+        "pause" if going else "pause:go on", "stop",
+        *(("claim", "slower", "faster") if cards else ("tell",)), "autonomy",
+        *(("undo:call back",) if cards else ()), "command", *(("presence",) if cards else ()),
+        *(("call_again",) if cards else ()), "ask_for", "take_over", "drive", "why", "inside",
+        ("1-7", "show"), "back:end", "help",
     )  # fmt: skip

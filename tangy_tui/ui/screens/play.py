@@ -100,7 +100,7 @@ class PlayScreen(PlayStaff):
         self.picture.begin()
         self._faults.begin()
         self._voice.begin(self.app)
-        self.action_panel("transcript")
+        self.action_panel(self.FIRST)
         self.run_worker(self._play(), name="game", exclusive=True)
 
     # ---------------------------------------------------------------------------------- keys

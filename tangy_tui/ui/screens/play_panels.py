@@ -11,6 +11,7 @@ from textual.screen import Screen
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event
@@ -25,16 +26,22 @@ from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens.play_keys import keys
+from tangy_tui.ui.screens.play_view import Shown, show_view
 from tangy_tui.ui.screens.question_panel import AskingPanel
+from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.fault_banner import FaultBanner
 from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
 from tangy_tui.ui.widgets.posteriors import Posteriors
+from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
 CHOOSABLE = ("transcript", "policy", "posteriors", "log", "faults")
+STAFF = "staff"
+INSIDE = ("transcript", "policy", "posteriors")
+"""Panels that show how Tangy decides: they are a key away."""
 ON_THE_LEFT = ("log", "faults")
 """Panels that live under the room; where one is seen at a time they take the others' place."""
 
@@ -44,6 +51,8 @@ class PlayPanels(TangyScreen[Tally]):
 
     MODE = "play"
     """What the status line calls it."""
+    FIRST = CHOOSABLE[0]
+    """The panel that is shown first."""
     ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner,#microphone"
 
     def __init__(self, workspace: Workspace, control: GameController) -> None:
@@ -52,6 +61,9 @@ class PlayPanels(TangyScreen[Tally]):
         self._workspace = workspace
         self.control = control
         self._supervision = control.supervision
+        self.minutes = 0
+        """How long the session is planned to take; 0: it is left open."""
+        self._watch = StaffWatch()
         self.picture = GamePicture(self, workspace, control.supervision)
         self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
 
@@ -77,6 +89,8 @@ class PlayPanels(TangyScreen[Tally]):
                 yield panel(FaultList(self._workspace.name))
                 yield panel(LogView(id="log"))
             with Vertical(id="right"):
+                yield panel(StaffPanel())
+                yield panel(CallBoard(self._workspace.activity.deck))
                 yield panel(Transcript(id="transcript"))
                 yield panel(PolicyTable())
                 yield panel(Posteriors(world=self._supervision.world.played_in))
@@ -88,6 +102,8 @@ class PlayPanels(TangyScreen[Tally]):
         """Show a panel where there is no room for all of them, and give it the keys."""
         enlarged = self.maximized is not None
         self.minimize()
+        if name in INSIDE or name == STAFF:
+            self.set_class(name == STAFF, "-staff")
         for id in CHOOSABLE:
             self.query_one(f"#{id}").set_class(id == name, "-chosen")
         self.set_class(name in ON_THE_LEFT, "-left")
@@ -97,6 +113,23 @@ class PlayPanels(TangyScreen[Tally]):
             chosen.focus()
             if enlarged:
                 self.maximize(chosen)
+
+    def action_inside(self) -> None:
+        """Show how Tangy decides, or what staff need."""
+        self.action_panel(INSIDE[0] if self.has_class("-staff") else STAFF)
+        self.show_staff()
+
+    def show_staff(self) -> None:
+        """Show what staff have to see now."""
+        world, name = self._supervision.world, self._workspace.name
+        scene = world.scene()
+        view = self._watch.look(scene, tuple(self._workspace.names), world.seconds, world)
+        show_view(
+            self.query_one(StaffPanel),
+            self.query_one(CallBoard),
+            view,
+            Shown(world, self.control, self.minutes, name),
+        )
 
     def action_sensors(self) -> None:
         """Show how all devices are, over the game, which goes on."""

@@ -6,28 +6,35 @@ import asyncio
 from collections.abc import Sequence
 from contextlib import suppress
 
-from tangy_tui.app.command_grammar import read_command
+from tangy_tui.app.command_grammar import command_reader, read_command
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.freeze_watch import LOOK_SECONDS, FreezeGuard
 from tangy_tui.app.game_commands import (
     Accept,
     CallAgain,
+    ComesIn,
     Confirm,
     GameCommand,
     GiveBack,
+    GoesAway,
     GoOn,
     Pause,
     Proposal,
     StaffNote,
+    StopRobot,
 )
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
+from tangy_tui.text.typed_commands import IS_AWAY, IS_HERE, WHO_IS_HERE, example_words
 from tangy_tui.text.watching import stopped_by_guest
+from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+from tangy_tui.ui.dialogs.command import CommandDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.screens.play_panels import PlayPanels
@@ -113,6 +120,42 @@ class PlayStaff(PlayPanels):
                 self.action_pause()
         elif isinstance(command, Pause | CallAgain):
             self._do(command)
+
+    def action_type(self, begun: str = "") -> None:
+        """Let staff type what they want done."""
+        self.run_worker(self._type(begun), name="type", group="type", exclusive=True)
+
+    def action_claim(self) -> None:
+        """Check a card by all that was called: its number is typed."""
+        word = self._workspace.activity.rules.claim or CHECK
+        self.action_type(f"{word} ")
+
+    async def _type(self, begun: str) -> None:
+        activity = self._workspace.activity
+        read = command_reader(activity, lambda who: self._workspace.find_person(who).id)
+        dialog = CommandDialog(read, begun, example_words(activity.rules))
+        command = await self.app.push_screen_wait(dialog)
+        if isinstance(command, StopRobot):
+            await self.run_action("app.stop")
+        elif isinstance(command, GoOn) and not self.control.going:
+            self.action_pause()
+        elif command is not None:
+            self._do(command)
+
+    def action_presence(self) -> None:
+        """Say who has come, or has left."""
+        self.run_worker(self._presence(), name="presence", group="type", exclusive=True)
+
+    async def _presence(self) -> None:
+        world = self.control.plan.world
+        away = frozenset[str]() if world is None else world.away
+        options = [
+            Option(person.id, person.name, IS_AWAY if person.id in away else IS_HERE)
+            for person in self._workspace.people
+        ]
+        person = await self.app.push_screen_wait(ChooseDialog(WHO_IS_HERE, options))
+        if person is not None:
+            self._do(ComesIn(person) if person in away else GoesAway(person))
 
     def on_asking_panel_commanded(self, event: AskingPanel.Commanded) -> None:
         """Carry out what was typed while Tangy asks."""

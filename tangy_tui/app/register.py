@@ -1,0 +1,94 @@
+"""The register: who takes part, by the log: who was there first, who came, and who left."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from tangy_profiles.defaults import REGISTERED
+from tangy_profiles.errors import TangyError
+from tangy_profiles.people_records import PersonAdded, PersonArchived
+from tangy_profiles.person import MOST_PEOPLE, Person, load_people
+from tangy_profiles.store import Store
+
+TO_BEGIN_WITH = 4
+
+
+def registered(store: Store) -> tuple[Person, ...]:
+    """Return who takes part, archived people and guests left out."""
+    archived = archived_people(store)
+    added = [e.person for e in store.events(PersonAdded) if e.person and not e.record.guest]
+    known = {person.id: person for person in load_people(MOST_PEOPLE)}
+    ids = dict.fromkeys([*list(known)[:TO_BEGIN_WITH], *added])
+    return tuple(known.get(id, Person(id, id)) for id in ids if id not in archived)
+
+
+def archived_people(store: Store) -> list[str]:
+    """Return the ids of the people who take part no more."""
+    archived: dict[str, bool] = {}
+    for event in store.events(PersonArchived):
+        archived[str(event.person)] = event.record.on
+    return [person for person, on in archived.items() if on]
+
+
+def participants(store: Store, count: int) -> tuple[Person, ...]:
+    """Return the first `count` of those who take part, numbered on where there are fewer.
+
+    Raises:
+        ProfileError: so many cannot play.
+    """
+    people = registered(store)
+    if count == REGISTERED:
+        return people
+    archived = archived_people(store)
+    numbered = load_people(count)  # which refuses what cannot be
+    more = [p for p in load_people(MOST_PEOPLE) if p.id not in archived and p not in people]
+    return (*people, *more)[: len(numbered)]
+
+
+def known_people(store: Store, people: Sequence[Person]) -> list[Person]:
+    """Return people with what is known of them: names, how they are said, voices."""
+    names, said, voices = store.names(), store.pronunciations(), store.voices()
+    return [
+        replace(
+            person,
+            name=names.get(person.id, person.name),
+            pronunciation=said.get(person.id, person.pronunciation),
+            voice=voices.get(person.id, person.voice),
+        )
+        for person in people
+    ]
+
+
+def add_person(store: Store, *, guest: bool = False) -> str:
+    """Register a person, and return the id.
+
+    Raises:
+        TangyError: there is no room for more.
+    """
+    taken = {str(event.person) for event in store.events(PersonAdded)}
+    if guest:
+        id = next(f"guest{n}" for n in range(1, len(taken) + 2) if f"guest{n}" not in taken)
+    else:
+        if len(registered(store)) >= MOST_PEOPLE:
+            raise TangyError(f"{MOST_PEOPLE} people take part already: archive somebody first.")
+        taken |= {person.id for person in load_people(TO_BEGIN_WITH)}
+        free = [person.id for person in load_people(MOST_PEOPLE) if person.id not in taken]
+        id = free[0] if free else f"user{len(taken) + 1}"
+    store.append(PersonAdded(guest=guest), person=id)
+    return id
+
+
+def archive_person(store: Store, person: str, *, on: bool = True) -> None:
+    """Let a person take part no more, or again.
+
+    Raises:
+        TangyError: nobody would be left.
+    """
+    if on and _alone(registered(store), person):
+        raise TangyError("Somebody has to take part: add another person first.")
+    store.append(PersonArchived(on=on), person=person)
+
+
+def _alone(people: Sequence[Person], person: str) -> bool:
+    return [one.id for one in people] == [person]

@@ -1,0 +1,219 @@
+"""What staff choose and check before a live game: who is here, who sits where, how it is played.
+
+The page and the lines drive the same object. The robot may be off until `begin`: then only what
+needs none is known. Looking at a card and speaking are done when staff ask for it; nothing drives.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, TypeVar
+
+from tangy_hw.device_protocols import DeviceError
+from tangy_profiles.errors import TangyError
+from tangy_profiles.game_rules import PACES, USUAL_PACE, GamePlan
+from tangy_profiles.health import OK
+from tangy_profiles.reading import nearest, plain
+
+if TYPE_CHECKING:
+    from tangy_hw.robot_client.live_world import LiveWorld
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.world import World
+
+T = TypeVar("T")
+
+CheckName = Literal["robot", "battery", "tablet", "cards", "sound"]
+CHECKS: tuple[CheckName, ...] = ("robot", "battery", "tablet", "cards", "sound")
+CheckState = Literal["off", "ready", "not ready", "not checked", "not told"]
+"""Of a check: the robot is off, all is well or not, nobody has looked yet, or no device tells."""
+
+MINUTES = (0, 15, 20, 30, 40, 60, 90)
+"""How long a session may be planned to take; 0: it is left open."""
+APART = ("localisation", "screen")
+"""Devices that do not count as the robot's: it finds its place later, the tablet is told apart."""
+LEAST_BATTERY = 0.2
+"""The share of its charge below which a robot should be charged first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """How something is that has to be ready; `about` names what is wrong, or what was found."""
+
+    name: CheckName
+    state: CheckState
+    about: str = ""
+
+
+@dataclass
+class SetUp:
+    """The choices for the games of a session. Change them by its methods; `plan` is what comes."""
+
+    workspace: Workspace
+    seats: list[str] = field(default_factory=list)
+    """The ids of those who take part, in the order of their seats."""
+    away: set[str] = field(default_factory=set)
+    patterns: list[str] = field(default_factory=list)
+    several: bool = False
+    visits: bool = False
+    strength: str = ""
+    pace: float = USUAL_PACE
+    minutes: int = 0
+    world: LiveWorld | None = None
+    """The robot, once it is on."""
+    card: str = ""
+    """What was seen of a card that was held before the robot."""
+    said: bool = False
+    heard: bool = False
+
+    @classmethod
+    def of(cls, workspace: Workspace, pace: float = USUAL_PACE) -> SetUp:
+        """Begin with everybody here, each at their seat, and a game as the activity has it."""
+        return cls(workspace, [person.id for person in workspace.people], pace=pace)
+
+    # ----------------------------------------------------------------------------- the choices
+
+    def toggle(self, person: str) -> None:
+        """Take a person for being here, or for not being here."""
+        self.away ^= {person}
+
+    def move(self, person: str, by: int) -> None:
+        """Let a person change seats with another so many on, as long as the robot is off."""
+        at = self.seats.index(person)
+        to = min(len(self.seats) - 1, max(0, at + by))
+        if self.world is None and to != at:
+            self.seats[at], self.seats[to] = self.seats[to], self.seats[at]
+            self.workspace.seat(self.seats)
+
+    def choose_strength(self, name: str) -> None:
+        """Choose how strongly people may be spoken to, by name.
+
+        Raises:
+            TangyError: there is no such strength.
+        """
+        names = [one.name for one in self.workspace.activity.rules.strengths]
+        if name.casefold() not in names:
+            raise TangyError(plain(f"There is no {name!r}: {nearest(name.casefold(), names)}"))
+        self.strength = name.casefold()
+
+    def toggle_pattern(self, name: str) -> None:
+        """Play for a pattern after those that were chosen, or not any more."""
+        if name in self.patterns:
+            self.patterns.remove(name)
+        else:
+            self.patterns.append(name)
+
+    def turn_pace(self, by: int) -> None:
+        """Choose a shorter (-1) or a longer (1) pace."""
+        self.pace = _turned(PACES, self.pace, by)
+
+    def turn_minutes(self, by: int) -> None:
+        """Plan less or more time."""
+        self.minutes = _turned(MINUTES, self.minutes, by)
+
+    def turn_strength(self, by: int) -> None:
+        """Choose how strongly people may be spoken to."""
+        names = ("", *(one.name for one in self.workspace.activity.rules.strengths))
+        self.strength = _turned(names, self.strength, by)
+
+    @property
+    def plan(self) -> GamePlan:
+        """The plan of the games."""
+        return GamePlan(
+            tuple(self.patterns),
+            self.several,
+            self.visits,
+            self.strength,
+            tuple(sorted(self.away)),
+        )
+
+    def carry_out(self, world: LiveWorld) -> None:
+        """Play the next games of a world as was chosen.
+
+        Raises:
+            TangyError: a pattern is not known.
+        """
+        world.choose(self.plan)
+        world.set_pace(self.pace)
+
+    # ------------------------------------------------------------------------------ the checks
+
+    def checks(self) -> list[Check]:
+        """Return how everything is that has to be ready, in the order in which it is looked at."""
+        if self.world is None:
+            return [Check(name, "off") for name in CHECKS]
+        return [self._robot(), self._battery(), self._tablet(), self._cards(), self._sound()]
+
+    @property
+    def not_ready(self) -> list[Check]:
+        """What is known to be wrong."""
+        return [check for check in self.checks() if check.state == "not ready"]
+
+    def _robot(self) -> Check:
+        assert self.world is not None  # noqa: S101 - `checks` asks with a world alone
+        if self.world.link.silent:
+            return Check("robot", "not ready", self.world.link.silent)
+        ill = [
+            r.device for r in self.world.health() if r.state != OK and r.device != "localisation"
+        ]
+        return Check("robot", "not ready" if ill else "ready", ", ".join(ill))
+
+    def _battery(self) -> Check:
+        share = battery_of(self.world)
+        if share is None:
+            return Check("battery", "not told")
+        return Check("battery", "ready" if share >= LEAST_BATTERY else "not ready", f"{share:.0%}")
+
+    def _tablet(self) -> Check:
+        assert self.world is not None  # noqa: S101 - as above
+        link = self.world.link
+        if not link.tablet_page:
+            return Check("tablet", "not told")
+        page = f"{link.screen} code {link.code}"
+        shown = any(r.device == "screen" and r.state == OK for r in self.world.health())
+        return Check("tablet", "ready" if shown else "not ready", page)
+
+    def _cards(self) -> Check:
+        return Check("cards", "ready" if self.card else "not checked", self.card)
+
+    def _sound(self) -> Check:
+        state: CheckState = "ready" if self.heard else "not ready" if self.said else "not checked"
+        return Check("sound", state)
+
+    def look_at_card(self) -> str:
+        """Look at a card that is held before the robot; return its number, "" if none is read."""
+        assert self.world is not None  # noqa: S101 - offered with a robot alone
+        try:
+            seen = self.world.commands.do("card", called=[], after=0.0, identify=True)
+        except DeviceError:
+            return ""
+        self.card = "" if seen["card"] is None else str(seen["card"])
+        return self.card
+
+    def speak(self, words: str) -> bool:
+        """Say something that staff are to hear; return whether it could be said."""
+        assert self.world is not None  # noqa: S101 - as above
+        from tangy_hw.device_protocols import Picture
+
+        try:
+            self.world.say(words, Picture(words))
+        except DeviceError:
+            return False
+        self.said = True
+        return True
+
+
+def battery_of(world: World | None) -> float | None:
+    """Return the share of its charge that a robot has, None where no device tells."""
+    if world is None:
+        return None
+    for reading in world.health():
+        for name in ("battery", "charge"):
+            if isinstance(value := reading.facts.get(name), int | float):
+                return float(value) / (100.0 if value > 1 else 1.0)
+    return None
+
+
+def _turned(values: tuple[T, ...], now: T, by: int) -> T:
+    """Return the value so many places on, within the ends; an odd one goes to the first."""
+    at = values.index(now) if now in values else 0
+    return values[min(len(values) - 1, max(0, at + by))]

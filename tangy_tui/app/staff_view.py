@@ -1,0 +1,102 @@
+"""What staff have to see of a game at any time, as values: the call, the clock, people, what next.
+
+It is read from what the world shows, without asking the robot for anything, so that it can be
+looked at as often as one likes while the game goes on beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.state import FRONT, ActivityState
+
+if TYPE_CHECKING:
+    from tangy_profiles.scene import Scene
+    from tangy_tui.learning.policy import Decision, Policy
+
+PersonState = Literal["visited", "asks", "away", "plays"]
+
+
+@dataclass(frozen=True, slots=True)
+class PersonNow:
+    """How a person is: since when they ask, and since when nobody was there, both in s."""
+
+    id: str
+    state: PersonState
+    turn: int = 0
+    """Their place among those who ask, from 1 on; 0: they do not ask."""
+    waits: float | None = None
+    unvisited: float | None = None
+    doing: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class StaffView:
+    """What staff see: see the module."""
+
+    seconds: float
+    """Since the game began, in s."""
+    called: tuple[int, ...]
+    people: tuple[PersonNow, ...]
+    pace: float = 0.0
+    next_call: float = 0.0
+    """s until the next number may be called, 0 where that is not known."""
+
+
+class StaffWatch:
+    """Keeps since when people ask and when they were visited, from one look to the next."""
+
+    def __init__(self) -> None:
+        self.begin(0.0)
+
+    def begin(self, now: float) -> None:
+        """Begin a game at a time in s."""
+        self._began = now
+        self._asks: dict[str, float] = {}
+        self._visited: dict[str, float] = {}
+
+    def look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
+        """Take a look at a time in s, and return what there is to see."""
+        for person in [one for one in self._asks if one not in scene.requests]:
+            del self._asks[person]
+        for person in scene.requests:
+            self._asks.setdefault(person, now)
+        if scene.place != FRONT:
+            self._visited[scene.place] = now
+        planned = world if isinstance(world, PlannedGame) else None
+        away = frozenset[str]() if planned is None else planned.away
+        return StaffView(
+            max(0.0, now - self._began),
+            scene.called,
+            tuple(self._person(person, scene, now, away) for person in people),
+            0.0 if planned is None else planned.pace,
+            float(getattr(world, "calls_in", 0.0)),
+        )
+
+    def _person(self, person: str, scene: Scene, now: float, away: frozenset[str]) -> PersonNow:
+        asks, visited = self._asks.get(person), self._visited.get(person)
+        state: PersonState = "asks" if person in scene.requests else "plays"
+        if person in away:
+            state = "away"
+        elif scene.place == person:
+            state = "visited"
+        turn = scene.requests.index(person) + 1 if person in scene.requests else 0
+        return PersonNow(
+            person,
+            state,
+            turn,
+            None if asks is None else now - asks,
+            None if visited is None else now - visited,
+            scene.doing.get(person, ""),
+        )
+
+
+def next_step(world: object, policy: Policy) -> tuple[Decision, ActivityState] | None:
+    """Return what Tangy would do next as things stand, None where that is not known."""
+    if not isinstance(world, PlannedGame) or not world.activity.deck.columns:
+        return None
+    state = world.tracker.state()
+    return policy.decide(state.situation), state

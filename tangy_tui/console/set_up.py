@@ -1,0 +1,112 @@
+"""Setting a live game up by lines: the same choices and checks as on the page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.app.command_grammar import command_reader
+from tangy_tui.app.game_commands import (
+    ChangePace,
+    ChoosePatterns,
+    ComesIn,
+    EndGame,
+    GameCommand,
+    GoesAway,
+    LetWin,
+    SetPace,
+)
+from tangy_tui.app.set_up import MINUTES, SetUp
+from tangy_tui.text import set_up as text
+
+_SEAT = re.compile(r"seat (.+?) (\d{1,2})", re.I)
+_MINUTES = re.compile(r"time (\d{1,3})(?: minutes?)?", re.I)
+_WORDS = re.compile(r"words (.+)", re.I)
+
+
+class SetUpLines:
+    """Takes lines until staff begin or leave. Nothing is switched on meanwhile."""
+
+    def __init__(
+        self, setup: SetUp, read: Callable[[], str | None], write: Callable[[str], None]
+    ) -> None:
+        """Take what is set up, and what reads and writes lines."""
+        self.setup = setup
+        self._read, self._write = read, write
+        self._command = command_reader(setup.workspace.activity, self._find)
+
+    def run(self) -> bool:
+        """Set up; return whether the game is to begin."""
+        self._tell()
+        self._write(text.LINES_HELP)
+        while (line := self._read()) is not None:
+            words = " ".join(line.split()).strip(" .")
+            if words.casefold() == "begin":
+                return True
+            try:
+                done = self._own(words) or self._take(self._command(words))
+            except TangyError as error:
+                self._write(str(error))
+                continue
+            if done is None:
+                return False
+            if done:
+                self._tell()
+            else:
+                self._write(text.LINES_HELP)
+        return False
+
+    def begins_anyway(self) -> bool:
+        """Say what is ready, and ask whether to begin where something is not."""
+        for check in self.setup.checks():
+            self._write(f"  {text.NAMES[check.name]}: {text.line_of(check)}")
+        if not self.setup.not_ready:
+            return True
+        self._write(text.LINES_ANYWAY)
+        line = self._read()
+        return line is not None and line.strip().casefold() == "begin"
+
+    def _find(self, wanted: str) -> str:
+        return self.setup.workspace.find_person(wanted).id
+
+    def _tell(self) -> None:
+        for line in text.lines_of(self.setup):
+            self._write(line)
+
+    def _own(self, words: str) -> bool:
+        """Do what is only said before a game; say whether it was that."""
+        setup = self.setup
+        if seat := _SEAT.fullmatch(words):
+            person = self._find(seat[1])
+            setup.move(person, int(seat[2]) - 1 - setup.seats.index(person))
+        elif minutes := _MINUTES.fullmatch(words):
+            setup.minutes = min(int(minutes[1]), 10 * MINUTES[-1])
+        elif strength := _WORDS.fullmatch(words):
+            setup.choose_strength(strength[1])
+        else:
+            return False
+        return True
+
+    def _take(self, command: GameCommand | None) -> bool | None:
+        """Take a command of games as a choice; None: staff leave."""
+        setup = self.setup
+        match command:
+            case ComesIn(person):
+                setup.away.discard(person)
+            case GoesAway(person):
+                setup.away.add(person)
+            case ChoosePatterns(names):
+                setup.patterns = list(names)
+            case SetPace(seconds):
+                setup.pace = seconds
+            case ChangePace(by):
+                setup.turn_pace(-by)
+            case LetWin(several, visits):
+                setup.several = setup.several if several is None else several
+                setup.visits = setup.visits if visits is None else visits
+            case EndGame():
+                return None
+            case _:
+                return False
+        return True

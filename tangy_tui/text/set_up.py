@@ -1,0 +1,157 @@
+"""The page on which staff set a live game up, in words."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from tangy_tui.app.set_up import Check, CheckName, SetUp
+
+TITLE = "Set up"
+PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
+HERE, AWAY = "here", "not here yet"
+LATER = "You can change all of this in the game, too, except who sits where."
+SOUND = "Hello. Can everybody hear me?"
+CARD_HOW = "Hold a card in front of Tangy, then press Enter."
+NO_CARD = "Tangy saw no card. Hold one closer, flat, and in good light."
+NO_SOUND = "Tangy could not speak. Look at its loudspeaker."
+SWITCH_FIRST = "Press Enter on the line Robot first: Tangy is still off."
+SEATED = "Tangy is on, so the seats stay as they are. Leave with esc to change them."
+SAID = "Tangy has spoken. Press Enter if you heard it."
+BEGIN_ANYWAY = "Begin although not everything is ready?"
+BEGIN_DETAIL = "Tangy starts to move and to speak."
+
+NAMES: dict[CheckName, str] = {
+    "robot": "Robot",
+    "battery": "Battery",
+    "tablet": "Tablet on its chest",
+    "cards": "Cards",
+    "sound": "Sound",
+}
+
+
+def people_words(setup: SetUp) -> str:
+    """Say how many of those who take part are here."""
+    return f"{len(setup.seats) - len(setup.away)} of {len(setup.seats)} are here"
+
+
+def patterns_words(setup: SetUp) -> str:
+    """Say what is played for."""
+    rules = setup.workspace.activity.rules
+    labels = [rules.pattern(name).label for name in setup.patterns]
+    return ", then ".join(labels) or "as usual"
+
+
+def pattern_keys(setup: SetUp) -> str:
+    """Name the patterns with the number of each."""
+    patterns = setup.workspace.activity.rules.patterns
+    return ", ".join(f"{number} {one.name}" for number, one in enumerate(patterns, 1))
+
+
+def winners_words(setup: SetUp) -> str:
+    """Say how many people can win."""
+    return "everybody who has it at the same call" if setup.several else "one"
+
+
+def visits_words(setup: SetUp) -> str:
+    """Say whom Tangy visits."""
+    return "also people who do not ask" if setup.visits else "only people who ask"
+
+
+def strength_words(setup: SetUp) -> str:
+    """Say how strongly Tangy may speak to people."""
+    strengths = setup.workspace.activity.rules.strengths
+    chosen = next((one.label for one in strengths if one.name == setup.strength), "")
+    return chosen or "as Tangy has learnt"
+
+
+def minutes_words(minutes: int) -> str:
+    """Say how long the session is planned to take."""
+    return f"{minutes} minutes" if minutes else "as long as you like"
+
+
+def pace_words(pace: float) -> str:
+    """Say how fast numbers are called."""
+    return f"a call every {pace:g} s"
+
+
+def check_words(check: Check) -> str:
+    """Say how something is, and what to do where it is not ready."""
+    match check.state:
+        case "off":
+            return "off: Enter switches it on" if check.name == "robot" else "when Tangy is on"
+        case "ready":
+            return _ready(check)
+        case "not checked":
+            return "Enter looks at one" if check.name == "cards" else "Enter lets Tangy speak"
+        case "not told":
+            return "no page for a tablet" if check.name == "tablet" else "this robot does not say"
+        case "not ready":
+            return _to_do(check)
+        case forgotten:
+            assert_never(forgotten)
+
+
+def not_ready_words(check: Check) -> str:
+    """Say in a sentence what is not ready, and what to do."""
+    return f"{NAMES[check.name]}: {_to_do(check)}."
+
+
+def _ready(check: Check) -> str:
+    match check.name:
+        case "robot":
+            return "on, and all its devices work"
+        case "battery":
+            return check.about
+        case "tablet":
+            return f"connected, {check.about}"
+        case "cards":
+            return f"card {check.about} was read"
+        case "sound":
+            return "heard"
+        case forgotten:
+            assert_never(forgotten)
+
+
+def _to_do(check: Check) -> str:
+    match check.name:
+        case "robot":
+            return f"look at: {check.about}"
+        case "battery":
+            return f"{check.about}: charge it first"
+        case "tablet":
+            return f"open {check.about} on it"
+        case "cards":
+            return CARD_HOW
+        case "sound":
+            return "did you hear it? Enter: yes"
+        case forgotten:
+            assert_never(forgotten)
+
+
+LINES_HELP = (
+    "Type: left Rosa, here Rosa, seat Rosa 3, play for line, full card, several winners, pace 20, "
+    "visits on, words gentle, time 40. Then: begin. Or: end."
+)
+LINES_ANYWAY = "Not everything is ready. Type begin to begin anyway, or end."
+
+
+def line_of(check: Check) -> str:
+    """Say how something is, where there are no keys."""
+    unchecked = check.state == "not checked"
+    return "not tried" if unchecked else check_words(check)
+
+
+def lines_of(setup: SetUp) -> list[str]:
+    """Tell all that is set up, line by line."""
+    name = setup.workspace.name
+    people = (
+        f"  {seat}. {name(person)}: {AWAY if person in setup.away else HERE}"
+        for seat, person in enumerate(setup.seats, 1)
+    )
+    return [
+        f"{PEOPLE}: {people_words(setup)}.",
+        *people,
+        f"Played for: {patterns_words(setup)}. Winners: {winners_words(setup)}.",
+        f"Pace: {pace_words(setup.pace)}. Time: {minutes_words(setup.minutes)}.",
+        f"Tangy visits {visits_words(setup)}. Its words: {strength_words(setup)}.",
+    ]

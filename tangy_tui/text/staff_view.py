@@ -1,0 +1,84 @@
+"""What staff see of a game at any time, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import assert_never
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.game_rules import Patterns
+from tangy_profiles.state import ActivityState
+from tangy_tui.app.game_commands import Autonomy
+from tangy_tui.app.staff_view import PersonNow, StaffView
+from tangy_tui.learning.policy import Decision
+from tangy_tui.text.control import autonomy_words
+
+NOTHING_CALLED = "nothing called yet"
+PAUSED, STOPPED, OVER = "Paused.", "Tangy was stopped.", "The game is over."
+
+
+def clock_words(seconds: float) -> str:
+    """Write a time in s as minutes and seconds."""
+    whole = max(0, int(seconds))
+    return f"{whole // 60}:{whole % 60:02}"
+
+
+def time_words(view: StaffView, minutes: int) -> str:
+    """Say how long the game takes so far, and how much of the planned time is left."""
+    gone = f"{clock_words(view.seconds)} so far"
+    if not minutes:
+        return gone
+    left = minutes * 60 - view.seconds
+    return f"{gone}, {clock_words(left)} left" if left > 0 else f"{gone}, time is up"
+
+
+def pace_words(view: StaffView) -> str:
+    """Say how fast numbers are called."""
+    return f"a call every {view.pace:g} s" if view.pace else ""
+
+
+def played_words(patterns: Patterns | None) -> str:
+    """Say what is played for, and what follows."""
+    if patterns is None or patterns.present is None:
+        return ""
+    return "for " + ", then ".join(one.label for one in (patterns.present, *patterns.left))
+
+
+def tangy_words(level: Autonomy, battery: float | None) -> str:
+    """Say how much Tangy does by itself, and how full its battery is."""
+    charge = "" if battery is None else f", battery {battery:.0%}"
+    return f"Tangy {autonomy_words(level)}{charge}"
+
+
+def next_words(
+    activity: Activity, decision: Decision, state: ActivityState, name: Callable[[str], str]
+) -> str:
+    """Say what Tangy does next, and why."""
+    behaviour = activity.behaviours.get(decision.behaviour)
+    why = activity.in_words(state.situation)
+    if behaviour is None or not decision.sure:
+        return f"Next: Tangy asks you. Now: {why}."
+    whom = state.attended if behaviour.attends else None
+    return f"Next: {behaviour.question}{f' ({name(whom)})' if whom else ''}. Now: {why}."
+
+
+def person_words(person: PersonNow) -> str:
+    """Say how a person is, with the times that matter."""
+    seen = "" if person.unvisited is None else f"visit {clock_words(person.unvisited)} ago"
+    match person.state:
+        case "away":
+            return "not here"
+        case "visited":
+            return "Tangy is there"
+        case "asks":
+            waits = "" if person.waits is None else f" {clock_words(person.waits)}"
+            return f"asks{waits}" + (f", {seen}" if seen else "")
+        case "plays":
+            return seen or "no visit yet"
+        case forgotten:
+            assert_never(forgotten)
+
+
+def more_words(count: int) -> str:
+    """Say that more people are here than there is room for."""
+    return f"and {count} more"

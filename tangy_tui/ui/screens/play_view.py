@@ -1,0 +1,78 @@
+"""What staff have to see of a game, put on the panels of the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tangy_profiles.planned_game import PlannedGame
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.set_up import battery_of
+from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
+from tangy_tui.text import staff_view as text
+from tangy_tui.ui.widgets.call_board import CallBoard
+from tangy_tui.ui.widgets.staff_panel import PersonLine, StaffPanel
+from tangy_tui.world import World
+
+INKS = {"asks": "warn", "visited": "robot", "away": "dim", "plays": "text"}
+BEFORE = 4
+"""Calls before the last one that stand beside it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """What a view is shown with: the world, who controls the game, the minutes, names."""
+
+    world: World
+    control: GameController
+    minutes: int
+    name: Callable[[str], str]
+
+
+def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: Shown) -> None:
+    """Show a view on the panel of staff, and the numbers on the board."""
+    label = shown.world.activity.deck.label
+    board.show(view.called)
+    call = label(view.called[-1]).replace("-", "") if view.called else ""
+    panel.show(
+        call,
+        _next(shown),
+        _facts(view, shown),
+        [_person(person, shown.name) for person in _in_order(view.people)],
+    )
+
+
+def _next(shown: Shown) -> str:
+    control, world = shown.control, shown.world
+    if control.supervision.over:
+        return text.OVER if control.supervision.games else ""
+    if control.stopped:
+        return text.STOPPED
+    found = next_step(world, control.supervision.policy)
+    words = "" if found is None else text.next_words(world.activity, *found, shown.name)
+    return words if control.going else f"{text.PAUSED} {words}".strip()
+
+
+def _facts(view: StaffView, shown: Shown) -> list[str]:
+    world, label = shown.world, shown.world.activity.deck.label
+    before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1])
+    count = f"{len(view.called)} called" if view.called else text.NOTHING_CALLED
+    planned = world if isinstance(world, PlannedGame) else None
+    patterns = getattr(planned, "patterns", None)
+    return [
+        f"{count}   {before}".rstrip(),
+        text.time_words(view, shown.minutes),
+        text.pace_words(view),
+        text.played_words(patterns),
+        text.tangy_words(shown.control.autonomy.level, battery_of(world)),
+    ]
+
+
+def _in_order(people: tuple[PersonNow, ...]) -> list[PersonNow]:
+    """Return people as they stand; where there are many, those who ask come first."""
+    return sorted(people, key=lambda person: (not person.turn, person.turn, person.state == "away"))
+
+
+def _person(person: PersonNow, name: Callable[[str], str]) -> PersonLine:
+    turn = f"{person.turn}. " if person.turn else ""
+    return f"{turn}{name(person.id)}", text.person_words(person), INKS[person.state]

@@ -1,0 +1,237 @@
+"""The page on which staff set a live game up. Begin is a key of its own; nothing moves before."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from time import monotonic
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_tui.app.set_up import CHECKS, SetUp
+from tangy_tui.text import set_up as text
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.tablet import TabletDialog
+from tangy_tui.ui.keys import bind
+from tangy_tui.ui.panels import key_line, panel
+from tangy_tui.ui.widgets.set_up_list import SetUpLine, SetUpList
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+
+LOOK_SECONDS = 0.5
+"""Between two looks at what is ready."""
+
+SETTLES_SECONDS = 4.0
+"""In which devices that were just started are given time to be ready."""
+
+SwitchOn = Callable[[], Awaitable[LiveWorld | None]]
+
+
+class SetUpScreen(TangyScreen[bool]):
+    """People, choices and checks on one page. Dismissed with whether the game is to begin."""
+
+    DEFAULT_CSS = """
+    SetUpScreen #setup { height: 1fr; }
+    """
+    HELP = (
+        "Set a game up from top to bottom. Up and down choose a line. On a person Enter says "
+        "whether they are here, left and right give them another seat. On a choice Enter, left "
+        "and right change it; a number adds what the game is played for, or takes it away. Enter "
+        "on Robot switches Tangy on: it stands still. Then Enter on Cards lets it read a card that "
+        "you hold before it, Enter on Sound lets it speak, and Enter on Tablet shows the address. "
+        "{begin} begins the game: nothing moves before."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *bind("begin"),
+        *(
+            Binding(str(number), f"pattern({number})", text.GAME, id="number", show=False)
+            for number in range(1, 10)
+        ),
+        *bind("back", "leave"),
+    ]
+
+    def __init__(self, setup: SetUp, switch_on: SwitchOn) -> None:
+        """Take what is set up, and what switches the robot on."""
+        super().__init__()
+        self.setup = setup
+        self._switch_on = switch_on
+        self._busy = False
+
+    def compose(self) -> ComposeResult:
+        """Lay out the page."""
+        yield StatusLine()
+        yield panel(SetUpList(), text.TITLE)
+        yield key_line(
+            "begin",
+            ("↵", "change"),
+            ("←→", "seat, or more"),
+            ("1-9", "played for"),
+            "back",
+            "help",
+        )
+
+    def on_mount(self) -> None:
+        """Show everything, and look again and again at what is ready."""
+        self.query_one(SetUpList).focus()
+        self._show()
+        self.set_interval(LOOK_SECONDS, self._show)
+
+    # ------------------------------------------------------------------------------- the lines
+
+    def _show(self) -> None:
+        setup = self.setup
+        robot = "off" if setup.world is None else "on"
+        self.query_one(StatusLine).show(
+            Status(
+                mode="set up",
+                robot=robot.upper() if setup.world is None else "OK",
+                stage="",
+                game=None,
+                step=None,
+                note=text.people_words(setup),
+                alarm=bool(setup.not_ready),
+            )
+        )
+        self.query_one(SetUpList).show([*self._people(), *self._game(), *self._checks()])
+
+    def _people(self) -> list[SetUpLine]:
+        setup, name = self.setup, self.setup.workspace.name
+        lines = [SetUpLine("head", "people", text.PEOPLE, text.people_words(setup))]
+        for seat, person in enumerate(setup.seats, 1):
+            away = person in setup.away
+            value = text.AWAY if away else text.HERE
+            label = f"{seat:>2}  {name(person)}"
+            lines.append(
+                SetUpLine("person", person, label, value, "dim" if away else "good"),
+            )
+        return lines
+
+    def _game(self) -> list[SetUpLine]:
+        setup = self.setup
+        rows = [
+            ("patterns", "Played for", text.patterns_words(setup)),
+            ("several", "Winners", text.winners_words(setup)),
+            ("pace", "Pace", text.pace_words(setup.pace)),
+            ("visits", "Visits", text.visits_words(setup)),
+            ("strength", "Tangy's words", text.strength_words(setup)),
+            ("minutes", "Time", text.minutes_words(setup.minutes)),
+        ]
+        rules = setup.workspace.activity.rules
+        if not rules.patterns:
+            rows = [row for row in rows if row[0] not in ("patterns", "several", "visits")]
+        head = SetUpLine("head", "game", text.GAME, text.pattern_keys(setup))
+        return [head, *(SetUpLine("choice", id, label, value) for id, label, value in rows)]
+
+    def _checks(self) -> list[SetUpLine]:
+        lines = [SetUpLine("head", "checks", text.READY, "")]
+        inks = {"ready": "good", "not ready": "warn", "off": "dim", "not told": "dim"}
+        for check in self.setup.checks():
+            ink = inks.get(check.state, "text")
+            label, value = text.NAMES[check.name], text.check_words(check)
+            lines.append(SetUpLine("check", check.name, label, value, ink))
+        return lines
+
+    # -------------------------------------------------------------------------------- the keys
+
+    def on_set_up_list_turned(self, event: SetUpList.Turned) -> None:
+        """Change a line by left and right."""
+        event.stop()
+        line, by = event.line, event.by
+        if line.kind == "person":
+            if self.setup.world is not None:
+                self.notify(text.SEATED, markup=False)
+            self.setup.move(line.id, by)
+        elif line.kind == "choice":
+            self._turn(line.id, by)
+        self._show()
+
+    def on_set_up_list_entered(self, event: SetUpList.Entered) -> None:
+        """Change a line by Enter."""
+        event.stop()
+        line = event.line
+        if line.kind == "person":
+            self.setup.toggle(line.id)
+        elif line.kind == "choice":
+            self._turn(line.id, 1)
+        elif not self._busy:
+            self.run_worker(self._check(line.id), name="check", group="check")
+        self._show()
+
+    def _turn(self, id: str, by: int) -> None:
+        setup = self.setup
+        match id:
+            case "several":
+                setup.several = not setup.several
+            case "visits":
+                setup.visits = not setup.visits
+            case "pace":
+                setup.turn_pace(by)
+            case "strength":
+                setup.turn_strength(by)
+            case "minutes":
+                setup.turn_minutes(by)
+            case "patterns":
+                self.notify(text.pattern_keys(setup), markup=False)
+
+    def action_pattern(self, number: int) -> None:
+        """Play for a pattern by its number, or not any more."""
+        patterns = self.setup.workspace.activity.rules.patterns
+        if number <= len(patterns):
+            self.setup.toggle_pattern(patterns[number - 1].name)
+            self._show()
+
+    # ------------------------------------------------------------------------------ the checks
+
+    async def _check(self, name: str) -> None:
+        self._busy = True
+        try:
+            await self._look_at(name)
+        finally:
+            self._busy = False
+            self._show()
+
+    async def _look_at(self, name: str) -> None:
+        setup = self.setup
+        if name == CHECKS[0]:
+            if setup.world is None:
+                setup.world = await self._switch_on()
+        elif setup.world is None:
+            self.notify(text.SWITCH_FIRST, markup=False)
+        elif name == "tablet" and setup.world.link.tablet_page:
+            self.app.push_screen(TabletDialog(setup.world.link.screen, setup.world.link.code))
+        elif name == "cards":
+            self.notify(text.CARD_HOW, markup=False)
+            if not await asyncio.to_thread(setup.look_at_card):
+                self.notify(text.NO_CARD, severity="warning", markup=False)
+        elif name == "sound" and setup.said:
+            setup.heard = True
+        elif name == "sound":
+            said = await asyncio.to_thread(setup.speak, text.SOUND)
+            self.notify(text.SAID if said else text.NO_SOUND, markup=False)
+
+    def action_begin(self) -> None:
+        """Begin the game, if that is meant; what is not ready is said first."""
+        if not self._busy:
+            self.run_worker(self._begin(), name="begin", group="check")
+
+    async def _begin(self) -> None:
+        if self.setup.world is None:
+            await self._check(CHECKS[0])
+            until = monotonic() + SETTLES_SECONDS
+            while self.setup.not_ready and monotonic() < until:  # noqa: ASYNC110 - it is looked at
+                await asyncio.sleep(LOOK_SECONDS)
+        if self.setup.world is None:
+            return
+        not_ready = [text.not_ready_words(check) for check in self.setup.not_ready]
+        detail = " ".join([*not_ready, text.BEGIN_DETAIL])
+        dialog = ConfirmDialog(text.BEGIN_ANYWAY, detail, yes="begin", no="wait")
+        if not not_ready or await self.app.push_screen_wait(dialog):
+            self.dismiss(True)
+
+    def action_leave(self) -> None:
+        """Go back; the robot is switched off again."""
+        if not self._busy:
+            self.close(False)

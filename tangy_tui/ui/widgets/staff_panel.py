@@ -1,0 +1,121 @@
+"""What staff have to see of a game: the call in blocks, the clock, what comes next, and people."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from rich.cells import cell_len
+from textual import events
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from tangy_tui.text.staff_view import more_words
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.block_digits import block_rows
+from tangy_tui.ui.widgets.rows import Row, Rows, fit, shorten
+from tangy_tui.ui.widgets.wrapping import wrap
+
+LARGE_WIDTH, LARGE_HEIGHT = 56, 22
+"""From so many columns and lines on the call is drawn twice as large."""
+BESIDE = 30
+"""Columns from which facts stand beside the call, and not below it."""
+SLOT = 36
+"""Columns for one person; where more fit, people stand side by side."""
+NAME = 14
+"""Columns of a person's name."""
+
+PersonLine = tuple[str, str, str]
+"""The name of a person, how they are, and the ink of that."""
+
+
+class StaffPanel(ScrollView, can_focus=True):
+    """Draws what it is told, line by line: only lines that changed go to the terminal."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    StaffPanel { overflow-x: hidden; scrollbar-size-vertical: 1; }
+    """
+    HELP = (
+        "The last call, what it is played for, the time and the pace, what Tangy does next and "
+        "why, and how everybody is: who asks, for how long, and when Tangy was there last."
+    )
+
+    def __init__(self) -> None:
+        super().__init__(id="staff")
+        self.border_title = "Now"
+        self._rows = Rows(self)
+        self._call, self._next = "", ""
+        self._facts: tuple[str, ...] = ()
+        self._people: tuple[PersonLine, ...] = ()
+
+    def show(
+        self, call: str, next_step: str, facts: Sequence[str], people: Sequence[PersonLine]
+    ) -> None:
+        """Show the last call, what comes next, facts beside the call, and people."""
+        new = call, next_step, tuple(facts), tuple(people)
+        if new != (self._call, self._next, self._facts, self._people):
+            self._call, self._next, self._facts, self._people = new
+            self._draw()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out anew."""
+        self._draw()
+
+    def notify_style_update(self) -> None:
+        """Draw in the new colours."""
+        super().notify_style_update()
+        self._rows.forget()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line."""
+        return self._rows.strip(y)
+
+    def _draw(self) -> None:
+        width, height = self._rows.width, self._rows.height
+        if not self.is_attached or width < 10:
+            return
+        next_lines = wrap(clean(self._next), width)[: 2 if height > 9 else 1]
+        rows: list[Row] = [((line, "strong"),) for line in next_lines]
+        rows += self._block(width, height)
+        rows += self._everybody(width, max(1, height - len(rows)))
+        self._rows.put(rows)
+
+    def _block(self, width: int, height: int) -> list[Row]:
+        """Draw the call in blocks, and the facts beside it."""
+        large = width >= LARGE_WIDTH and height >= LARGE_HEIGHT
+        drawn = block_rows(self._call, large) if self._call else [""] * min(5, len(self._facts))
+        beside = max((cell_len(row) for row in drawn), default=0)
+        facts = [clean(fact) for fact in self._facts if fact]
+        if width - beside < BESIDE:
+            below: list[Row] = [((row, "robot"),) for row in drawn]
+            return below + [((fact, "text"),) for fact in facts]
+        count = max(len(drawn), len(facts))
+        rows: list[Row] = []
+        for number in range(count):
+            block = drawn[number] if number < len(drawn) else ""
+            fact = facts[number] if number < len(facts) else ""
+            room = width - beside - 1
+            rows.append(((fit(block, beside + 1), "robot"), (shorten(fact, room), "text")))
+        return rows
+
+    def _everybody(self, width: int, height: int) -> list[Row]:
+        """Draw people in as many columns as fit; of too many, the first ones."""
+        across = max(1, width // SLOT)
+        shown = self._people[: across * height]
+        if left := len(self._people) - len(shown):
+            shown = (*shown[:-1], (more_words(left + 1), "", "dim"))
+        slot = width // across
+        return [
+            tuple(span for person in shown[at : at + across] for span in self._person(person, slot))
+            for at in range(0, len(shown), across)
+        ]
+
+    @staticmethod
+    def _person(person: PersonLine, width: int) -> Row:
+        name, how, ink = person
+        return (
+            (fit(clean(name), NAME) + " ", "strong" if ink == "warn" else "text"),
+            (fit(clean(how), width - NAME - 1), ink),
+        )

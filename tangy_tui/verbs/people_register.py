@@ -1,0 +1,67 @@
+"""`tangy people add`, `archive` and `bring-back`: who takes part."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import MOST_PEOPLE, folded, load_people
+from tangy_profiles.reading import plain
+from tangy_tui.text.register import added_words, archived_words, back_words, not_archived
+from tangy_tui.verbs.common import REGISTERED, Data, Json, print_json
+from tangy_tui.verbs.opening import open_workspace
+
+if TYPE_CHECKING:
+    from tangy_tui.app.workspace import Workspace
+
+Name = Annotated[str, typer.Argument(help="The name of the person.")]
+Who = Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")]
+
+
+def people_add(name: Name, data: Data = None, as_json: Json = False) -> None:
+    """Add a person, who takes part from the next game on. Up to 24 people can."""
+    from tangy_tui.app.register import add_person
+
+    with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:
+        with workspace.store.transaction():
+            id = add_person(workspace.store)
+            workspace.register()
+            workspace.rename(workspace.find_person(id), name)
+        _told(workspace, id, added_words(workspace.name(id), id), as_json)
+
+
+def people_archive(person: Who, data: Data = None, as_json: Json = False) -> None:
+    """Let a person take part no more. What Tangy knows of them stays; bring-back undoes it."""
+    from tangy_tui.app.register import archive_person
+
+    with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:
+        found = workspace.find_person(person)
+        archive_person(workspace.store, found.id)
+        _told(workspace, found.id, archived_words(found.name), as_json)
+
+
+def people_bring_back(person: Who, data: Data = None, as_json: Json = False) -> None:
+    """Let a person who was archived take part again."""
+    from tangy_tui.app.register import archive_person, archived_people
+
+    with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:
+        names = {p.id: p.name for p in load_people(MOST_PEOPLE)} | workspace.store.names()
+        archived = archived_people(workspace.store)
+        wanted = folded(person)
+        found = [id for id in archived if wanted in (folded(id), folded(names.get(id, id)))]
+        if not found:
+            known = ", ".join(names.get(id, id) for id in archived)
+            raise TangyError(plain(not_archived(person, known)))
+        archive_person(workspace.store, found[0], on=False)
+        workspace.register()
+        _told(workspace, found[0], back_words(workspace.name(found[0])), as_json)
+
+
+def _told(workspace: Workspace, person: str, words: str, as_json: bool) -> None:
+    if as_json:
+        print_json({"id": person, "name": workspace.store.names().get(person, person)})
+    else:
+        print(plain(words))
