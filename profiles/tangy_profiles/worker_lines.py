@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 
 from tangy_profiles.errors import TangyError
 
-LONGEST_LINE = 1 << 22  # bytes
+LONGEST_LINE = 1 << 24  # bytes: the faces of 24 people fit
 TOO_LONG = "That line is too long."
 
 Asked = dict[str, Any]

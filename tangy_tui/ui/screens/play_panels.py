@@ -26,7 +26,7 @@ from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens.play_keys import keys
-from tangy_tui.ui.screens.play_view import Shown, show_view
+from tangy_tui.ui.screens.play_view import ViewSource, show_view
 from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.fault_banner import FaultBanner
@@ -128,7 +128,7 @@ class PlayPanels(TangyScreen[Tally]):
             self.query_one(StaffPanel),
             self.query_one(CallBoard),
             view,
-            Shown(world, self.control, self.minutes, name),
+            ViewSource(world, self.control, self.minutes, name),
         )
 
     def action_sensors(self) -> None:

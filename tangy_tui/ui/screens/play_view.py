@@ -20,7 +20,7 @@ BEFORE = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ViewSource:
     """What a view is shown with: the world, who controls the game, the minutes, names."""
 
     world: World
@@ -29,7 +29,7 @@ class Shown:
     name: Callable[[str], str]
 
 
-def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: Shown) -> None:
+def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewSource) -> None:
     """Show a view on the panel of staff, and the numbers on the board."""
     label = shown.world.activity.deck.label
     board.show(view.called)
@@ -42,7 +42,7 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: Shown
     )
 
 
-def _next(shown: Shown) -> str:
+def _next(shown: ViewSource) -> str:
     control, world = shown.control, shown.world
     if control.supervision.over:
         return text.OVER if control.supervision.games else ""
@@ -53,7 +53,7 @@ def _next(shown: Shown) -> str:
     return words if control.going else f"{text.PAUSED} {words}".strip()
 
 
-def _facts(view: StaffView, shown: Shown) -> list[str]:
+def _facts(view: StaffView, shown: ViewSource) -> list[str]:
     world, label = shown.world, shown.world.activity.deck.label
     before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1])
     count = f"{len(view.called)} called" if view.called else text.NOTHING_CALLED
