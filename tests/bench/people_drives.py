@@ -34,10 +34,12 @@ def row(scene: str, found: Sequence[Drive]) -> str:
     near = min((drive.nearest for drive in found), default=inf)
     fast = [speed for drive in found for speed in drive.near] or [0.0]
     ahead = [t.speed for drive in found for t in drive.touches if t.kind == "ahead"]
+    behind = [t.speed for drive in found for t in drive.touches if t.kind == "behind"]
+    slow = f" at {median(behind):.2f} m/s" if behind else ""
     speeds = f" at {max(ahead):.2f} m/s" if ahead else ""
     return (
         f"{scene:<10} touched ahead {sum(d.count('ahead') for d in found):2}{speeds}, "
-        f"behind {sum(d.count('behind') for d in found):2}; "
+        f"behind {sum(d.count('behind') for d in found):2}{slow}; "
         f"walked into it {sum(d.count('stood') for d in found):2}; "
         f"nearest {near:5.2f} m; arrived {len(arrived):2} of {len(found)} "
         f"({told} told as blocked) in {median(arrived) if arrived else inf:4.1f} s; "

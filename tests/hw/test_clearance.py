@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import atan2, hypot, inf, pi
 
 import numpy as np
@@ -79,6 +80,12 @@ class TestPeople:
 
     def test_it_stands_for_who_crosses_its_way(self) -> None:
         assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL
+
+    def test_it_is_slower_while_somebody_who_walked_is_out_of_sight_behind_it(self) -> None:
+        behind = replace(person(-1.2, 0.2, 0.8), hidden=True)
+        assert past(Twist(0.5, 0.2), behind) == Twist(LIMITS.gentle, 0.2 * LIMITS.gentle / 0.5)
+        assert past(Twist(0.5, 0.2), replace(behind, hidden=False)) == Twist(0.5, 0.2)
+        assert past(Twist(0.5, 0.2), replace(behind, pace=0.0)) == Twist(0.5, 0.2)
 
     def test_who_has_just_appeared_is_kept_further_off(self) -> None:
         known, new = (past(Twist(0.5, 0.0), person(1.2, 0.3, age=a)).forward for a in (3.0, 0.3))

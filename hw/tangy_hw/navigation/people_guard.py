@@ -42,6 +42,7 @@ def passed(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
 
     A round robot may always turn on the spot; one that has corners, where they come near nobody.
     """
+    twist = _slower_before_followers(twist, around, limits)
     spins = abs(twist.forward) < SPOT
     if spins and (not limits.corners or twist.turn == 0.0):
         return twist
@@ -53,6 +54,21 @@ def passed(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
         if _keeps_apart(part, bodies, limits):
             return part
     return STILL
+
+
+def _slower_before_followers(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
+    """Return a twist no faster than `gentle` while somebody who walks is out of sight behind it.
+
+    They may overtake it, or come up against it where its scanner does not look.
+    """
+    follows = any(
+        one.hidden and one.x < 0.0 and one.pace > WALKS and np.hypot(one.x, one.y) < REACH
+        for one in around.tracks
+    )
+    if not follows or twist.forward <= limits.gentle:
+        return twist
+    share = limits.gentle / twist.forward
+    return Twist(limits.gentle, twist.turn * share)
 
 
 class _Bodies(NamedTuple):
