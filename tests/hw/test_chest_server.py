@@ -236,6 +236,22 @@ class TestStrangers:
 
 
 class TestPairing:
+    async def test_a_viewer_sees_what_is_shown_and_nobody_hears_of_it(self, server: Served) -> None:
+        answer = await ask(server.port, "POST", "/pair", body=b"1234 5678 viewer")
+        cookie = answer.split(b"Set-Cookie: ")[1].split(b";")[0]
+        assert PAIRING.is_viewer(cookie.decode().partition("=")[2])
+        head = b"Cookie: " + cookie + b"\r\n"
+        assert (await ask(server.port, "GET", "/paired", head)).startswith(b"HTTP/1.1 204 ")
+        reader, writer = await events(server, "one")
+        assert await status(reader) == 200
+        said = len(server.told)
+        seen = "/seen?page=one&number=0"
+        assert (await ask(server.port, "POST", seen, head)).startswith(b"HTTP/1.1 204 ")
+        assert server.told[said:] == []
+        assert (await ask(server.port, "POST", seen, COOKIE)).startswith(b"HTTP/1.1 204 ")
+        assert [told["page"] for told in server.told[said:]] == ["one"]
+        writer.close()
+
     async def test_the_code_is_given_once_for_a_token_that_holds(self, server: Served) -> None:
         answer = await ask(server.port, "POST", "/pair", body=b"1234 5678")
         assert answer.startswith(b"HTTP/1.1 204 ")

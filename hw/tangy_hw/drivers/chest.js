@@ -53,6 +53,7 @@
     var shown = picture, classes = [], called, i, chip, height = window.innerHeight;
     if (document.body.className.indexOf("lost") >= 0) { classes.push("lost"); }
     if (document.body.className.indexOf("unpaired") >= 0) { classes.push("unpaired"); }
+    if (document.body.className.indexOf("sleepy") >= 0) { classes.push("sleepy"); }
     if (shown.number) { classes.push("number"); } else { classes.push(shown.text ? "said" : "idle"); }
     if (shown.number && shown.text && shown.text !== shown.number) { classes.push("worded"); }
     if (shown.asks) { classes.push("asked"); }
@@ -125,13 +126,26 @@
     if (!waiting) { waiting = window.setTimeout(connect, milliseconds); }
   }
 
-  function pair() {
+  // What sleeps shows nothing: keep awake where the browser lets pages do so, and say where not.
+  function stayAwake() {
+    if (document.hidden) { return; }
+    if (!navigator.wakeLock) {
+      mark("sleepy", true);
+      return;
+    }
+    navigator.wakeLock.request("screen").then(
+      function () { mark("sleepy", false); },
+      function () { mark("sleepy", true); }
+    );
+  }
+
+  function pair(viewer) {
     var code = get("code").value.replace(/\D/g, "");
     if (code.length < 8) {
       put("wrong", "The code has eight digits.");
       return;
     }
-    ask("POST", "pair", code, function (status) {
+    ask("POST", "pair", code + (viewer ? " viewer" : ""), function (status) {
       if (status === 204) {
         put("wrong", "");
         connect();
@@ -201,8 +215,11 @@
   }, 500);
   get("pair").addEventListener("submit", function (event) {
     event.preventDefault();
-    pair();
+    pair(false);
   });
+  get("viewer").addEventListener("click", function () { pair(true); });
+  document.addEventListener("visibilitychange", stayAwake);
+  stayAwake();
   window.addEventListener("resize", function () { if (picture) { draw(); } });
   connect();
 }());

@@ -26,7 +26,8 @@ WINDOW_SECONDS = 60.0
 MOST_ADDRESSES = 256  # whose wrong codes are remembered
 FILE = "tablets.json"
 LARGEST_FILE = 1000  # bytes
-_TOKEN = re.compile(r"([0-9a-f]{16})\.([0-9a-f]{64})")
+VIEWER = "v"  # begins the token of a page that only looks on
+_TOKEN = re.compile(rf"({VIEWER}?[0-9a-f]{{16}})\.([0-9a-f]{{64}})")
 
 
 class TooManyCodes(Exception):
@@ -52,15 +53,19 @@ class Pairing:
         """The name under which a tablet keeps its token; another key has another one."""
         return f"tangy_{hashlib.sha256(self.key).hexdigest()[:8]}"
 
-    def token(self) -> str:
-        """Make a token for one more tablet."""
-        name = secrets.token_hex(8)
+    def token(self, *, viewer: bool = False) -> str:
+        """Make a token for one more tablet of the robot, or for a `viewer` who only looks on."""
+        name = (VIEWER if viewer else "") + secrets.token_hex(8)
         return f"{name}.{self._signed(name)}"
 
     def knows(self, token: str) -> bool:
         """Say whether a token was made with this key."""
         found = _TOKEN.fullmatch(token)
         return found is not None and hmac.compare_digest(self._signed(found[1]), found[2])
+
+    def is_viewer(self, token: str) -> bool:
+        """Say whether a token was made for somebody who only looks on."""
+        return token.startswith(VIEWER) and self.knows(token)
 
     def _signed(self, name: str) -> str:
         return hmac.new(self.key, name.encode(), hashlib.sha256).hexdigest()

@@ -3,7 +3,8 @@
 It speaks with `chest.js`. A tablet is paired once (`POST /pair` with the code of the console) and
 keeps a token as a cookie. A paired page gets events, `show` (a number and a picture, as JSON) and
 `alive` (the number again), and answers both with `POST /seen?page=P&number=N`. Whoever is not
-paired gets the page that asks for the code, and nothing else.
+paired gets the page that asks for the code, and nothing else. Somebody who says at the pairing that
+they only look on sees the same, but nobody hears of what they see: only the robot's tablets count.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ ASK_SECONDS = 3.0  # in which a request of a stranger is there, from its connect
 IDLE_SECONDS = 30.0  # for which the connection of a paired tablet is kept between two requests
 GONE_SECONDS = 5.0  # without an answer: a page that makes room for another
 MOST_PAGES = 16
+LOOKS_ON = "viewer"  # after the code, where somebody only looks on
 MOST_CONNECTIONS = 64
 
 FILES = {
@@ -56,6 +58,8 @@ class _Connection:
     task: asyncio.Task[None]
     address: str
     paired: bool = False
+    viewer: bool = False
+    """Whether it is a viewer's, not that of a tablet of the robot."""
     told: bool = False
     """Whether it is told events; it asks nothing any more."""
 
@@ -172,7 +176,9 @@ class ChestServer:
     async def _serve_requests(self, reader: asyncio.StreamReader, mine: _Connection) -> None:
         writer = mine.writer
         while request := await read_request(reader, IDLE_SECONDS if mine.paired else ASK_SECONDS):
-            mine.paired = self._pairing.knows(request.cookie(self._pairing.cookie))
+            token = request.cookie(self._pairing.cookie)
+            mine.paired = self._pairing.knows(token)
+            mine.viewer = self._pairing.is_viewer(token)
             if not request.meant_for(self._names):
                 writer.write(response(421, b"Open this page by its address in numbers.\n"))
                 return
@@ -208,13 +214,15 @@ class ChestServer:
         return whole if request.method == "GET" else whole.partition(b"\r\n\r\n")[0] + b"\r\n\r\n"
 
     def _pair(self, request: Request, asker: _Connection) -> bytes:
+        code, looks_on, _ = request.body.decode("ascii", "replace").partition(LOOKS_ON)
         try:
-            right = self._codes.right(request.body.decode("ascii", "replace"), asker.address)
+            right = self._codes.right(code, asker.address)
         except TooManyCodes:
             return response(429)
         if not right:
             return response(403)
-        return response(204, more=cookie_line(self._pairing.cookie, self._pairing.token()))
+        token = self._pairing.token(viewer=bool(looks_on))
+        return response(204, more=cookie_line(self._pairing.cookie, token))
 
     def _seen(self, request: Request, asker: _Connection) -> bytes:
         """Take a paired page's answer to an event."""
@@ -225,7 +233,8 @@ class ChestServer:
         if page is None or not (number.isascii() and number.isdecimal() and len(number) < 10):
             return response(404)
         page.heard = time.monotonic()
-        self._tell({"page": name, "seen": min(int(number), self._number)})
+        if not asker.viewer:
+            self._tell({"page": name, "seen": min(int(number), self._number)})
         return response(204)
 
     # ------------------------------------------------------------------------- events
