@@ -92,13 +92,11 @@ class Workspace:
         loaded: Activity = load_activity(activity)
         self.robot.check(loaded)
         self.activity, self.profile = loaded, activity  # the latter: as it was asked for
-        teams = tuple(Person(team, team) for team in loaded.teams)
-        self._sample = teams or load_people(self._users)
 
     def change_activity(self, activity: str) -> None:
         """Teach and play another activity from now on, or raise TangyError where it cannot be."""
         self._take_up(choose_activity(self.store.folder, activity))
-        self.read_people()
+        self.register(self._users)
 
     @property
     def teacher(self) -> str:

@@ -82,14 +82,16 @@ class RoomDrawing:
 
     def table(self, read: str | None) -> None:
         """Draw the table with a card for each person; `read` is whose card the robot reads."""
-        plan, (left, right) = self._plan, self._grid.table
-        row, inner = plan.table_row, max(0, right - left - 1)
-        if plan.table == 3:
-            self._lines[row].put(left, "╭" + "─" * inner + "╮", "table")
-            self._lines[row + 1].put(left, "│" + " " * inner + "│", "table")
-            self._lines[row + 2].put(left, "╰" + "─" * inner + "╯", "table")
-        else:
-            self._lines[row].put(left, "╘" + "═" * inner + "╛", "table")
+        plan = self._plan
+        row = plan.table_row
+        for left, right in self._grid.tables:
+            inner = max(0, right - left - 1)
+            if plan.table == 3:
+                self._lines[row].put(left, "╭" + "─" * inner + "╮", "table")
+                self._lines[row + 1].put(left, "│" + " " * inner + "│", "table")
+                self._lines[row + 2].put(left, "╰" + "─" * inner + "╯", "table")
+            else:
+                self._lines[row].put(left, "╘" + "═" * inner + "╛", "table")
         for person, centre in zip(self._people, self._grid.centres, strict=False):
             ink = "robot" if person.id == read else "table"
             self._lines[row + plan.table // 2].put(centre - 1, "[▦]", ink)

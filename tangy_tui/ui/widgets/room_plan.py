@@ -102,7 +102,11 @@ class Grid:
         self.centres = [self.column(x) for x in seats]
         middles = [round(((a + b) / 2 - self._from) * self._scale) for a, b in pairwise(seats)]
         self.slots = list(zip([0, *middles], [*middles, plan.width], strict=True))
-        self.table = (self.column(left), self.column(right))
+        tables = room.tables if people > 1 and room.tables else (room.table,)
+        last = seats[-1]
+        self.tables = [
+            (self.column(table[0]), self.column(table[2])) for table in tables if table[0] <= last
+        ]
         self.front = self.column(room.front.x)
 
     def column(self, x: float) -> int:

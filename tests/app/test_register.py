@@ -1,0 +1,86 @@
+"""Who takes part: people are added, archived and brought back, and seats are found for all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import MOST_PEOPLE
+from tangy_profiles.room import load_room, room_for
+from tangy_tui.app.register import add_person, archive_person, participants, registered
+from tangy_tui.app.set_up import SetUp
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.set_up import SetUpLines
+
+
+def ids(workspace: Workspace) -> list[str]:
+    return [person.id for person in registered(workspace.store)]
+
+
+def test_people_are_added_archived_and_brought_back(data_folder: Path) -> None:
+    workspace = Workspace(data_folder)
+    assert ids(workspace) == ["user1", "user2", "user3", "user4"]
+    assert add_person(workspace.store) == "user5"
+    archive_person(workspace.store, "user2")
+    assert ids(workspace) == ["user1", "user3", "user4", "user5"]
+    assert [p.id for p in participants(workspace.store, 5)][-1] == "user6"
+    workspace.close()
+    workspace = Workspace(data_folder)
+    assert list(workspace.names) == ["user1", "user3", "user4", "user5"]
+    archive_person(workspace.store, "user2", on=False)
+    assert "user2" in ids(workspace)
+    workspace.close()
+
+
+def test_a_guest_is_nobody_of_the_register(data_folder: Path) -> None:
+    workspace = Workspace(data_folder)
+    assert [add_person(workspace.store, guest=True) for _ in range(2)] == ["guest1", "guest2"]
+    assert len(ids(workspace)) == 4
+    workspace.close()
+
+
+def test_the_last_person_is_not_archived_and_nobody_is_the_twenty_fifth(data_folder: Path) -> None:
+    workspace = Workspace(data_folder)
+    while len(ids(workspace)) < MOST_PEOPLE:
+        add_person(workspace.store)
+    with pytest.raises(TangyError, match="archive somebody first"):
+        add_person(workspace.store)
+    for person in ids(workspace)[1:]:
+        archive_person(workspace.store, person)
+    with pytest.raises(TangyError, match="add another person"):
+        archive_person(workspace.store, "user1")
+    workspace.close()
+
+
+@pytest.mark.parametrize("count", [1, 4, 8, 9, 12, MOST_PEOPLE])
+def test_everybody_has_a_seat_of_their_own_in_the_room_for_so_many(count: int) -> None:
+    room = room_for(count)
+    seats = room.seated(count)
+    assert len(set(seats)) == count
+    assert all(0 < seat.x < room.width and seat.y < room.depth for seat in seats)
+    if count > 8:
+        assert min(a.distance(b) for a in seats for b in seats if a != b) > 0.8
+
+
+def test_the_tables_of_a_hall_stand_in_a_row_within_what_they_take_together() -> None:
+    hall = load_room("hall")
+    assert len(hall.tables) == 3
+    assert hall.table == (hall.tables[0][0], hall.tables[0][1], hall.tables[2][2], 5.8)
+
+
+def test_a_game_is_set_up_by_lines(data_folder: Path) -> None:
+    workspace = Workspace(data_folder)
+    setup, said = SetUp.of(workspace), list[str]()
+    lines = iter(
+        ["left User 3", "seat User 1 4", "play for line, x", "pace 20", "several winners",
+         "words gentle", "time 40", "seat Nobody 2", "what", "begin", "never read"]
+    )  # fmt: skip
+    assert SetUpLines(setup, lambda: next(lines, None), said.append).run()
+    assert setup.seats == ["user4", "user2", "user3", "user1"] == list(workspace.names)
+    assert setup.plan.patterns == ("line", "x") and setup.plan.absent == ("user3",)
+    assert (setup.pace, setup.several, setup.strength, setup.minutes) == (20, True, "gentle", 40)
+    assert next(lines) == "never read"
+    assert not SetUpLines(setup, lambda: "end", said.append).run()
+    workspace.close()
