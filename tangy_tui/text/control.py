@@ -89,10 +89,10 @@ REFUSALS: tuple[NoteKind, ...] = (
 """What says that a command was not carried out, and why."""
 
 BY_KEYS: dict[NoteKind, str] = {
-    "paused": "Paused: p goes on.",
-    "stopped": "STOP. Press p to go on.",
-    "stopped first": "Not now: Tangy was stopped. Press p to go on first.",
-    "asks first": "Tangy asks first: answer it (: types), or press esc to give the game up.",
+    "paused": "Paused: {pause} goes on.",
+    "stopped": "STOP. Press {pause} to go on.",
+    "stopped first": "Not now: Tangy was stopped. Press {pause} to go on first.",
+    "asks first": "Tangy asks first: answer it ({command} types); esc gives the game up.",
 }
 """What is said otherwise where staff have keys, and type only to answer."""
 
@@ -218,11 +218,11 @@ def stands_words(why: str) -> str:
     return f"Tangy stands still: {why}."
 
 
-NOT_WHILE_WORKING = "Not now: Tangy is busy. p pauses it, ctrl+x stops it."
+NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it."
 BUSY = "Not now: Tangy is busy."
 VOID_DETAIL = "It will count as not called, and come again later."
 WHO_NEEDS_HELP = "Who needs help?"
-BECAUSE_DETAIL = "It is {}. After this, i turns the questions off."
+BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
 
 def void_call_words(label: str) -> str:

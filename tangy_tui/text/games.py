@@ -149,7 +149,7 @@ NO_UNSEEN_FAULT = "No fault that nobody has seen."
 
 def halted_words(reason: str) -> str:
     """Say why a game stands still, and how to try again."""
-    return f"{reason} p tries again."
+    return f"{reason} {{pause}} tries again."
 
 
 def stopped_words(reason: str, then: str) -> str:
@@ -176,7 +176,7 @@ def resumed_words(number: int, steps: int) -> str:
 
 def over_words(steps: int) -> str:
     """Say that a game is over, and which key plays another."""
-    return f"The game is over after {counted(steps, 'step')}. g plays another."
+    return f"The game is over after {counted(steps, 'step')}. {{next}} plays another."
 
 
 def broken_off_words(steps: int, reason: str) -> str:

@@ -94,13 +94,17 @@ NAMES: Mapping[str, Named] = MappingProxyType(
     }
 )
 
-_PLACE = re.compile(r"\{([a-z_]+)\}")
+_PLACE = re.compile(r"\{(\^?)([a-z_]+)\}")
 
 
 def with_keys(text: str, keymap: Keymap, *, typing: bool = False) -> str:
-    """Write keys into a text where it names actions: "{undo} takes it back"."""
+    """Write keys into a text where it names actions: "{undo} takes it back".
+
+    "{^talk}" is the key that works while letters go to a line, as all do where `typing`.
+    """
 
     def key(found: re.Match[str]) -> str:
-        return keymap.shown(found[1], typing=typing) if found[1] in BY_ID else found[0]
+        types = typing or bool(found[1])
+        return keymap.shown(found[2], typing=types) if found[2] in BY_ID else found[0]
 
     return _PLACE.sub(key, text)

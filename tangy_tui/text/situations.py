@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from tangy_tui.learning.online_learning import Lesson
     from tangy_tui.learning.policy import Policy
 
+OVER_NOW = "the game is over"
+"""What the status line says of a game that has ended."""
+
 MOST_STEPS = 3
 """Steps that are named for each answer of a conflict."""
 

@@ -79,9 +79,9 @@ SAY_OR_TYPE = "Say or type"
 STOPPED = "STOP: the simulated robot stands still."
 WHICH_STEP = "Choose the step first: up and down, or type again 7."
 BY_KEY = (
-    "To talk, press t (in the command line ctrl+t), say it, and press t again; after 6 seconds it "
-    "ends by itself. The line of the microphone says what it hears, and what is wrong if nothing "
-    "comes. Say stop, and the robot stops."
+    "To talk, press {talk}, say it, and press {talk} again; after 6 seconds it ends by itself. The "
+    "line of the microphone says what it hears, and what is wrong if nothing comes. Say stop, and "
+    "the robot stops."
 )
 HANDS_FREE = (
     "Just say what Tangy should do: the microphone is open, except while Tangy speaks. Say stop, "
@@ -106,7 +106,7 @@ def again_words(first: int, last: int) -> tuple[str, str]:
         gone, back = f"Step {first} is", "it back"
     return (
         f"Go back before step {first} and show it again?",
-        f"{gone} taken back; F3 brings {back} until you show another.",
+        f"{gone} taken back; {{redo}} brings {back} until you show another.",
     )
 
 
@@ -122,7 +122,7 @@ def discard_words(steps: int) -> tuple[str, str]:
     )
 
 
-OVER = "The game is over. Press F7 for another game, or F5 to let Tangy learn."
+OVER = "The game is over. Press {next} for another game, or {learn} to let Tangy learn."
 
 
 def new_words(situation: str) -> str:
@@ -135,8 +135,8 @@ def undone_words(undone: Sequence[StepUndone], activity: Activity) -> str:
     last, first = undone[0], undone[-1]
     if last is first:
         done = activity.behaviour_words(last.step.behaviour)
-        return f"Step {last.number} is undone: {done}. F3 brings it back."
-    return f"Steps {first.number} to {last.number} are undone. F3 brings them back."
+        return f"Step {last.number} is undone: {done}. {{redo}} brings it back."
+    return f"Steps {first.number} to {last.number} are undone. {{redo}} brings them back."
 
 
 def beginning_words(teaching: TeachingSession, *, resumed: bool) -> str:
@@ -150,6 +150,11 @@ def beginning_words(teaching: TeachingSession, *, resumed: bool) -> str:
     if shown.guided:
         return GUIDED
     return f"A new game of {title}, demonstrated by {teaching.teacher}."
+
+
+def left_words(steps: int) -> str:
+    """Say what was kept of a game that was left before its end, and how it goes on."""
+    return f"Kept: {counted(steps, 'step')} of this game. Teach goes on from there."
 
 
 def complete_words(steps: int) -> str:

@@ -13,10 +13,10 @@ def said_title(name: str) -> str:
     return f"How {name} is said"
 
 
-ON = "Tangy speaks now. At x1 it finishes every line; v switches the voice off."
+ON = "Tangy speaks now. At x1 it finishes every line; {voice} switches the voice off."
 OFF = "Tangy is quiet now: what it says is shown as text."
 OR_SAY = "Or say"
-OR_KEY_AND_SAY = "Or ctrl+t, and say"
+OR_KEY_AND_SAY = "Or {^talk}, and say"
 OR_SAY_YES = "  Or say yes or no."
 OR_SAY_WHICH = "  Or say the number or the words of one, or no."
 RECORDING = "A recording is listened to: no key is needed."

@@ -31,11 +31,13 @@ from tangy_tui.text.games import (
     response_words,
     resumed_words,
 )
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.learnt import replay_words
-from tangy_tui.text.situations import lesson_words, once_words
+from tangy_tui.text.situations import OVER_NOW, lesson_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.fault_log import write_fault
+from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.reasons import Ground, why_asked, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView
@@ -91,7 +93,8 @@ class GamePicture:
                     self._screen.query_one(Transcript).clear(resumed)
                     self.grounds.clear()
                     self.lesson = ""
-                    self._stage, self._game, self._step = state.stage, number, None
+                    self._stage = self._workspace.activity.in_words(state.situation)
+                    self._game, self._step = number, None
                     self.show_scene(0, drive=False, pace=pace)
                 case Acted():
                     self._show_step(event, taught.teacher if taught else "", pace)
@@ -118,7 +121,7 @@ class GamePicture:
                         log.write(line.strip())
                     self.show_scene(0, drive=False, pace=pace)
                 case GameEnded(_, steps, None):
-                    log.write(over_words(steps), "good")
+                    log.write(with_keys(over_words(steps), keymap_of(self._screen.app)), "good")
                 case GameEnded(_, steps, str(reason)):
                     log.write(broken_off_words(steps, reason), "bad")
 
@@ -128,7 +131,7 @@ class GamePicture:
             Status(
                 mode=with_activity(mode, self._workspace.activity),
                 robot=robot,
-                stage="over" if self._supervision.over and self._game else self._stage,
+                stage=OVER_NOW if self._supervision.over and self._game else self._stage,
                 game=self._game,
                 step=self._step,
                 note=note,
@@ -170,7 +173,8 @@ class GamePicture:
         screen.query_one(PolicyTable).highlight(words)
         if event.choice is not None:
             self._show_beliefs((event.choice.person, event.choice.strategy))
-        self._stage, self._step = event.after.stage, event.number
+        self._stage = workspace.activity.in_words(event.after.situation)
+        self._step = event.number
         self.show_scene(
             event.outcome.seconds, drive=event.state.place != event.after.place, pace=pace
         )

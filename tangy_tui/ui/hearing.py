@@ -14,8 +14,10 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.voice import HANDS_FREE, OR_KEY_AND_SAY, OR_SAY, RECORDING
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 
 if TYPE_CHECKING:
@@ -115,7 +117,7 @@ class Hearing:
         """How an answer to a question begins that is given by voice; "" if none can be."""
         if not self.ears.answers:
             return ""
-        return OR_KEY_AND_SAY if self.by_key else OR_SAY
+        return with_keys(OR_KEY_AND_SAY, keymap_of(self._app)) if self.by_key else OR_SAY
 
     def attend(self, listener: Listener) -> None:
         """Give what is heard to a listener from now on."""

@@ -90,13 +90,14 @@ class RoundTrip:
     def ask(self, seen: Seen) -> None:
         """Say when the terminal has drawn what was written so far."""
         columns, lines = self._size
-        # The first line is left out: there a report looks like Shift+F3.
-        places = columns * (lines - 1)
+        # The first line is left out: there a report looks like Shift+F3. So is the second, which
+        # a terminal that counts from 0 reports as the first.
+        places = columns * max(1, lines - 2)
         self._place = (self._place + 1) % places
         line, column = divmod(self._place, columns)
-        self._waiting[column, line + 1] = (seen, self._clock())
+        self._waiting[column, line + 2] = (seen, self._clock())
         x, y = self._cursor()
-        self._write(f"\x1b[{line + 2};{column + 1}H\x1b[6n\x1b[{y + 1};{x + 1}H")
+        self._write(f"\x1b[{line + 3};{column + 1}H\x1b[6n\x1b[{y + 1};{x + 1}H")
 
     def resized(self, size: tuple[int, int]) -> None:
         """Ask again: what the terminal reports after a change of its size may be another place."""
@@ -114,6 +115,8 @@ class RoundTrip:
 
     def reported(self, x: int, y: int, time: float) -> None:
         """Take the terminal's answer: a place (from 0), and when it came, in s."""
+        if y == 0:
+            return  # Shift+F3, which Textual takes for a report
         if not self._answers and (x + 1, y + 1) in self._waiting and (x, y) not in self._waiting:
             self._base = 1  # it counts from 0, as kmscon is said to
         found = self._waiting.pop((x + self._base, y + self._base), None)

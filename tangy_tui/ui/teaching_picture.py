@@ -36,7 +36,7 @@ from tangy_tui.text.activities import with_activity
 from tangy_tui.text.coach import arranged_words, coach_words, unseen_words
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.remarks import remark_words, settled_words
-from tangy_tui.text.situations import step_words
+from tangy_tui.text.situations import OVER_NOW, step_words
 from tangy_tui.text.tour import tour_words
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.panels import KeyLine
@@ -115,7 +115,8 @@ class TeachingPicture:
 
     def undone(self, undone: Sequence[StepUndone]) -> None:
         """Tell of steps that were taken back, the last one first."""
-        self._log.write(text.undone_words(undone, self._teaching.activity), "warn")
+        words = text.undone_words(undone, self._teaching.activity)
+        self._log.write(self._told(words), "warn")
         self._screen.query_one(RoomView).say("")
         self._scene(self._teaching.world.observe().place)
 
@@ -146,13 +147,15 @@ class TeachingPicture:
         self._screen.query_one(StatusLine).show(
             Status(
                 mode=with_activity(mode, teaching.activity),
-                stage=state.stage if not teaching.world.over else "over",
+                stage=OVER_NOW
+                if teaching.world.over
+                else teaching.activity.in_words(state.situation),
                 seen=f"{len(found.seen)}/{len(found.times)}",
                 step=len(shown.steps),
                 note=f"game {shown.seed}, {shown.teacher}",
             )
         )
-        self._now(text.OVER if teaching.world.over else self._coach(state))
+        self._now(self._told(text.OVER) if teaching.world.over else self._coach(state))
         if teaching.world.over:
             self._screen.query_one(SayableList).show(())
         else:
@@ -199,6 +202,10 @@ class TeachingPicture:
         teaching = self._teaching
         phrase = next(iter(teaching.sayable), "")
         words = tour_words(at, teaching.teacher, teaching.activity.title, phrase)
+        return self._told(words)
+
+    def _told(self, words: str) -> str:
+        """Write the keys into words that name actions."""
         return with_keys(words, keymap_of(self._screen.app), typing=True)
 
     def _scene(self, came_from: str) -> None:

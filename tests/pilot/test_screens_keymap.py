@@ -24,6 +24,7 @@ from tangy_tui.ui.screens.people import PeopleScreen
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, TangyPilot
+from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
 
 LETTERS = (*string.ascii_letters, "slash", "asterisk", "full_stop", "less_than_sign")
 
@@ -107,6 +108,51 @@ async def test_no_letter_changes_what_is_kept_whatever_has_the_keys(
                 for line in screen.query(Input):
                     line.clear()
         assert panels or opens is home
+
+
+GAME_MOVES = {"p": "pause or go on", "full_stop": "one step"}
+"""What a letter may do without asking: the simulated game goes on, or stands."""
+
+STAFF_SAYS = {"i": "autonomy", "c": "call again", "o": "take over"}
+"""In a live game: what is noted of staff at once, and can be said otherwise the next moment."""
+
+
+async def test_pause_and_step_move_the_simulated_game_and_nothing_else(
+    run: Run, taught: Workspace
+) -> None:
+    async with run(app=Program(taught, play, clock=StillClock()), size=ROOM) as pilot:
+        await pilot.pause()
+        for letter in (*GAME_MOVES, "p"):
+            before = set(kept(taught))
+            pilot.type(letter)
+            await pilot.pause()
+            new = {event.kind for event in taught.store.events() if event.seq not in before}
+            assert new <= {"game step"}, letter
+
+
+async def test_no_letter_changes_a_live_game_unasked(run: Run, taught: Workspace) -> None:
+    link = HeldLink()
+    world = live_world(taught, link)
+    async with run(app=live_program(taught, world, learn(taught)), size=ROOM) as pilot:
+        await paused_after(pilot, link, 3)
+        screen = live(pilot)
+        for letter in LETTERS:
+            if letter in STAFF_SAYS or letter in ("p", "d", "slash"):
+                # p goes on; in the dialog that d opens only arrows drive; / begins to filter
+                continue
+            before, told = kept(taught), list(link.told)
+            pilot.type(letter)
+            await pilot.pause()
+            await back(pilot, screen)
+            assert (kept(taught), link.told) == (before, told), letter
+            assert not screen.control.going, letter
+        for letter in STAFF_SAYS:
+            before, told = kept(taught), list(link.told)
+            pilot.type(letter)
+            await pilot.pause()
+            new = [event for event in taught.store.events() if event.seq not in before]
+            assert [event.kind for event in new] == ["staff action"], letter
+            assert link.told == told, letter
 
 
 @pytest.mark.parametrize("opens", [home, library, people, play])

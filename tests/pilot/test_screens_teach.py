@@ -63,7 +63,7 @@ async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
         shown = screen_text(pilot.app)
         assert "1 the game has not begun -> greet everyone" in shown
         assert "Hello, everybody" in shown
-        assert "stage FACILITATE" in shown
+        assert "a number is due" in shown
         assert steps(workspace) == ["greeting"]
 
 
@@ -104,6 +104,18 @@ async def test_words_that_mean_nothing_are_said_and_stay_to_be_mended(
         await pilot.pause()
         assert "I do not know what 'flurb' means" in screen_text(pilot.app)
         assert pilot.app.screen.query_one(CommandBar).text == "flurb"
+
+
+@pytest.mark.parametrize("way", [("escape", "escape"), (*"quit", "enter")], ids=["esc", "word"])
+async def test_who_leaves_a_game_is_told_what_was_kept(
+    run: Run, workspace: Workspace, way: tuple[str, ...]
+) -> None:
+    async with run(app=program(workspace), notifications=True) as pilot:
+        await say(pilot, "greet everyone")
+        await pilot.press(*way)
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        assert "Kept: 1 step of this game." in " ".join(n.message for n in pilot.app._notifications)
 
 
 async def test_undo_takes_the_last_step_back(run: Run, workspace: Workspace) -> None:
@@ -163,7 +175,7 @@ async def test_the_game_is_shown_again_from_a_step(
         await pilot.pause()
         assert isinstance(pilot.app.screen, ConfirmDialog)
         assert "before step 13" in screen_text(pilot.app)
-        assert "Steps 13 to 14 are taken back; F3 brings them" in screen_text(pilot.app)
+        assert "Steps 13 to 14 are taken back; f3 brings them" in screen_text(pilot.app)
         await pilot.press("y")
         await pilot.pause()
         screen = pilot.app.screen
@@ -179,7 +191,7 @@ async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> 
         await mid_game(pilot, 4)
         await pilot.press("escape", "up", "ctrl+r")
         await pilot.pause()
-        assert "Step 4 is taken back; F3 brings it back until" in screen_text(pilot.app)
+        assert "Step 4 is taken back; f3 brings it back until" in screen_text(pilot.app)
         await pilot.press("n")
         await pilot.pause()
         assert len(steps(workspace)) == 4

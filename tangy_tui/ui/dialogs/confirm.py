@@ -10,8 +10,10 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
+from tangy_tui.text.keys import with_keys
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, yes_key_of
 
 
@@ -45,7 +47,7 @@ class ConfirmDialog(Dialog[bool]):
         """Lay out question, detail and keys."""
         parts: list[str | tuple[str, str] | Content] = [(self._question, "bold")]
         if self._detail:
-            parts += ["\n\n", self._detail]
+            parts += ["\n\n", with_keys(self._detail, keymap_of(self.app))]
         self._yes_key = yes_key_of(self.app)
         yes, no = self._words
         for key, colour, words in ((self._yes_key.upper(), "$warning", yes), ("N", "$success", no)):

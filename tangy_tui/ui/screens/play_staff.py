@@ -226,7 +226,9 @@ class PlayStaff(PlayPanels):
     def action_accept(self) -> None:
         """Say that what Tangy asks about is all right, if that is meant."""
         asking = self._asking
-        if asking is None or not asking.acceptable:
+        if self.control.stopped:
+            self._take([StaffNote("stopped first")])
+        elif asking is None or not asking.acceptable:
             self._tell_now(NOT_ACCEPTABLE, "dim")
         else:
             self._sure(ACCEPT, "", lambda: self._accept(asking))

@@ -55,7 +55,7 @@ from tangy_tui.ui.screens.teach_keys import NOT_WATCHING, WATCHING
 from tangy_tui.ui.screens.teach_letters import type_letter
 from tangy_tui.ui.screens.teach_scripted import follow_script
 from tangy_tui.ui.screens.teach_why import TeachWhy
-from tangy_tui.ui.screens.teach_words import follow_word
+from tangy_tui.ui.screens.teach_words import follow_word, go_home
 from tangy_tui.ui.speaking import preference_of, speaker_of
 from tangy_tui.ui.teaching_picture import TeachingPicture
 from tangy_tui.ui.widgets.call_board import CallBoard
@@ -166,8 +166,6 @@ class TeachScreen(TangyScreen[bool]):
         if self._another:
             return self.teaching.apply(Next())
         return self.teaching.begin(resume=self._resume)
-
-    # ------------------------------------------------------------------------------ commands
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
         """Put a typed command to Tangy."""
@@ -301,7 +299,7 @@ class TeachScreen(TangyScreen[bool]):
         elif steps.chosen is not None:
             steps.release()
         else:
-            self.close(False)
+            go_home(self, watching=self._scripted is not None)
 
     def action_discard(self) -> None:
         """Put the present game away, if that is meant, and begin another."""

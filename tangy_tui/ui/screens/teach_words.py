@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from tangy_tui.app.command_grammar import AgainFrom, Leave, Perform, TeachAs, TeachingWord
 from tangy_tui.learning.teaching_events import Discard, Finish, Next, Redo, SameWhatever, Undo
 from tangy_tui.learning.verification import Say, StopCommand
+from tangy_tui.text.teaching import left_words
 from tangy_tui.ui.performing import perform
 from tangy_tui.ui.widgets.command_bar import CommandBar
 
@@ -26,7 +27,7 @@ def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> N
         case Discard():
             screen.action_discard()
         case Leave():
-            screen.close(False)
+            go_home(screen)
         case TeachAs(name):
             screen.query_one(CommandBar).ready()
             app: Any = screen.app
@@ -42,6 +43,14 @@ def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> N
             _perform(screen, Perform(word))
         case Perform():
             _perform(screen, word)
+
+
+def go_home(screen: TeachScreen, *, watching: bool = False) -> None:
+    """Leave, and say what was kept of a game that is not finished, unless one only watches."""
+    shown = screen.teaching.demonstration
+    if screen.is_active and shown.steps and not (shown.finished or watching):
+        screen.app.notify(left_words(len(shown.steps)), markup=False)
+    screen.close(False)
 
 
 def _perform(screen: TeachScreen, word: Perform) -> None:

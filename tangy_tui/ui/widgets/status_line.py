@@ -23,6 +23,7 @@ class Status:
 
     `robot` and STOP are seen at every width; where there is no room the step goes first, as its
     list has it as well, and then the others from the right.
+    `stage` says in words how the game stands.
     `alarm` writes the robot's part as a warning, with a mark; `seen` says how much was shown.
     """
 
@@ -74,7 +75,7 @@ class StatusLine(Widget):
             word = f"{mark}robot {clean(status.robot)}"
             parts.append((word, "bad" if status.alarm else "good"))
         if status.stage:
-            parts.append((f"stage {clean(status.stage).upper()}", "robot"))
+            parts.append((clean(status.stage), "robot"))
         if status.game is not None:
             parts.append((f"game {status.game}", "text"))
         if status.seen:
