@@ -36,7 +36,7 @@ from tangy_tui.text.activities import with_activity
 from tangy_tui.text.coach import arranged_words, coach_words, unseen_words
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.remarks import remark_words, settled_words
-from tangy_tui.text.situations import OVER_NOW, step_words
+from tangy_tui.text.situations import step_words
 from tangy_tui.text.tour import tour_words
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.panels import KeyLine
@@ -147,9 +147,6 @@ class TeachingPicture:
         self._screen.query_one(StatusLine).show(
             Status(
                 mode=with_activity(mode, teaching.activity),
-                stage=OVER_NOW
-                if teaching.world.over
-                else teaching.activity.in_words(state.situation),
                 seen=f"{len(found.seen)}/{len(found.times)}",
                 step=len(shown.steps),
                 note=f"game {shown.seed}, {shown.teacher}",

@@ -63,7 +63,7 @@ async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
         shown = screen_text(pilot.app)
         assert "1 the game has not begun -> greet everyone" in shown
         assert "Hello, everybody" in shown
-        assert "a number is due" in shown
+        assert "time for the next number" in shown
         assert steps(workspace) == ["greeting"]
 
 
