@@ -51,10 +51,11 @@ def after(*looks: ActivityState) -> tuple[ActivityState, int]:
     [
         ((RIGHT,), RIGHT, 1),
         ((WRONG, RIGHT), RIGHT, 3),
-        ((WRONG,), WRONG, 3),
+        ((WRONG,), WRONG, 4),
+        ((WRONG, WRONG, WRONG, RIGHT), RIGHT, 5),
         ((WRONG, WRONG, RIGHT), RIGHT, 4),
         ((WRONG, OTHER, RIGHT), RIGHT, 4),
-        ((WRONG, OTHER, WRONG, OTHER, WRONG), WRONG, 5),
+        ((WRONG, OTHER, WRONG, OTHER, WRONG), WRONG, 6),
     ],
 )
 def test_what_contradicts_is_seen_again_before_it_counts(
