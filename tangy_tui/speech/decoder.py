@@ -104,7 +104,8 @@ class TwoDecoders:
         few = dict(list(open_words.items())[:AMONG_STOPS])
         self._stops = StopDecoder(wanted.stops, wanted.no_stops, few, known, wanted.game)
         self._open = False
-        self._beside = ForkedWorker(self._by_others)
+        self._beside = ForkedWorker(self._by_grammar)
+        self._beside_stops = ForkedWorker(self._stops.hear)
 
     def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         """Decode a whole utterance."""
@@ -116,18 +117,19 @@ class TwoDecoders:
         pcm = cleaned(whole)
         if pcm == whole:  # in noise nobody can tell what is missing
             pcm = widened(pcm)
+        self._beside_stops.ask(pcm)
         self._beside.ask((pcm, expecting))
         words, score, _ = best_path(self._words, pcm, expecting)
-        phrase, garbage, stop = self._beside.answer()
+        phrase, garbage = self._beside.answer()
+        stop = self._beside_stops.answer()
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or a path that breaks off in the middle of a phrase
         return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop)
 
-    def _by_others(self, asked: tuple[bytes, Expecting]) -> tuple[str, float, str]:
-        """Return the grammar's phrase and its score, and what stops the robot."""
+    def _by_grammar(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
         phrase, score, _ = best_path(self._grammar, *asked)
-        return phrase, score, self._stops.hear(asked[0])
+        return phrase, score
 
     def begin(self, expecting: Expecting) -> None:
         """Begin an utterance that comes in pieces."""
@@ -142,8 +144,9 @@ class TwoDecoders:
         return _so_far(self._words, pcm) if self._open else ""
 
     def close(self) -> None:
-        """End the process beside this one."""
+        """End the processes beside this one."""
         self._beside.close()
+        self._beside_stops.close()
 
     def _end(self) -> None:
         if self._open:
