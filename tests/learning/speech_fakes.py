@@ -161,7 +161,7 @@ def end():
     at("end")
     words = plan.get("words", "call number")
     whole = {"words": words, "phrase": "", "margin": 0.0, "confidence": 1.0,
-             "seconds": len(heard) / 32000}
+             "seconds": len(heard) / 32000, "stop": ""}
     write({"id": id, "heard": whole, "used": len(heard)})
     id = None
 
