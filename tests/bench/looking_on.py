@@ -1,0 +1,123 @@
+"""A second console beside a game: how late it sees events, how soon STOP acts, what it costs.
+
+python -m tests.bench.looking_on --stops 20
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import selectors
+import statistics
+import subprocess
+import tempfile
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+from tangy_profiles.game_records import StaffAction
+from tangy_profiles.store import Store
+from tangy_tui.app.watching import Guest
+from tests.bench.kills import TANGY, share, taught_folder
+
+WATCHED_SECONDS = 60.0
+
+
+def seconds_late(said: bytes) -> float | None:
+    """Return how late a line of `tangy watch --json` comes after what it tells of, in s."""
+    at = json.loads(said).get("at")
+    return None if at is None else (datetime.now(UTC) - datetime.fromisoformat(at)).total_seconds()
+
+
+def watched(folder: Path, seconds: float) -> list[float]:
+    """Look on by a process of its own; return how late each event came (s), but for the first."""
+    watching = subprocess.Popen(  # noqa: S603
+        [*TANGY, "watch", "--json", "--data", str(folder)], stdout=subprocess.PIPE
+    )
+    assert watching.stdout is not None
+    late: list[float] = []
+    began = time.monotonic()
+    with selectors.DefaultSelector() as ready:
+        ready.register(watching.stdout, selectors.EVENT_READ)
+        while time.monotonic() < began + seconds:
+            if ready.select(1.0):
+                found = seconds_late(watching.stdout.readline())
+                if found is not None and time.monotonic() > began + 5.0:  # what was there before
+                    late.append(found)
+    watching.terminate()
+    watching.wait()
+    return late
+
+
+def stopped(folder: Path, stops: int) -> list[float]:
+    """Stop again and again; return after how many s each stop was carried out and logged."""
+    took = []
+    guest = Guest(folder)
+    for number in range(stops):
+        asked = datetime.now(UTC)
+        guest.stop(f"guest {number}")
+        assert guest.answered()
+        with Store.open(folder, write=False) as store:
+            last = store.last(StaffAction)
+        assert last is not None and last.record.by == f"guest {number}"
+        took.append((datetime.fromisoformat(last.at) - asked).total_seconds())
+        time.sleep(0.2)
+    guest.close()
+    return took
+
+
+def computed(process: subprocess.Popen[bytes]) -> float:
+    """Return how many s a process has computed."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / 100
+
+
+def figures(values: Sequence[float]) -> dict[str, object]:
+    """Return n, median, p95 and the largest."""
+    return {
+        "n": len(values), "median": share(values, 50), "p95": share(values, 95),
+        "max": round(max(values, default=0.0), 3),
+    }  # fmt: skip
+
+
+def main() -> None:
+    """Run it, and print the figures as JSON."""
+    options = argparse.ArgumentParser()
+    options.add_argument("--stops", type=int, default=20)
+    options.add_argument("--seconds", type=float, default=WATCHED_SECONDS)
+    given = options.parse_args()
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = taught_folder(Path(scratch) / "data")
+        game = subprocess.Popen(  # noqa: S603
+            [*TANGY, "play", "--plain", "--speed", "30", "--games", "9", "--data", str(folder)],
+            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+        )  # fmt: skip
+        guest = Guest(folder)
+        while not (guest.look() and guest.view):
+            time.sleep(0.1)
+        guest.close()
+        alone, since = computed(game), time.monotonic()
+        time.sleep(given.seconds)
+        alone = (computed(game) - alone) / (time.monotonic() - since)
+        beside, since = computed(game), time.monotonic()
+        late = watched(folder, given.seconds)
+        beside = (computed(game) - beside) / (time.monotonic() - since)
+        took = stopped(folder, given.stops)
+        game.kill()
+        game.wait()
+    print(
+        json.dumps(
+            {
+                "events_late_s": figures(late),
+                "stop_s": figures(took),
+                "computing_share": {"alone": round(alone, 3), "beside": round(beside, 3)},
+                "mean_late_s": round(statistics.mean(late), 3) if late else None,
+            },
+            indent=2,
+        )
+    )
+
+
+if __name__ == "__main__":
+    main()
