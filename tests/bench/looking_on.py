@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import selectors
 import statistics
 import subprocess
 import tempfile
@@ -19,32 +18,25 @@ from pathlib import Path
 from tangy_profiles.game_records import StaffAction
 from tangy_profiles.store import Store
 from tangy_tui.app.watching import Guest
-from tests.bench.kills import TANGY, share, taught_folder
+from tests.bench.kills import TANGY, lines_of, share, taught_folder
 
 WATCHED_SECONDS = 60.0
 
 
-def seconds_late(said: bytes) -> float | None:
-    """Return how late a line of `tangy watch --json` comes after what it tells of, in s."""
-    at = json.loads(said).get("at")
-    return None if at is None else (datetime.now(UTC) - datetime.fromisoformat(at)).total_seconds()
-
-
 def watched(folder: Path, seconds: float) -> list[float]:
-    """Look on by a process of its own; return how late each event came (s), but for the first."""
+    """Look on by a process of its own; return how late each event came (s) that it saw happen."""
     watching = subprocess.Popen(  # noqa: S603
         [*TANGY, "watch", "--json", "--data", str(folder)], stdout=subprocess.PIPE
     )
-    assert watching.stdout is not None
     late: list[float] = []
-    began = time.monotonic()
-    with selectors.DefaultSelector() as ready:
-        ready.register(watching.stdout, selectors.EVENT_READ)
-        while time.monotonic() < began + seconds:
-            if ready.select(1.0):
-                found = seconds_late(watching.stdout.readline())
-                if found is not None and time.monotonic() > began + 5.0:  # what was there before
-                    late.append(found)
+    began, since = time.monotonic(), datetime.max.replace(tzinfo=UTC)
+    for line in lines_of(watching):
+        at, now = json.loads(line).get("at"), datetime.now(UTC)
+        if at is not None and datetime.fromisoformat(at) > since:
+            late.append((now - datetime.fromisoformat(at)).total_seconds())
+        since = min(since, now)  # what was there before it looked on is not late
+        if time.monotonic() > began + seconds:
+            break
     watching.terminate()
     watching.wait()
     return late
