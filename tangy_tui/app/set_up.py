@@ -67,7 +67,7 @@ class SetUp:
 
     @classmethod
     def of(cls, workspace: Workspace, pace: float = USUAL_PACE) -> SetUp:
-        """Begin with everybody here, each at their seat, and a game as the activity has it."""
+        """Begin with everybody here, each at their seat; `pace` is in s from call to call."""
         return cls(workspace, [person.id for person in workspace.people], pace=pace)
 
     # ----------------------------------------------------------------------------- the choices

@@ -12,10 +12,10 @@ GO_ON, STAY = "go on", "stay paused"
 
 
 def question(seconds: float) -> str:
-    """Say for how long the program stood still, and ask whether the game goes on."""
+    """Say how many seconds the program stood still, and ask whether the game goes on."""
     return f"Tangy stood still for {length(seconds)}. Go on?"
 
 
 def told_words(seconds: float) -> str:
-    """Say by a line for how long it stood still, and how the game goes on."""
+    """Say by a line how many seconds it stood still, and how the game goes on."""
     return f"Tangy stood still for {length(seconds)}. The game is paused. Type: go on."

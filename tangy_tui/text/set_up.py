@@ -70,7 +70,7 @@ def minutes_words(minutes: int) -> str:
 
 
 def pace_words(pace: float) -> str:
-    """Say how fast numbers are called."""
+    """Say how fast numbers are called: `pace` is in s from call to call."""
     return f"a call every {pace:g} s"
 
 

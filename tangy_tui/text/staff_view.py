@@ -45,7 +45,7 @@ def played_words(patterns: Patterns | None) -> str:
 
 
 def tangy_words(level: Autonomy, battery: float | None) -> str:
-    """Say how much Tangy does by itself, and how full its battery is."""
+    """Say how much Tangy does by itself, and how full its battery is (share from 0 to 1)."""
     charge = "" if battery is None else f", battery {battery:.0%}"
     return f"Tangy {autonomy_words(level)}{charge}"
 

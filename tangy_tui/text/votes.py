@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def shown_here(seen: int, share: float) -> str:
-    """Say how often something was shown, and the votes where they are not all for it."""
+    """Say how often something was shown, and its share of the votes where that is not 1."""
     votes = f"{share:.0%} of the votes"
     if not seen:
         return f"a guess of the trees, {votes}"

@@ -59,6 +59,7 @@ async def play_live(
 
     It is left off where somebody calls it off meanwhile. A past game, which was interrupted, is
     taken up first. Where staff `set_up` the game first, the robot is switched on when they say.
+    The `pace` is in s from call to call.
     """
     from tangy_tui.app.set_up import SetUp
     from tangy_tui.app.switching_on import SwitchingOn

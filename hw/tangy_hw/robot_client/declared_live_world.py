@@ -117,7 +117,7 @@ class DeclaredLiveWorld(LiveWorld):
         return self.observe()
 
     def read_card(self, person: str, after: float = 0.0) -> None:
-        """Do nothing: there are no cards."""
+        """Do nothing, whatever the time `after` in s: there are no cards."""
 
     def _listen(self) -> None:
         """Hear what people have done since, where something tells it."""

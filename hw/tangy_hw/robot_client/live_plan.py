@@ -29,7 +29,7 @@ class LivePlan(PlannedGame):
     def say(
         self, speech: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
     ) -> None:
-        """Say and show something."""
+        """Say and show something; a posture is joint angles in rad, by limb."""
         raise NotImplementedError
 
     @property
