@@ -31,7 +31,7 @@ _LOG = logging.getLogger(__name__)
 
 FILE = "tangy.sock"
 LOOK_SECONDS = 0.2  # between two views
-MOST_GUESTS = 8
+MOST_GUESTS = 32
 LONGEST_LINE = 1000  # bytes that a guest may send before a line ends
 LONGEST_NAME = 40  # characters of a guest's name
 
@@ -117,12 +117,13 @@ class SessionDoor:
         with suppress(OSError):
             guest, _ = self._socket.accept()
             guest.setblocking(False)
-            if len(self._guests) >= MOST_GUESTS:
-                guest.close()
-                return
+            if len(self._guests) >= MOST_GUESTS:  # whoever comes may want to stop the robot
+                first = next(iter(self._guests))
+                self._hear(first, ready)
+                self._show_out(first, ready)
             self._guests[guest] = b""
             ready.register(guest, selectors.EVENT_READ)
-            self._tell(guest, self._shown or self._look(), ready)
+            self._tell(guest, self._look(), ready)
 
     def _hear(self, guest: socket.socket, ready: selectors.BaseSelector) -> None:
         """Take what a guest says; one who has gone, or says too much, is shown out."""
@@ -139,15 +140,19 @@ class SessionDoor:
         self._guests[guest] = rest
         for line in lines:
             if (name := _stops(line)) is not None:
-                self._stop(name)
-                self._tell(guest, _line({"stopped": self._control is not None}), ready)
+                self._tell(guest, _line({"stopped": self._stop(name)}), ready)
 
-    def _stop(self, name: str) -> None:
-        control = self._control
+    def _stop(self, name: str) -> bool:
+        """Stop the robot, and say if there was one; the door is there for the next stop as well."""
+        control, stopped = self._control, self._stopped
         if control is None:
-            return
-        control.apply(StopRobot(by=name))
-        self._stopped(name)
+            return False
+        try:
+            control.apply(StopRobot(by=name))
+            stopped(name)
+        except Exception:
+            _LOG.exception("a stop of somebody who looks on went wrong")
+        return control.stopped
 
     def _show(self, ready: selectors.BaseSelector) -> None:
         view = self._look()
@@ -178,7 +183,9 @@ class SessionDoor:
 
 
 def _line(said: object) -> bytes:
-    return json.dumps(said, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
+    return (
+        json.dumps(said, ensure_ascii=False, separators=(",", ":")).encode(errors="replace") + b"\n"
+    )
 
 
 def _stops(line: bytes) -> str | None:

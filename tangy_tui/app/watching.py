@@ -18,7 +18,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, load_people
 from tangy_profiles.store import Store
 from tangy_tui.app.game_view import GameView
-from tangy_tui.app.session_door import FILE, reachable
+from tangy_tui.app.session_door import FILE, LONGEST_NAME, reachable
 from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.replay import GameReplay, Moment, read_replays
 
@@ -81,15 +81,22 @@ class Guest:
         Raises:
             NobodyThere: no program runs games in this folder.
         """
-        said = json.dumps({"stop": by}).encode() + b"\n"
+        said = json.dumps({"stop": by[:LONGEST_NAME]}).encode() + b"\n"
+        if not self._says(said):
+            self.close()  # it was shown out, or that program has ended: another may be there
+            if not self._says(said):
+                raise NobodyThere("")
+
+    def _says(self, said: bytes) -> bool:
+        """Say something at the door; return whether somebody is there."""
         if self._socket is None and not self._enter():
-            raise NobodyThere("")
+            return False
         assert self._socket is not None  # noqa: S101 - it was entered
         try:
             self._socket.sendall(said)
         except OSError:
-            self.close()
-            raise NobodyThere("") from None
+            return False
+        return True
 
     def answered(self, seconds: float = 5.0) -> bool:
         """Wait, for so many s at most, until a stop was answered; say if there was what to stop."""

@@ -11,9 +11,16 @@ import pytest
 
 from tangy_profiles.game_records import StaffAction
 from tangy_profiles.store import Store
+from tangy_tui.app.game_commands import GoOn
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
-from tangy_tui.app.session_door import FILE, LONGEST_LINE, MOST_GUESTS, reachable
+from tangy_tui.app.session_door import (
+    FILE,
+    LONGEST_LINE,
+    MOST_GUESTS,
+    SessionDoor,
+    reachable,
+)
 from tangy_tui.app.watching import Guest, NobodyThere, WatchedLog
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
@@ -172,3 +179,65 @@ def test_the_log_is_told_once_as_it_grows(control: GameController, data_folder: 
         assert more is not None and not more.begun
         assert [moment.step for moment in more.moments if moment.step > max(steps)]
         assert more.replay.moments[: len(first.moments)] == list(first.moments)
+
+
+def test_a_stop_reaches_the_robot_after_the_door_was_opened_anew(
+    guest: Guest, control: GameController, workspace: Workspace, data_folder: Path
+) -> None:
+    seen(guest)
+    workspace.door.close()
+    again = SessionDoor(data_folder)
+    again.attach(control)
+    again.open()
+    guest.stop("Bea")
+    assert guest.answered()
+    assert control.phase == "stopped"
+    again.close()
+
+
+def test_a_stop_comes_in_however_many_look_on(control: GameController, data_folder: Path) -> None:
+    others = [Guest(data_folder) for _ in range(MOST_GUESTS)]
+    for other in others:
+        seen(other)
+    late = Guest(data_folder)
+    late.stop("Bea")
+    assert late.answered()
+    assert control.phase == "stopped"
+    for one in (*others, late):
+        one.close()
+
+
+def test_a_name_of_any_length_stops_the_robot(guest: Guest, control: GameController) -> None:
+    guest.stop("Beatrix é" * LONGEST_LINE)
+    assert guest.answered()
+    assert control.phase == "stopped"
+
+
+def test_the_door_stays_open_whatever_goes_wrong_behind_it(
+    guest: Guest, control: GameController, workspace: Workspace
+) -> None:
+    def breaks(guest: str) -> None:
+        raise RuntimeError("no screen is there")
+
+    workspace.door.attach(control, breaks)
+    guest.stop("Bea")
+    assert guest.answered()
+    control.apply(GoOn())
+    guest.stop("Cy")
+    assert guest.answered()
+    assert control.phase == "stopped"
+
+
+def test_who_comes_late_sees_the_game_as_it_is(control: GameController, data_folder: Path) -> None:
+    early = seen(Guest(data_folder))
+    early.close()
+    go_on_by_script(control, expert=False)
+    late = Guest(data_folder)
+    wait_until(lambda: late.look() and late.view is not None)
+    assert late.view is not None and late.view.step == 6
+    late.close()
+
+
+def test_a_driver_of_any_name_can_be_looked_on_at(guest: Guest, control: GameController) -> None:
+    control.by = "Andr\udce9"  # a login name in an old encoding
+    assert seen(guest).view is not None
