@@ -86,6 +86,10 @@ ChangeKind = Literal[
     "visit",
     "visit put off",
     "visit over",
+    "several winners",
+    "one winner",
+    "visits on",
+    "visits off",
 ]
 """What can change in a game beside its behaviours."""
 
@@ -96,7 +100,8 @@ class GameChange(EventRecord):
 
     A call (`number`) was taken back; staff chose the `patterns` that follow; a winner (`person`)
     waits until others were seen to, the game is played on for the next pattern, or is won;
-    a card was found to win, `person` left the game or came to it, or gets a visit unasked.
+    a card was found to win, `person` left the game or came to it, or gets a visit unasked;
+    staff let everybody win who has it at the same call, or one; or let people be visited, or not.
     """
 
     game: str

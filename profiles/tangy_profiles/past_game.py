@@ -127,6 +127,7 @@ class PastGame:
         """
         if self.beginning.people != tracker.people:
             raise NotResumable(OTHER_PEOPLE)
+        self._change(change, self.beginning.game, 0)
         for number, step in enumerate(self.steps, start=1):
             if not tracker.follow(step):
                 raise NotResumable(OTHERWISE)

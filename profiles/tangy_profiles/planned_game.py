@@ -156,9 +156,11 @@ class PlannedGame:
                 self._wins_by_word(person)
             case "left":
                 self.away |= {person}
+                self._plan_without(self.plan_away | {person})
                 self._asks_no_more(person)
             case "came":
                 self.away -= {person}
+                self._plan_without(self.plan_away - {person})
             case "visit":
                 self.visiting = person
                 self._asks(person)
@@ -169,6 +171,14 @@ class PlannedGame:
                 self.visiting = ""
             case "taken back":
                 self._take_back(change.number)
+            case "several winners" | "one winner":
+                self.game_plan = replace(self.game_plan, several=change.what == "several winners")
+            case "visits on" | "visits off":
+                self.game_plan = replace(self.game_plan, visits=change.what == "visits on")
+
+    def _plan_without(self, away: frozenset[str]) -> None:
+        """Play the next game without those who are not here."""
+        self.game_plan = replace(self.game_plan, absent=tuple(sorted(away)))
 
     def _wins_by_word(self, person: str) -> None:
         """Let a person win whatever is seen of their card; the robot goes there to celebrate."""

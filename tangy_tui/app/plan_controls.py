@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
+from tangy_profiles.game_records import ChangeKind
 from tangy_profiles.game_rules import LONGEST_PACE, PACES, SHORTEST_PACE
 from tangy_profiles.planned_game import PlannedGame
 from tangy_tui.app.fault_commands import Result
@@ -131,21 +132,31 @@ class GamePlanControls:
     def _let_win(
         self, world: PlannedGame, several: bool | None, visits: bool | None
     ) -> list[Result]:
-        plan, told = world.game_plan, list[Result]()
+        told, changes = list[Result](), list[ChangeKind]()
         if several is not None:
-            plan = replace(plan, several=several)
+            changes.append("several winners" if several else "one winner")
             told.append(StaffNote("several" if several else "one winner"))
         if visits is not None:
-            plan = replace(plan, visits=visits)
+            changes.append("visits on" if visits else "visits off")
             told.append(StaffNote("visits" if visits else "no visits"))
-        world.choose(plan)
+        plan = replace(
+            world.game_plan,
+            several=world.game_plan.several if several is None else several,
+            visits=world.game_plan.visits if visits is None else visits,
+        )
+        if self._idle:
+            world.choose(plan)
+        else:
+            for what in changes:
+                self._supervision.game.change(what, by=self._by)
         self._note(f"staff chose: several winners {plan.several}, visits {plan.visits}")
         return told
 
     def _moved(self, world: PlannedGame, person: str, *, here: bool) -> list[Result]:
-        away = world.plan_away - {person} if here else world.plan_away | {person}
-        world.choose(replace(world.game_plan, absent=tuple(sorted(away))))
-        if not self._idle:
+        if self._idle:
+            away = world.plan_away - {person} if here else world.plan_away | {person}
+            world.choose(replace(world.game_plan, absent=tuple(sorted(away))))
+        else:
             self._supervision.game.change("came" if here else "left", person=person, by=self._by)
         self._note(f"staff: {person} {'is here' if here else 'has left'}")
         return [StaffNote("comes" if here else "goes", person)]

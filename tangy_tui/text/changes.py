@@ -45,6 +45,14 @@ def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
             return f"Others are asking, so {person}'s visit waits."
         case "visit over":
             return f"{person} has had a visit."
+        case "several winners":
+            return "Everybody who has it at the same call wins."
+        case "one winner":
+            return "One person wins."
+        case "visits on":
+            return "Tangy also visits people who do not ask."
+        case "visits off":
+            return "Tangy visits only people who ask."
         case forgotten:
             assert_never(forgotten)
 

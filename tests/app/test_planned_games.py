@@ -12,6 +12,7 @@ from tangy_profiles.cards import winning_state
 from tangy_profiles.game_records import GameChange, GameStep
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import interrupted_game
+from tangy_profiles.tracker import Tracker
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.app.game_commands import (
     ChangePace,
@@ -20,6 +21,7 @@ from tangy_tui.app.game_commands import (
     ComesIn,
     GameCommand,
     GoesAway,
+    LetWin,
     SetPace,
     StaffNote,
     TakeBackCall,
@@ -199,6 +201,32 @@ def test_a_planned_game_that_was_interrupted_goes_on_as_it_would_have(
     assert world.away == away and {p.id: p.marked for p in world.players.values()} == marked
     again.play()
     assert isinstance(again.events[-1], GameEnded) and again.events[-1].stopped is None
+    again.workspace.close()
+
+
+@pytest.mark.parametrize("calls", [0, 4])
+def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, calls: int) -> None:
+    planned = Planned(taught)
+    planned.begin(GamePlan(absent=("user3",)))
+    planned.play(calls=calls)
+    assert planned.do(LetWin(several=True)) == ["several"]
+    assert planned.do(LetWin(visits=True)) == ["visits"]
+    planned.do(GoesAway("user2"))
+    planned.do(ComesIn("user3"))
+    planned.play(calls=calls + 2)
+    chosen = planned.world.game_plan
+    assert chosen == GamePlan(several=True, visits=True, absent=("user2",))
+    planned.workspace.close()
+
+    again = Planned(taught)
+    past = interrupted_game(again.workspace.store, "bingo")
+    assert past is not None
+    again.control = scripted_controller(again.supervision, past)
+    again.control.begin()
+    assert again.world.game_plan == chosen and again.world.away == {"user2"}
+    followed = list[GameChange]()  # as a live game does
+    past.follow(Tracker(again.workspace.activity, again.world.people), followed.append)
+    assert tuple(followed) == past.changes
     again.workspace.close()
 
 
