@@ -19,7 +19,7 @@ from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import ActivityState
 from tangy_profiles.tracker import Tracker
-from tangy_tui.app.game_commands import GoOn, TakeBackCall
+from tangy_tui.app.game_commands import GoesAway, GoOn, TakeBackCall
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.interruption import end_interrupted, find_interrupted
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
@@ -225,6 +225,19 @@ def test_a_live_game_goes_on_with_the_order_of_its_numbers(taught: Path) -> None
     for robot in (before, after):
         robot.next(4)
     assert after.world.called == gone and len(after.world.called) > len(called)
+    workspace.close()
+
+
+def test_who_left_before_the_first_step_of_a_live_game_is_away_when_it_goes_on(
+    taught: Path,
+) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.control.apply(GoesAway("user2"))
+    before.next(3)
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    assert Robot(workspace, past).world.away == before.world.away == {"user2"}
     workspace.close()
 
 
