@@ -67,7 +67,10 @@ class Call:
 
 
 def attention_in(replay: GameReplay) -> dict[str, Attention]:
-    """Return what each person got of a game, by id, in the order of the log."""
+    """Return what each person got of a game, by id, in the order of the log.
+
+    Who was away all along, as staff said and nothing that happened denies, is left out.
+    """
     found = {person: Attention(person) for person in replay.game.people}
     asked: dict[str, float] = {}
     before: str = ""
@@ -77,6 +80,9 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
         _count_requests(found, asked, done)
     for person, since in asked.items():
         found[person].open.append(max(0.0, replay.seconds - since))
+    for person in replay.game.away & found.keys():
+        if not (found[person].requests or found[person].visits):
+            del found[person]
     return found
 
 

@@ -10,7 +10,13 @@ from typing import Any, NamedTuple
 from tangy_profiles.errors import TangyError
 from tangy_profiles.events import EventRecord
 from tangy_profiles.faults import CRITICAL
-from tangy_profiles.game_records import FaultDiagnosed, GameBeginning, GameEnding, GameStep
+from tangy_profiles.game_records import (
+    FaultDiagnosed,
+    GameBeginning,
+    GameChange,
+    GameEnding,
+    GameStep,
+)
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Event, Store
@@ -54,6 +60,8 @@ class Game:
     """How often a person could be asked in vain, in a visit and in the game; 0: not logged."""
     pauses: tuple[int, float] = (0, 0.0)
     """How often the robot waited for late data, and for how many s."""
+    away: frozenset[str] = frozenset()
+    """Who was not here, and did not come in the game, as far as staff said so."""
 
     @property
     def smooth(self) -> bool:
@@ -101,12 +109,16 @@ def read_games(store: Store) -> list[Game]:
     ended: dict[str, tuple[Event[EventRecord], GameEnding]] = {}
     faults: dict[str, list[bool]] = {}
     policies: dict[str, str] = {}
-    for event in store.events(GameBeginning, GameEnding, FaultDiagnosed, PolicyLearnt):
+    away: dict[str, frozenset[str]] = {}
+    for event in store.events(GameBeginning, GameEnding, FaultDiagnosed, PolicyLearnt, GameChange):
         match event.record:
             case PolicyLearnt(digest=digest, name=name):
                 policies[digest] = name
             case GameBeginning(game=game, policy=policy) as record:
                 begun[game] = _Begun(event, record, policies.get(policy, ""))
+                away[game] = frozenset(record.absent)
+            case GameChange(game=game, what="came", person=person):
+                away[game] = away.get(game, frozenset()) - {person}
             case GameEnding(game=game) as record:
                 ended[game] = event, record
             case FaultDiagnosed(game=game, evidence=evidence, criticality=criticality):
@@ -122,6 +134,7 @@ def read_games(store: Store) -> list[Game]:
             faults.get(id, []),
             steps.get(id, 0),
             worlds.get(id, SIMULATED),
+            away[id],
         )
         for number, (id, game) in enumerate(begun.items(), 1)
     ]
@@ -145,6 +158,7 @@ def _game(
     faults: Sequence[bool],
     steps: int,
     world: GameWorld,
+    away: frozenset[str],
 ) -> Game:
     event, begun, policy = game
     end, ending = ended or (None, None)
@@ -166,6 +180,7 @@ def _game(
         world=world,
         asks=(begun.asks_in_visit, begun.asks_in_game),
         pauses=(0, 0.0) if ending is None else (ending.pauses, ending.paused_seconds),
+        away=away,
     )
 
 

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
+from tangy_tui.app.game_commands import ComesIn, GoesAway
+from tangy_tui.app.scripted_staff import scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.attention import Attention, attention_in, calls_in
@@ -96,6 +98,23 @@ def test_the_way_to_somebody_is_no_time_with_them() -> None:
     replay = replay_of(state(FRONT), there, there, there, state(FRONT), target="ann")
     ann = attention_in(replay)["ann"]
     assert (ann.seconds, ann.helped) == (20.0, {"b": 2})
+
+
+def test_who_was_away_all_along_was_not_forgotten_by_anybody() -> None:
+    replay = replay_of(state(FRONT), state(FRONT, ["ann"]), state("ann", ["ann"]))
+    replay.game = game(away=frozenset(("ann", "bob")))
+    assert list(attention_in(replay)) == ["ann"], "she was there after all"
+
+
+def test_the_log_says_who_was_away_in_a_game(workspace: Workspace, learnt: Policy) -> None:
+    run = scripted_controller(workspace.supervision(learnt, 5))
+    run.apply(GoesAway("user1"))
+    run.apply(GoesAway("user2"))
+    run.begin()
+    run.apply(ComesIn("user1"))
+    run.apply(GoesAway("user3"))
+    (begun,) = read_games(workspace.store)
+    assert begun.away == {"user2"}
 
 
 def test_games_add_up() -> None:
