@@ -94,6 +94,10 @@ NAMES: Mapping[str, Named] = MappingProxyType(
     }
 )
 
+HELP_KEYS = "up down more   esc closes"
+DIGIT_SHOWN = "the digit it shows for yes"
+"""The key of the questions to come, where each has another."""
+
 _PLACE = re.compile(r"\{(\^?)([a-z_]+)\}")
 
 

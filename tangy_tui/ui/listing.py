@@ -45,16 +45,26 @@ def listed(screen: Screen[Any]) -> list[Listed]:
                 state = app._check_action_state(binding.action, node)
                 if state is False or not works(screen, binding.action):
                     continue
-                given = binding.key_display or (
-                    keymap.shown(id, typing=typing)
-                    if id in BY_ID and id not in SILENT
-                    else app.get_key_display(binding)
+                given = (
+                    binding.key_display
+                    or _of_question(node, key)
+                    or (
+                        keymap.shown(id, typing=typing)
+                        if id in BY_ID and id not in SILENT
+                        else app.get_key_display(binding)
+                    )
                 )
                 word = "" if id in SILENT or id not in BY_ID else BY_ID[id].word
                 found[id or key, binding.description] = Listed(
                     binding.description, given, word, binding.action, node, node is app
                 )
     return list(found.values())
+
+
+def _of_question(node: DOMNode, key: str) -> str:
+    """Give the key that says yes to a question, which may be a digit; "" for any other key."""
+    yes: str = getattr(node, "yes_key", "")
+    return yes if key == "y" else ""
 
 
 def _nodes(screen: Screen[Any]) -> Iterator[DOMNode]:

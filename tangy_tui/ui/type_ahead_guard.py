@@ -43,6 +43,12 @@ def yes_key_of(app: object) -> str:
     return "y" if trip is None else trip.yes
 
 
+def draws_digit(app: object) -> bool:
+    """Say whether the yes of a question that begins now would be a digit."""
+    trip = round_trip_of(app)
+    return trip is not None and trip.needs_digit
+
+
 class FreshKeys:
     """Says of each key whether it was typed after its dialog was seen."""
 

@@ -173,6 +173,9 @@ async def test_question_mark_is_help_in_an_empty_bar_only(run: Run) -> None:
         await pilot.pause()
         assert len(pilot.app.screen_stack) == 2
         assert "arrow completes" in pilot.text()
+        await pilot.press("enter")
+        await pilot.pause()
+        assert len(pilot.app.screen_stack) == 2, "typed as a command, with Enter, it stays"
         await pilot.press("escape")
         await pilot.pause()
         await pilot.press("a", "question_mark")

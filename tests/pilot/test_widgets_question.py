@@ -16,6 +16,8 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.question import Answer, QuestionDialog
 from tangy_tui.ui.round_trip import READING_SECONDS, RoundTrip
+from tangy_tui.ui.screens import teach_keys
+from tangy_tui.ui.screens.help import help_for
 from tangy_tui.ui.widgets.command_bar import CommandBar
 
 if TYPE_CHECKING:
@@ -298,6 +300,28 @@ async def test_a_confirmation_takes_the_same_digit(run: Run) -> None:
         await pilot.press("y", found[1])
         await pilot.pause()
         assert answers == [True]
+
+
+async def test_help_over_a_question_names_the_digit_that_says_yes(run: Run) -> None:
+    for dialog in (QuestionDialog("call number"), ConfirmDialog("Forget User 2?")):
+        async with run() as pilot:
+            FakeTerminal(pilot, TerminalSession(), setting="digit")
+            await pilot.app.push_screen(dialog)
+            told = help_for(dialog)
+            yes = dialog.yes_key
+            assert yes in "456789"
+            assert f"Press {yes} " in told.paragraphs[0]
+            assert yes in [key for key, _ in told.here]
+            assert "y" not in [key for key, _ in told.here]
+
+
+async def test_help_elsewhere_names_y_only_where_questions_take_it(run: Run) -> None:
+    for setting, told in (("y", "press y and"), ("digit", "the digit it shows")):
+        screen = Asking()
+        screen.HELP = teach_keys.HELP  # type: ignore[misc]
+        async with run(screen) as pilot:
+            FakeTerminal(pilot, TerminalSession(), setting=setting)
+            assert told in help_for(screen).paragraphs[0]
 
 
 async def test_confirm_takes_y_and_n_only(run: Run) -> None:

@@ -24,7 +24,7 @@ class ConfirmDialog(Dialog[bool]):
         Binding("y", "nothing", "Yes"),
         Binding("n", "nothing", "No"),
     ]
-    HELP = "Press y for yes, n or esc for no."
+    HELP = "Press {yes} for yes, n or esc for no."
 
     def __init__(
         self,
@@ -41,16 +41,16 @@ class ConfirmDialog(Dialog[bool]):
         self._words = (clean(yes), clean(no))
         self._clock = clock
         self._keys = FreshKeys()
-        self._yes_key = "y"
+        self.yes_key = "y"
 
     def compose(self) -> ComposeResult:
         """Lay out question, detail and keys."""
         parts: list[str | tuple[str, str] | Content] = [(self._question, "bold")]
         if self._detail:
             parts += ["\n\n", with_keys(self._detail, keymap_of(self.app))]
-        self._yes_key = yes_key_of(self.app)
+        self.yes_key = yes_key_of(self.app)
         yes, no = self._words
-        for key, colour, words in ((self._yes_key.upper(), "$warning", yes), ("N", "$success", no)):
+        for key, colour, words in ((self.yes_key.upper(), "$warning", yes), ("N", "$success", no)):
             parts += ["\n" if key == "N" else "\n\n", (key, f"{colour} bold"), f"  {words}"]
         yield Static(Content.assemble(*parts), id="confirm", classes="box")
 
@@ -62,7 +62,7 @@ class ConfirmDialog(Dialog[bool]):
         """Answer by its yes, n or esc."""
         if not self._keys.take(event):
             return
-        if event.key.lower() == self._yes_key:
+        if event.key.lower() == self.yes_key:
             self.answer(True)
         elif event.key.lower() in ("n", "escape"):
             self.answer(False)

@@ -100,7 +100,7 @@ class VerifyingDialog(Dialog[Answer]):
         self._told: tuple[str, str] | None = None  # a sentence and its colour
         self._clock = clock
         self._keys = FreshKeys()
-        self._yes_key = "y"
+        self.yes_key = "y"
 
     @property
     def painted(self) -> bool:
@@ -109,7 +109,7 @@ class VerifyingDialog(Dialog[Answer]):
 
     def compose(self) -> ComposeResult:
         """Lay out question, keys, and what it rests on."""
-        self._yes_key = yes_key_of(self.app)
+        self.yes_key = yes_key_of(self.app)
         yield Static(self._content(), id=self.ID, classes="box")
 
     def on_mount(self) -> None:
@@ -120,12 +120,12 @@ class VerifyingDialog(Dialog[Answer]):
         """Answer by its yes, n, esc or a number, if the question was seen by then."""
         key = event.key.lower()
         if not self._keys.take(event):
-            if key in (self._yes_key, "y", "n", "escape", *self._numbers):
+            if key in (self.yes_key, "y", "n", "escape", *self._numbers):
                 self.tell(TOO_EARLY, "$warning")
-        elif key == self._yes_key:
+        elif key == self.yes_key:
             self._yes()
         elif key == "y":
-            self.tell(yes_words(self._yes_key), "$warning")
+            self.tell(yes_words(self.yes_key), "$warning")
         elif key in ("n", "escape"):
             self.answer(NO)
         elif key in self._numbers:
@@ -223,7 +223,7 @@ class QuestionDialog(VerifyingDialog):
     ]
     HELP = (
         "Tangy never moves on a guess: it names the behaviour that it understood and waits. "
-        "Press y to have it done, n or esc to give the command again, or the number of another "
+        "Press {yes} to have it done, n or esc to give the command again, or the number of another "
         "behaviour, which is asked about again."
     )
 
@@ -268,7 +268,7 @@ class QuestionDialog(VerifyingDialog):
             "?",
             *self._grounds(),
             "\n",
-            (self._yes_key.upper(), "$success bold"),
+            (self.yes_key.upper(), "$success bold"),
             " yes, do it   ",
             ("N", "$error bold"),
             " no, let me change it",

@@ -14,10 +14,11 @@ from textual.content import Content
 from textual.screen import Screen
 from textual.widgets import Static
 
-from tangy_tui.text.keys import with_keys
+from tangy_tui.text.keys import DIGIT_SHOWN, HELP_KEYS, with_keys
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.listing import listed
+from tangy_tui.ui.type_ahead_guard import draws_digit
 
 KEY = "$accent bold"
 
@@ -40,8 +41,9 @@ def help_for(screen: Screen[Any]) -> Help:
     focused = screen.focused
     nodes: Iterable[Any] = (screen,) if focused is None else (screen, focused)
     keymap, typing = keymap_of(screen.app), bool(screen.query("#command-input"))
+    yes = _yes(screen)
     paragraphs = [
-        with_keys(text, keymap, typing=typing)
+        with_keys(text.replace("{yes}", yes), keymap, typing=typing)
         for node in nodes
         if (text := getattr(node, "HELP", ""))
     ]
@@ -56,6 +58,12 @@ def help_for(screen: Screen[Any]) -> Help:
     return Help(title, tuple(paragraphs), _pairs(here), _pairs(everywhere))
 
 
+def _yes(screen: Screen[Any]) -> str:
+    """Give the key that says yes: a question's own, or elsewhere that of the questions to come."""
+    own: str = getattr(screen, "yes_key", "")
+    return own or (DIGIT_SHOWN if draws_digit(screen.app) else "y")
+
+
 def _has_phrases(screen: Screen[Any]) -> bool:
     """Say whether there is a page of what can be said on a screen."""
     return bool(screen.query("#command-input")) and hasattr(screen.app, "action_phrases")
@@ -66,7 +74,10 @@ def _pairs(keys: dict[str, str]) -> Keys:
 
 
 class HelpScreen(Dialog[None]):
-    """The help over a screen; any of esc, q, ? and Enter closes it."""
+    """The help over a screen; any of esc, q and ? closes it.
+
+    Enter does not: after "?", typed as a command with Enter, the help would be gone at once.
+    """
 
     DEFAULT_CSS = """
     HelpScreen { background: transparent; }
@@ -74,7 +85,7 @@ class HelpScreen(Dialog[None]):
     HelpScreen Static { width: 100%; height: auto; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,q,enter,question_mark,f1", "close", "Close", show=False),
+        Binding("escape,q,question_mark,f1", "close", "Close", show=False),
         *bind("phrases", show=False),
     ]
 
@@ -86,7 +97,7 @@ class HelpScreen(Dialog[None]):
         """Lay out paragraphs and keys."""
         box = VerticalScroll(Static(self._content()), id="help", classes="box")
         box.border_title = Content(f"Help: {self._help.title}")
-        box.border_subtitle = "esc closes"
+        box.border_subtitle = HELP_KEYS
         yield box
 
     def on_mount(self) -> None:

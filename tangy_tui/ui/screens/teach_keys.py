@@ -23,7 +23,7 @@ WATCHING = (("up down", "a step"), "why", "shown", "back:leave", "help")
 
 HELP = (
     "You are the teacher. Look at the room, decide what Tangy should do, and type it. Tangy "
-    "asks whether it understood; press y and it is done. People press a button when they "
+    "asks whether it understood; press {yes} and it is done. People press a button when they "
     "want help (?1, ?2, ... is whose turn it is): go to them, and the line Now says what "
     "Tangy sees there. Letters always go to the command line. Leave whenever you like: what you "
     "confirmed is kept. What keys do can be typed, too, in the words beside them; and: "
