@@ -152,9 +152,7 @@ class SetUp:
         assert self.world is not None  # noqa: S101 - `checks` asks with a world alone
         if self.world.link.silent:
             return Check("robot", "not ready", self.world.link.silent)
-        ill = [
-            r.device for r in self.world.health() if r.state != OK and r.device != "localisation"
-        ]
+        ill = [r.device for r in self.world.health() if r.state != OK and r.device not in APART]
         return Check("robot", "not ready" if ill else "ready", ", ".join(ill))
 
     def _battery(self) -> Check:

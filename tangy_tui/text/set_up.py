@@ -17,6 +17,7 @@ NO_SOUND = "Tangy could not speak. Look at its loudspeaker."
 SWITCH_FIRST = "Press Enter on the line Robot first: Tangy is still off."
 SEATED = "Tangy is on, so the seats stay as they are. Leave with esc to change them."
 SAID = "Tangy has spoken. Press Enter if you heard it."
+STOPPED = "Tangy was stopped. Begin the game when all is well."
 BEGIN_ANYWAY = "Begin although not everything is ready?"
 BEGIN_DETAIL = "Tangy starts to move and to speak."
 

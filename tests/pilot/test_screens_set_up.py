@@ -7,8 +7,9 @@ from typing import Any
 import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.game_rules import GamePlan
-from tangy_profiles.health import STALE
+from tangy_profiles.health import OK, STALE
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -87,6 +88,31 @@ async def test_what_is_not_ready_is_said_before_the_game_begins(run: Run, settin
         assert setting.begins == []
         await pilot.press("escape")
         await until_shown(pilot, lambda: setting.begins == [False])
+
+
+def test_a_tablet_that_is_not_there_is_no_fault_of_the_robot(setting: Setting) -> None:
+    setting.link.ail("screen", STALE)
+    setting.setup.world = live_world(setting.workspace, setting.link)
+    robot, *_ = setting.setup.checks()
+    assert (robot.name, robot.state) == ("robot", "ready")
+
+
+async def test_a_stop_while_devices_get_ready_calls_the_game_off(
+    run: Run, setting: Setting
+) -> None:
+    setting.link.ail("voice", STALE)
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        await pilot.press("B")
+        await until_shown(pilot, lambda: setting.setup.world is not None)
+        await pilot.press("ctrl+x")
+        await until_shown(pilot, lambda: setting.link.held_by == {STAFF})
+        setting.link.ail("voice", OK)
+        await until_shown(pilot, lambda: all(one.is_finished for one in pilot.app.workers
+                                             if one.name == "begin"))  # fmt: skip
+        assert setting.begins == [] and isinstance(pilot.app.screen, SetUpScreen)
+        await pilot.press("B")
+        await until_shown(pilot, lambda: setting.begins == [True])
 
 
 async def test_sound_is_ready_once_it_was_heard(run: Run, setting: Setting) -> None:

@@ -11,12 +11,15 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import CHECKS, SetUp
 from tangy_tui.text import set_up as text
+from tangy_tui.text.program import NOTHING_MOVES
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.tablet import TabletDialog
 from tangy_tui.ui.keys import bind
+from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.widgets.set_up_list import SetUpLine, SetUpList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
@@ -58,7 +61,7 @@ class SetUpScreen(TangyScreen[bool]):
         super().__init__()
         self.setup = setup
         self._switch_on = switch_on
-        self._busy = False
+        self._busy = self._stopped = False
 
     def compose(self) -> ComposeResult:
         """Lay out the page."""
@@ -78,6 +81,16 @@ class SetUpScreen(TangyScreen[bool]):
         self.query_one(SetUpList).focus()
         self._show()
         self.set_interval(LOOK_SECONDS, self._show)
+
+    def on_stop(self, message: Stop) -> None:
+        """Begin no game, and stop the robot if it is on; only the key to begin lets it go on."""
+        if self.setup.world is not None:
+            self.setup.world.link.stop(STOPPED)  # before anything is drawn
+        elif not self._busy:
+            self.notify(NOTHING_MOVES, markup=False)
+            return
+        self._stopped = True
+        self.notify(text.STOPPED, severity="warning", markup=False)
 
     # ------------------------------------------------------------------------------- the lines
 
@@ -200,6 +213,8 @@ class SetUpScreen(TangyScreen[bool]):
                 setup.world = await self._switch_on()
         elif setup.world is None:
             self.notify(text.SWITCH_FIRST, markup=False)
+        elif self._stopped:
+            self.notify(text.STOPPED, markup=False)
         elif name == "tablet" and setup.world.link.tablet_page:
             self.app.push_screen(TabletDialog(setup.world.link.screen, setup.world.link.code))
         elif name == "cards":
@@ -218,18 +233,23 @@ class SetUpScreen(TangyScreen[bool]):
             self.run_worker(self._begin(), name="begin", group="check")
 
     async def _begin(self) -> None:
+        self._stopped = False
         if self.setup.world is None:
             await self._check(CHECKS[0])
             until = monotonic() + SETTLES_SECONDS
-            while self.setup.not_ready and monotonic() < until:  # noqa: ASYNC110 - it is looked at
+            while self._waits(until):  # noqa: ASYNC110 - it is looked at
                 await asyncio.sleep(LOOK_SECONDS)
-        if self.setup.world is None:
+        if self.setup.world is None or self._stopped:
             return
         not_ready = [text.not_ready_words(check) for check in self.setup.not_ready]
         detail = " ".join([*not_ready, text.BEGIN_DETAIL])
         dialog = ConfirmDialog(text.BEGIN_ANYWAY, detail, yes="begin", no="wait")
         if not not_ready or await self.app.push_screen_wait(dialog):
             self.dismiss(True)
+
+    def _waits(self, until: float) -> bool:
+        """Say whether devices are given time to be ready, until a time in s at most."""
+        return not self._stopped and bool(self.setup.not_ready) and monotonic() < until
 
     def action_leave(self) -> None:
         """Go back; the robot is switched off again."""
