@@ -16,6 +16,7 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.game_records import StaffAction
 from tangy_profiles.health import OK, Reading
 from tangy_tui.app.game_commands import GoOn
+from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import StopCommand
@@ -27,7 +28,7 @@ from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 from tests.hw.links import LaidCard
-from tests.pilot.conftest import screen_text
+from tests.pilot.conftest import SMALL, screen_text
 from tests.pilot.ears import FakeEars
 from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
 from tests.support.waiting import until_shown
@@ -167,6 +168,19 @@ async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
         link.free = True
         await pilot.press("p", "y")
         await until_shown(pilot, lambda: link.told[-1] == "release")
+
+
+async def test_who_stops_the_robot_from_another_console_is_seen_on_a_small_screen(
+    run: Run, program: Program, workspace: Workspace
+) -> None:
+    async with run(app=program, size=SMALL, notifications=True) as pilot:
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
+        workspace.door.open()
+        guest = Guest(workspace.store.folder)
+        assert guest.look()
+        guest.stop("Bea")
+        await until_shown(pilot, lambda: "Bea stopped the robot" in screen_text(pilot.app))
+        guest.close()
 
 
 async def test_each_stop_is_logged_once_and_told_once(

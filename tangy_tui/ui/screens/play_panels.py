@@ -267,7 +267,7 @@ class PlayPanels(TangyScreen[Tally]):
                 self.app.clear_notifications()
                 self.notify(
                     sentence,
-                    severity="warning" if kind == "warn" else "information",
+                    severity="warning" if kind in ("warn", "bad") else "information",
                     markup=False,
                 )
 

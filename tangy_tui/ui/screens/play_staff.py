@@ -69,8 +69,8 @@ class PlayStaff(PlayPanels):
         loop = asyncio.get_running_loop()
 
         def stopped(guest: str) -> None:
-            self._write(stopped_by_guest(guest), "bad")
             self._show_stopped()
+            self._tell_now(stopped_by_guest(guest), "bad")
 
         self._workspace.door.attach(
             self.control, lambda who: loop.call_soon_threadsafe(stopped, who)
