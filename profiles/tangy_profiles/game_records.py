@@ -38,12 +38,15 @@ class GameBeginning(EventRecord):
     visits: Sparse[bool] = False
     strength: Sparse[str] = ""
     absent: Sparse[tuple[str, ...]] = ()
+    pace: Sparse[float] = 0.0
     """What staff chose for it, as `GamePlan` has it; empty where nothing was chosen."""
 
     @property
     def plan(self) -> GamePlan:
         """What staff chose for it."""
-        return GamePlan(self.patterns, self.several, self.visits, self.strength, self.absent)
+        return GamePlan(
+            self.patterns, self.several, self.visits, self.strength, self.absent, self.pace
+        )
 
 
 @kind("game world set")
@@ -90,6 +93,7 @@ ChangeKind = Literal[
     "one winner",
     "visits on",
     "visits off",
+    "pace",
 ]
 """What can change in a game beside its behaviours."""
 
@@ -101,7 +105,8 @@ class GameChange(EventRecord):
     A call (`number`) was taken back; staff chose the `patterns` that follow; a winner (`person`)
     waits until others were seen to, the game is played on for the next pattern, or is won;
     a card was found to win, `person` left the game or came to it, or gets a visit unasked;
-    staff let everybody win who has it at the same call, or one; or let people be visited, or not.
+    staff let everybody win who has it at the same call, or one; let people be visited, or not; or
+    chose another pace (`seconds` from one call to the next).
     """
 
     game: str
@@ -110,6 +115,7 @@ class GameChange(EventRecord):
     person: Sparse[str] = ""
     number: Sparse[Count] = 0
     patterns: Sparse[tuple[str, ...]] = ()
+    seconds: Sparse[float] = 0.0
     by: Sparse[str] = ""
 
 

@@ -93,6 +93,8 @@ class GamePlan:
     strength: str = ""
     absent: tuple[str, ...] = ()
     """Who takes part and has not come yet."""
+    pace: float = 0.0
+    """From one call to the next, in s; 0: as it is."""
 
 
 @dataclass

@@ -51,6 +51,8 @@ class PlannedGame:
         """
         Patterns.of(self.activity.rules, self.activity.deck, plan.patterns)
         self.game_plan = plan
+        if plan.pace:
+            self.set_pace(plan.pace)
 
     def _begin_plan(self) -> None:
         """Begin a game by the plan."""
@@ -73,6 +75,7 @@ class PlannedGame:
     def set_pace(self, seconds: float) -> None:
         """Let so many s pass from one call to the next."""
         self.pace = seconds
+        self.game_plan = replace(self.game_plan, pace=seconds)
 
     # ---------------------------------------------------------------- what a game shows of it
 
@@ -175,6 +178,8 @@ class PlannedGame:
                 self.game_plan = replace(self.game_plan, several=change.what == "several winners")
             case "visits on" | "visits off":
                 self.game_plan = replace(self.game_plan, visits=change.what == "visits on")
+            case "pace":
+                self.set_pace(change.seconds)
 
     def _plan_without(self, away: frozenset[str]) -> None:
         """Play the next game without those who are not here."""

@@ -83,7 +83,10 @@ class GamePlanControls:
 
     def _pace(self, world: PlannedGame, seconds: float) -> StaffNote:
         pace = min(LONGEST_PACE, max(SHORTEST_PACE, seconds))
-        world.set_pace(pace)
+        if self._idle:
+            world.set_pace(pace)
+        else:
+            self._supervision.game.change("pace", seconds=pace, by=self._by)
         self._note(f"staff set the pace: {pace:g} s")
         return StaffNote("pace", f"{pace:g}")
 

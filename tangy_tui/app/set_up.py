@@ -124,6 +124,7 @@ class SetUp:
             self.visits,
             self.strength,
             tuple(sorted(self.away)),
+            self.pace,
         )
 
     def carry_out(self, world: LiveWorld) -> None:
@@ -133,7 +134,6 @@ class SetUp:
             TangyError: a pattern is not known.
         """
         world.choose(self.plan)
-        world.set_pace(self.pace)
 
     # ------------------------------------------------------------------------------ the checks
 

@@ -38,6 +38,7 @@ class GameChanges:
             "visits": plan.visits,
             "strength": plan.strength,
             "absent": plan.absent,
+            "pace": plan.pace,
         }
 
     @property

@@ -53,6 +53,8 @@ def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
             return "Tangy also visits people who do not ask."
         case "visits off":
             return "Tangy visits only people who ask."
+        case "pace":
+            return "Tangy calls at another pace."
         case forgotten:
             assert_never(forgotten)
 

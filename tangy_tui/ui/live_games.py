@@ -78,6 +78,8 @@ async def play_live(
 
         if set_up:
             setup.carry_out(world)
+        elif past is None:
+            world.set_pace(pace)
         supervision = workspace.supervision(policy, seed, asks=True, world=world)
         screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher, past=past)
         screen.minutes = setup.minutes

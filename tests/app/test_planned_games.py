@@ -213,9 +213,10 @@ def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, 
     assert planned.do(LetWin(visits=True)) == ["visits"]
     planned.do(GoesAway("user2"))
     planned.do(ComesIn("user3"))
+    assert planned.do(SetPace(12)) == ["pace"]
     planned.play(calls=calls + 2)
     chosen = planned.world.game_plan
-    assert chosen == GamePlan(several=True, visits=True, absent=("user2",))
+    assert chosen == GamePlan(several=True, visits=True, absent=("user2",), pace=12)
     planned.workspace.close()
 
     again = Planned(taught)
@@ -224,6 +225,7 @@ def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, 
     again.control = scripted_controller(again.supervision, past)
     again.control.begin()
     assert again.world.game_plan == chosen and again.world.away == {"user2"}
+    assert again.world.pace == 12
     followed = list[GameChange]()  # as a live game does
     past.follow(Tracker(again.workspace.activity, again.world.people), followed.append)
     assert tuple(followed) == past.changes

@@ -62,7 +62,7 @@ async def test_people_patterns_and_seats_are_chosen_by_keys_and_nothing_moves(
         setup = setting.setup
         assert setup.away == {"user1"} and setup.seats == ["user1", "user3", "user2", "user4"]
         assert list(setting.workspace.names) == setup.seats
-        assert setup.plan == GamePlan(("line", "full card"), absent=("user1",))
+        assert setup.plan == GamePlan(("line", "full card"), absent=("user1",), pace=setup.pace)
         await pilot.press("1")
         assert setup.patterns == ["full card"] and setting.link.done == []
 

@@ -54,7 +54,7 @@ class LivePlan(PlannedGame):
     def set_pace(self, seconds: float) -> None:
         """Let so many s pass from one call to the next, also until the call that is due."""
         self._due += seconds - self.pace
-        self.pace = seconds
+        super().set_pace(seconds)
 
     def change(self, change: GameChange) -> None:
         """Let something change in the game; whose request is over by it is left at that."""
