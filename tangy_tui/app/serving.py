@@ -10,7 +10,7 @@ import hmac
 import secrets
 import shlex
 import sys
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.errors import TangyError
@@ -22,6 +22,7 @@ LOOPBACK = "127.0.0.1"
 COOKIE = "tangy_token"
 TOKEN = "token"  # noqa: S105 - what it is called in the address
 TOKEN_BYTES = 16
+HTTP = 80  # the port that browsers do not say
 RUN = "from tangy_tui.cli import main; main()"
 EVERYWHERE = ("0.0.0.0", "::", "")  # noqa: S104 - they are refused
 """Where a server would listen at all addresses: no browser can be sent there."""
@@ -48,7 +49,13 @@ def address(host: str, port: int, token: str) -> str:
     return f"http://{name}:{port}/?{TOKEN}={token}"
 
 
-def make_server(command: str, host: str, port: int, token: str, names: Sequence[str] = ()) -> Any:
+def known_as(host: str, port: int) -> set[str]:
+    """Return by which names a browser that was sent to a host and a port asks for this machine."""
+    name = f"[{host}]" if ":" in host else host
+    return {name if port == HTTP else f"{name}:{port}"}
+
+
+def make_server(command: str, host: str, port: int, token: str) -> Any:
     """Make the server; `serve()` runs it until it is interrupted.
 
     Args:
@@ -56,7 +63,6 @@ def make_server(command: str, host: str, port: int, token: str, names: Sequence[
         host: where it listens.
         port: where it listens.
         token: what whoever comes in has to know.
-        names: by which browsers may call this machine, beside the host itself.
 
     Raises:
         NoServer: textual-serve is not installed.
@@ -66,7 +72,8 @@ def make_server(command: str, host: str, port: int, token: str, names: Sequence[
     except ImportError as missing:
         raise NoServer(str(missing.name)) from None
 
-    allowed = {f"{name}:{port}" for name in (host, "localhost", LOOPBACK, *names)}
+    allowed = known_as(host, port)
+    (name,) = allowed
 
     class TokenServer(Server):  # type: ignore[misc,unused-ignore]
         """Lets in only those who know the token."""
@@ -83,7 +90,7 @@ def make_server(command: str, host: str, port: int, token: str, names: Sequence[
         def initialize_logging(self) -> None:
             """Leave the program's own log as it is."""
 
-    return TokenServer(command, host=host, port=port, title="Tangy")
+    return TokenServer(command, host=host, port=port, title="Tangy", public_url=f"http://{name}")
 
 
 async def _keep_to_itself(request: web.Request, response: web.StreamResponse) -> None:

@@ -10,7 +10,7 @@ import pytest
 from aiohttp import web
 from aiohttp.test_utils import TestClient, TestServer
 
-from tangy_tui.app.serving import COOKIE, TOKEN, address, new_token, only_known
+from tangy_tui.app.serving import COOKIE, TOKEN, address, known_as, new_token, only_known
 
 Tangy = Callable[..., CompletedProcess[str]]
 
@@ -63,3 +63,16 @@ async def test_the_token_is_kept_out_of_the_address_once_it_was_given() -> None:
         assert (got.status, got.headers["Location"]) == (303, "/")
         kept = got.cookies[COOKIE]
         assert (kept.value, kept["httponly"], kept["samesite"]) == (token, True, "Strict")
+
+
+@pytest.mark.parametrize(
+    ("host", "port", "sent"),
+    [
+        ("192.168.1.20", 8770, "192.168.1.20:8770"),
+        ("192.168.1.20", 80, "192.168.1.20"),
+        ("::1", 8770, "[::1]:8770"),
+    ],
+)
+def test_a_browser_is_let_in_by_the_name_that_it_sends(host: str, port: int, sent: str) -> None:
+    assert known_as(host, port) == {sent}
+    assert address(host, port, "t").startswith(f"http://{sent}")
