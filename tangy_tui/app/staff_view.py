@@ -14,6 +14,7 @@ from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.state import FRONT, ActivityState
 
 if TYPE_CHECKING:
+    from tangy_profiles.past_game import PastGame
     from tangy_profiles.scene import Scene
     from tangy_tui.learning.policy import Decision, Policy
 
@@ -57,6 +58,16 @@ class StaffWatch:
         self._began = now
         self._asks: dict[str, float] = {}
         self._visited: dict[str, float] = {}
+
+    def resume(self, now: float, past: PastGame) -> None:
+        """Go on with a game at a time in s, by how long its steps took and whom they were for."""
+        ends, played = dict[str, float](), 0.0
+        for step in past.steps:
+            played += step.seconds or 0.0
+            if step.target in past.beginning.people and step.completed:
+                ends[step.target] = played
+        self.begin(now - played)
+        self._visited = {person: self._began + end for person, end in ends.items()}
 
     def look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
         """Take a look at a time in s, and return what there is to see."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
@@ -12,6 +13,7 @@ from tangy_profiles.cards import winning_state
 from tangy_profiles.game_records import GameChange, GameStep
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import interrupted_game
+from tangy_profiles.state import FRONT
 from tangy_profiles.tracker import Tracker
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.app.game_commands import (
@@ -28,6 +30,7 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameChanged, GameEnded
 from tangy_tui.learning.policies import load_policy
@@ -230,6 +233,24 @@ def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, 
     past.follow(Tracker(again.workspace.activity, again.world.people), followed.append)
     assert tuple(followed) == past.changes
     again.workspace.close()
+
+
+def test_staff_see_the_time_and_the_visits_from_before_an_interruption(taught: Path) -> None:
+    planned = Planned(taught)
+    planned.begin(GamePlan())
+    planned.play(calls=15)
+    acted = [event for event in planned.events if isinstance(event, Acted)]
+    visited = {a.action.target for a in acted if a.outcome.completed} & {*planned.world.people}
+    past = interrupted_game(planned.workspace.store, "bingo")
+    assert past is not None and visited
+    scene, people = planned.world.scene(), planned.world.people
+    watch, now = StaffWatch(), 5.0
+    watch.resume(now, past)
+    view = watch.look(replace(scene, place=FRONT), people, now, planned.world)
+    assert view.seconds == pytest.approx(sum(a.outcome.seconds for a in acted))
+    ago = {one.id: one.unvisited for one in view.people if one.unvisited is not None}
+    assert set(ago) == visited and all(0 <= one < view.seconds for one in ago.values())
+    planned.workspace.close()
 
 
 def test_where_nothing_is_chosen_nothing_changes_beside_the_behaviours(planned: Planned) -> None:

@@ -110,6 +110,7 @@ class LiveScreen(PlayScreen):
             past=past,
         )
         self.world = world
+        self._past = past
         self._faults.beside = self._attend_beside
         self.working = 0  # how many things are being done, or wait for their turn
         self._seen_doing = ""
@@ -314,8 +315,11 @@ class LiveScreen(PlayScreen):
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events, and who was seen where somebody else usually sits."""
         super()._tell(events, known)
-        if any(isinstance(event, GameBegun | ResumedGame) for event in events):
-            self._watch.begin(self.world.seconds)
+        for event in events:
+            if isinstance(event, GameBegun):
+                self._watch.begin(self.world.seconds)
+            elif isinstance(event, ResumedGame) and self._past is not None:
+                self._watch.resume(self.world.seconds, self._past)
         if events:
             self.show_staff()
         for seated in self._seats.news(events, self.world.sitting):
