@@ -71,8 +71,7 @@ Read = Callable[[], str | None]
 Write = Callable[[str], None]
 
 HELP = (
-    "Commands: a behaviour in words, or one of: undo, redo, again N, where, seen, why, help, next, "
-    "quit."
+    "Type what Tangy should do, or one of: undo, redo, again N, where, seen, why, help, next, quit."
 )
 MEANINGS = (
     ("undo", "take the last step back"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_tui.text.numbers import counted
@@ -22,6 +22,39 @@ UNSETTLED: Mapping[Unsettled, str] = {
     "which answer is right.",
     "otherwise": "A teacher said otherwise before: both are shown before Tangy learns again.",
 }
+
+
+EFFECTS: Mapping[tuple[str, str], str] = {
+    ("robot's place", "front"): "Tangy is at the front",
+    ("robot's place", "with a person"): "Tangy is with a person",
+    ("robot's place", "with the person who asked"): "Tangy is with the person who asked",
+    ("robot's place", "with somebody else"): "Tangy is with somebody else",
+    ("activity", "begun"): "the activity has begun",
+    ("activity", "not begun"): "the activity has not begun",
+    ("end", "reached"): "the activity is over",
+    ("end", "not reached"): "the activity goes on",
+    ("stage", "left"): "it is no longer due",
+    ("stage", "not left"): "it is still due",
+    ("request", "closed"): "the request is closed",
+    ("request", "open"): "the request stays open",
+    ("request", "open with nothing left"): "the request stays open with nothing left to do",
+    ("request", "as the card asks"): "the request is closed once all is right",
+    ("what was asked about", "settled"): "what Tangy asked for is done",
+    ("what was asked about", "unchanged"): "what Tangy asked for is not done",
+    ("card", "kept in view"): "the card stays in view",
+    ("card", "lost from view"): "the card goes out of view",
+    ("others' requests", "kept"): "nobody else's request is lost",
+    ("others' requests", "fewer"): "somebody else's request is lost",
+}
+"""What was seen after a behaviour, by variable and value."""
+
+
+def effects_words(variables: Mapping[str, Iterable[str]]) -> str:
+    """Say what was seen after a behaviour; several values of a variable are joined by "or"."""
+    return "; ".join(
+        " or ".join(EFFECTS.get((variable, value), f"{variable} {value}") for value in sorted(seen))
+        for variable, seen in variables.items()
+    )
 
 
 def replay_words(activity: Activity, replay: PolicyReplay) -> str:

@@ -11,6 +11,7 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import FRONT, ActivityState, Situation
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.effects import Effects, Mismatch, learn_effects, transition
+from tangy_tui.text.learnt import EFFECTS
 
 Demonstrate = Callable[[str, int, int], Demonstration]
 Seen = tuple[ActivityState, str, ActivityState]
@@ -67,6 +68,17 @@ def test_what_was_demonstrated_is_expected(
     for number in range(3):
         for step in demonstrate("bingo", 9000 + number, 4).steps:
             assert not effects.mismatches(step.behaviour, step.state, step.after, activity)
+
+
+def test_whatever_follows_a_behaviour_has_words_of_its_own(
+    activity: Activity, games: list[Seen]
+) -> None:
+    followed = {
+        value for before, _, after in games for value in transition(before, after, activity).items()
+    }
+    assert len(followed) > 10
+    assert followed <= set(EFFECTS)
+    assert len(set(EFFECTS.values())) == len(EFFECTS)
 
 
 @pytest.mark.parametrize("users", [1, 2, 8])

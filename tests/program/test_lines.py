@@ -51,7 +51,7 @@ def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(
     workspace: Workspace,
 ) -> None:
     said = told(workspace)
-    assert said[0].startswith("Teaching Bingo. Commands: ")
+    assert said[0].startswith("Teaching Bingo. Type what Tangy should do, ")
     assert said[1] == "A new demonstration by Ada (game 1)."
     assert said[2] == ("Now: Nobody has been welcomed yet: time to greet everyone.")
     assert len(said) == 3, "looking in leaves nothing to go on from"

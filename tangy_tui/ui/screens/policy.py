@@ -12,6 +12,7 @@ from tangy_profiles.activity import Activity
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.text.learnt import effects_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.closing import close
@@ -94,12 +95,12 @@ class PolicyScreen(TangyScreen[None]):
         table.focus()
         effects = self.query_one(LogView)
         for behaviour in activity.behaviours:
+            words = activity.behaviour_words(behaviour)
             variables = self._effects.values.get(behaviour)
             if variables is None:
-                effects.write(f"{behaviour}: never demonstrated", "warn")
+                effects.write(f"{words}: never demonstrated", "warn")
             else:
-                told = (f"{v} {' or '.join(sorted(seen))}" for v, seen in variables.items())
-                effects.write(f"{behaviour}: {'; '.join(told)}")
+                effects.write(f"{words}: {effects_words(variables)}")
 
     def action_why(self) -> None:
         """Tell why, for the chosen row (the first, where none is)."""
