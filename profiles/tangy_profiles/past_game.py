@@ -133,6 +133,17 @@ class PastGame:
                 raise NotResumable(OTHERWISE)
             self._change(change, self.beginning.game, number)
 
+    def visited(self, activity: Activity) -> dict[str, int]:
+        """Return after how many calls each person was visited last."""
+        draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        visited, calls = dict[str, int](), 0
+        for step in self.steps:
+            if step.behaviour in draws:
+                calls += len(step.numbers)
+            elif step.completed and step.target in self.beginning.people:
+                visited[step.target] = calls
+        return visited
+
     def called(self, activity: Activity) -> list[int]:
         """Return the numbers that were called and count, in their order."""
         draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}

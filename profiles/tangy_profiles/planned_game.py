@@ -108,6 +108,8 @@ class PlannedGame:
     def due(self) -> tuple[ChangeKind, str] | None:
         """Return what is to change before the next behaviour, and for whom; None: nothing is."""
         tracker = self.tracker
+        if tracker.place != FRONT:
+            self._visited[tracker.place] = len(self.called_now)
         if tracker.finished:
             winner = tracker.place if tracker.place in tracker.queue else tracker.queue[:1]
             person = winner if isinstance(winner, str) else "".join(winner)
@@ -121,8 +123,6 @@ class PlannedGame:
     def _visit_due(self) -> tuple[ChangeKind, str] | None:
         """Return whose visit is due or is put off, for it costs nobody a request."""
         queue, place, calls = self.tracker.queue, self.tracker.place, len(self.called_now)
-        if place != FRONT:
-            self._visited[place] = calls
         if self.visiting:
             if self.visiting in queue and place != self.visiting and len(queue) > 1:
                 return "visit put off", self.visiting

@@ -235,6 +235,26 @@ def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, 
     again.workspace.close()
 
 
+def test_visits_go_to_whom_nobody_has_visited_also_after_an_interruption(taught: Path) -> None:
+    planned = Planned(taught, users=8)
+    planned.begin(GamePlan(("full card",)))
+    planned.play(calls=15)
+    acted = [event for event in planned.events if isinstance(event, Acted)]
+    visited = {a.action.target for a in acted if a.outcome.completed} & {*planned.world.people}
+    planned.workspace.close()
+
+    again = Planned(taught, users=8)
+    past = interrupted_game(again.workspace.store, "bingo")
+    assert past is not None and "user1" in visited and len(visited) < 8
+    again.control = scripted_controller(again.supervision, past)
+    again.control.begin()
+    again.do(LetWin(visits=True))
+    again.play()
+    first = next(e for e in again.events if isinstance(e, GameChanged) and e.what == "visit")
+    assert first.person not in visited
+    again.workspace.close()
+
+
 def test_staff_see_the_time_and_the_visits_from_before_an_interruption(taught: Path) -> None:
     planned = Planned(taught)
     planned.begin(GamePlan())

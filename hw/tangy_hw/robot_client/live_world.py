@@ -121,6 +121,7 @@ class LiveWorld(LivePlan):
             self._begin()  # each game of the run has an order of its own
         past.follow(self.tracker, self.change)
         self.calls.resume(past, self.activity)
+        self._visited = past.visited(self.activity)
         self.over = False
         self.commands.settle()
         return self.observe()

@@ -92,7 +92,9 @@ class SimulatedWorld(PlannedGame):
 
     def resume(self, past: PastGame) -> ActivityState:
         """Go on where a game was interrupted, or raise NotResumable."""
-        return past.replay(self)
+        state = past.replay(self)
+        self._visited = past.visited(self.activity)
+        return state
 
     def observe(self) -> ActivityState:
         """Return the joint state as the robot's sensors have it now."""
