@@ -152,7 +152,7 @@ class GamePlanControls:
         else:
             for what in changes:
                 self._supervision.game.change(what, by=self._by)
-        self._note(f"staff chose: several winners {plan.several}, visits {plan.visits}")
+        self._note(f"staff chose: {', '.join(changes)}")
         return told
 
     def _moved(self, world: PlannedGame, person: str, *, here: bool) -> list[Result]:

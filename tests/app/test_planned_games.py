@@ -10,7 +10,7 @@ from typing import cast
 import pytest
 
 from tangy_profiles.cards import winning_state
-from tangy_profiles.game_records import GameChange, GameStep
+from tangy_profiles.game_records import GameChange, GameStep, StaffAction
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.state import FRONT
@@ -214,6 +214,8 @@ def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, 
     planned.play(calls=calls)
     assert planned.do(LetWin(several=True)) == ["several"]
     assert planned.do(LetWin(visits=True)) == ["visits"]
+    notes = [event.record.what for event in planned.workspace.store.events(StaffAction)]
+    assert notes[-1].endswith(": visits on") and not any("True" in note for note in notes)
     planned.do(GoesAway("user2"))
     planned.do(ComesIn("user3"))
     assert planned.do(SetPace(12)) == ["pace"]
