@@ -6,13 +6,12 @@ for once and then kept by the browser in a cookie that no other site's page is s
 
 from __future__ import annotations
 
-import asyncio
 import hmac
 import secrets
 import shlex
 import sys
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.errors import TangyError
 
@@ -78,24 +77,6 @@ def make_server(command: str, host: str, port: int, token: str) -> Any:
 
     class TokenServer(Server):  # type: ignore[misc,unused-ignore]
         """Lets in only those who know the token."""
-
-        pages: ClassVar[set[asyncio.Task[Any]]] = set()
-        """The pages that are open, each with a process."""
-
-        async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
-            """Serve a page, until its browser leaves it or the server ends."""
-            task = asyncio.current_task()
-            assert task is not None  # noqa: S101 - each request has one
-            self.pages.add(task)
-            try:
-                return await super().handle_websocket(request)
-            finally:
-                self.pages.discard(task)
-
-        async def on_shutdown(self, app: web.Application) -> None:
-            """Close the pages and end their processes: else the server waits for the browsers."""
-            for page in self.pages:
-                page.cancel()
 
         async def _make_app(self) -> web.Application:
             app = await super()._make_app()
