@@ -79,7 +79,7 @@ class CallAgain:
 
 @dataclass(frozen=True, slots=True)
 class TakeBackCall:
-    """Take the last call back: it counts as not called; only if it is still `label`, if given."""
+    """Take a call back, by its label, else the last one: it counts as not called."""
 
     label: str = ""
 

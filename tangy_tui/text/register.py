@@ -21,9 +21,3 @@ def back_words(name: str) -> str:
 def not_archived(person: str, known: str) -> str:
     """Say that nobody of that name was archived, and who was."""
     return f"Nobody called {person!r} was archived: {known or 'nobody was'}."
-
-
-NEW_NAME = "The name of the new person"
-GUEST = "Guest {}"
-ARCHIVE = "Shall {} take part no more?"
-ARCHIVE_DETAIL = "What Tangy knows stays. `tangy people bring-back` undoes it."
