@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from statistics import median
 
+from tangy_profiles.state import ActivityState
 from tangy_tui.monitoring.replay import Done, GameReplay, Noted
 
 
@@ -73,10 +74,12 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
     """
     found = {person: Attention(person) for person in replay.game.people}
     asked: dict[str, float] = {}
-    before: str = ""
+    before: ActivityState | None = None
     for done in replay.done:
-        _count_visit(found, done, before)
-        before = done.after.place
+        _count_visit(found, done, "" if before is None else before.place)
+        if before is not None:
+            _count_between(replay, asked, done, before)
+        before = done.after
         _count_requests(found, asked, done)
     for person, since in asked.items():
         found[person].open.append(max(0.0, replay.seconds - since))
@@ -107,6 +110,18 @@ def _count_visit(found: dict[str, Attention], done: Done, before: str) -> None:
     if came is not None:
         came.visits += done.after.place != before
         came.last_visit = done.over
+
+
+def _count_between(
+    replay: GameReplay, asked: dict[str, float], done: Done, before: ActivityState
+) -> None:
+    """Count who has begun to wait after one step and before the next, as people do live."""
+    waited = {user.id for user in before.users if user.request == "AR"}
+    for user in done.state.users:
+        waits = user.request == "AR" and done.state.place != user.id
+        sent = (done.number, user.id) in replay.unasked or user.id not in replay.game.people
+        if waits and not sent and user.id not in waited | asked.keys():
+            asked[user.id] = done.begun
 
 
 def _count_requests(found: dict[str, Attention], asked: dict[str, float], done: Done) -> None:

@@ -13,6 +13,7 @@ from tangy_profiles.game_records import (
     CallMade,
     FaultDiagnosed,
     FaultMove,
+    GameChange,
     GameEnding,
     GameResumed,
     GameStep,
@@ -26,7 +27,7 @@ from tangy_tui.monitoring.games import Game
 
 IN_GAMES = (
     *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
-    *(CallMade, GameResumed, GameEnding),
+    *(CallMade, GameResumed, GameChange, GameEnding),
 )
 
 
@@ -145,6 +146,8 @@ class GameReplay:
     faults: list[Fault] = field(default_factory=list)
     seconds: float = 0.0
     timed: bool = True
+    unasked: set[tuple[int, str]] = field(default_factory=set)
+    """Before which steps Tangy was sent to whom without being asked."""
 
     @property
     def done(self) -> list[Done]:
@@ -219,6 +222,9 @@ def _replay(
                 what = _answered(event, followed, took)
             case ResponseAwaited():
                 what = _answered(event, None, None)
+            case GameChange(what="visit" | "won" | "claimed", person=person):
+                replay.unasked.add((step + 1, person))
+                continue
             case GameResumed(by=by):
                 what = Noted(RESUMED, by)
             case StaffAction(what=words, by=by, taken_back=taken):

@@ -62,6 +62,16 @@ def replay_of(*states: ActivityState, behaviour: str = "b", target: str = "") ->
     return found
 
 
+def test_who_asks_between_two_steps_is_counted_though_tangy_is_there_after_the_second() -> None:
+    replay = replay_of(state(FRONT), state(FRONT), state("ann", ["ann"]))
+    asking = replace(replay.done[1], state=state(FRONT, ["ann"]))
+    moments = [replace(m, what=asking) if m.what is replay.done[1] else m for m in replay.moments]
+    ann = attention_in(replace(replay, moments=moments))["ann"]
+    assert (ann.requests, ann.waits, ann.visits) == (1, [LENGTH], 1)
+    unasked = attention_in(replace(replay, moments=moments, unasked={(2, "ann")}))["ann"]
+    assert (unasked.requests, unasked.visits) == (0, 1)
+
+
 def test_a_wait_ends_when_the_robot_is_there() -> None:
     replay = replay_of(
         state(FRONT), state(FRONT, ["ann"]), state(FRONT, ["ann"]), state("ann", ["ann"]),
