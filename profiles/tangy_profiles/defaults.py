@@ -20,5 +20,8 @@ QUESTIONS_ACTIVITY = _TOP.text("questions")
 
 _TOP.close()
 
+TO_BEGIN_WITH = 4
+"""People of a house that has not said who takes part."""
+
 REGISTERED = -1
 """As a count of people: as many as are registered, those of before and those who were added."""

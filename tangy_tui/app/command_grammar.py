@@ -340,6 +340,14 @@ def read_program(text: str) -> Perform | Inquiry | None:
     return Perform(action) if action is not None else read_inquiry(text)
 
 
+def read_screen(text: str) -> Perform | None:
+    """Return what words want a screen to do, as a key of it does."""
+    word = read_program(text)
+    if isinstance(word, str):
+        return Perform(word) if word in ("why", "help", "phrases") else None
+    return word
+
+
 SETTLING: dict[str, RemarkAnswer] = {
     "this": "this",
     "earlier": "earlier",

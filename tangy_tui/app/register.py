@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from tangy_profiles.defaults import REGISTERED
+from tangy_profiles.defaults import REGISTERED, TO_BEGIN_WITH
 from tangy_profiles.errors import TangyError
 from tangy_profiles.people_records import PersonAdded, PersonArchived
 from tangy_profiles.person import MOST_PEOPLE, Person, load_people
 from tangy_profiles.store import Store
-
-TO_BEGIN_WITH = 4
 
 
 def registered(store: Store) -> tuple[Person, ...]:

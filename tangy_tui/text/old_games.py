@@ -18,7 +18,8 @@ def question(games: int) -> str:
 
 def settled_words(games: int, world: str) -> str:
     """Say what the games count as from now on."""
-    return f"{counted(games, 'game')} now count{'s' if games == 1 else ''} as {world}. {LATER}"
+    counts = "counts" if games == 1 else "count"
+    return f"{counted(games, 'game')} now {counts} as {world}. {LATER}"
 
 
 def unknown_words(games: int) -> str:

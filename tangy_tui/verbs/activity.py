@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.asking_limits import GAME, VISIT
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
+from tangy_profiles.defaults import DEFAULT_ACTIVITY, TO_BEGIN_WITH
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.remarks import no_own_phrase
@@ -137,7 +137,7 @@ def activity_show(
 @app.command("try")
 def activity_try(
     activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
-    users: Users = REGISTERED,
+    users: Users = TO_BEGIN_WITH,
     seed: Seed = 1,
     as_json: Json = False,
 ) -> None:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import TO_BEGIN_WITH
 from tangy_profiles.errors import TangyError
-from tangy_tui.verbs.common import REGISTERED, Data, Json, Seed, Users, print_json
+from tangy_tui.verbs.common import Data, Json, Seed, Users, print_json
 
 if TYPE_CHECKING:
     from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
@@ -32,7 +33,7 @@ def requests(
     room: Annotated[str, typer.Option(help="A shipped room, or its TOML, for signs.")] = (
         "common-room"
     ),
-    users: Users = REGISTERED,
+    users: Users = TO_BEGIN_WITH,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

@@ -116,7 +116,8 @@ def test_a_claim_is_told_by_the_numbers_that_were_called(planned: Planned) -> No
     world = planned.world
     planned.do(ChoosePatterns(("line",)))
     card = world.players["user3"].numbers
-    world.order[: world._calls] = [*card[:5], *world.order[5 : world._calls]]
+    calls = len(world.scene().called)
+    world.order[:calls] = [*card[:5], *world.order[5:calls]]
     world.patterns.advance()
     assert planned.do(ClaimCard(3)) == ["claim right", "claimed"]
     planned.play()

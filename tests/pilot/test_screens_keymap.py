@@ -113,6 +113,7 @@ async def test_no_letter_changes_what_is_kept_whatever_has_the_keys(
 GAME_MOVES = {"p": "pause or go on", "full_stop": "one step"}
 """What a letter may do without asking: the simulated game goes on, or stands."""
 
+PACE = ("less_than_sign", "greater_than_sign")
 STAFF_SAYS = {"i": "autonomy", "c": "call again", "o": "take over"}
 """In a live game: what is noted of staff at once, and can be said otherwise the next moment."""
 
@@ -137,8 +138,9 @@ async def test_no_letter_changes_a_live_game_unasked(run: Run, taught: Workspace
         await paused_after(pilot, link, 3)
         screen = live(pilot)
         for letter in LETTERS:
-            if letter in STAFF_SAYS or letter in ("p", "d", "slash"):
-                # p goes on; in the dialog that d opens only arrows drive; / begins to filter
+            if letter in STAFF_SAYS or letter in ("p", "d", "slash", *PACE):
+                # p goes on; in the dialog that d opens only arrows drive; / begins to filter;
+                # what one key of the pace does the other takes back
                 continue
             before, told = kept(taught), list(link.told)
             pilot.type(letter)

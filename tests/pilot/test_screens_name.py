@@ -11,6 +11,7 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock
+from tests.support.waiting import until_shown
 
 
 def program(workspace: Workspace) -> Program:
@@ -24,8 +25,7 @@ async def test_the_name_is_asked_on_the_first_start_and_kept(
         await pilot.pause()
         assert isinstance(pilot.app.screen, NameDialog)
         await pilot.press("A", "d", "a", "enter")
-        await pilot.pause()
-        assert isinstance(pilot.app.screen, TeachScreen)
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, TeachScreen))
         assert read_profile(workspace.store.folder).name == "Ada"
 
 

@@ -103,7 +103,7 @@ async def test_skipping_plays_the_game_to_its_end(
             await pilot.pause(0.02)
         await pilot.pause()
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
-        assert screen.query_one(StatusLine).status.stage == "over"
+        assert screen.query_one(StatusLine).status.stage == "the game is over"
         assert workspace.store.last("game ended") is not None
         await pilot.press("g", "y")
         await pilot.pause()

@@ -247,7 +247,6 @@ async def test_a_guided_session_says_so(run: Run, workspace: Workspace) -> None:
         await mid_game(pilot, 12)
         status = screen_text(pilot.app).splitlines()[0]
         assert "guided" in status
-        assert "FACILITATE" in status
         assert "step 12" in status
         assert "game 27" in status
 

@@ -13,6 +13,7 @@ from textual.content import Content
 from textual.widgets import Input, Static
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.command_grammar import Perform
 from tangy_tui.app.game_commands import GameCommand
 from tangy_tui.text import typed_commands as text
 from tangy_tui.ui.base import Dialog
@@ -20,7 +21,7 @@ from tangy_tui.ui.base import Dialog
 LONGEST = 200  # characters
 
 
-class CommandDialog(Dialog[GameCommand | None]):
+class CommandDialog(Dialog[GameCommand | Perform | None]):
     """Takes a command; what is none is said, and stays in the line."""
 
     DEFAULT_CSS = """
@@ -31,7 +32,9 @@ class CommandDialog(Dialog[GameCommand | None]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Back", priority=True)]
     HELP = "Type what you want done, and press Enter. Esc goes back."
 
-    def __init__(self, read: Callable[[str], GameCommand | None], begun: str, example: str) -> None:
+    def __init__(
+        self, read: Callable[[str], GameCommand | Perform | None], begun: str, example: str
+    ) -> None:
         """Make the dialog.
 
         Args:

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Sequence
 from contextlib import suppress
 
-from tangy_tui.app.command_grammar import command_reader, read_command
+from tangy_tui.app.command_grammar import Perform, command_reader, read_command, read_screen
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.freeze_watch import LOOK_SECONDS, FreezeGuard
 from tangy_tui.app.game_commands import (
@@ -37,6 +37,7 @@ from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.command import CommandDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.game_voice import GameVoice
+from tangy_tui.ui.performing import perform
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, wanted
 
@@ -122,7 +123,10 @@ class PlayStaff(PlayPanels):
             self._do(command)
 
     def action_type(self, begun: str = "") -> None:
-        """Let staff type what they want done."""
+        """Let staff type what they want done: in the line of a question, where there is one."""
+        if not begun and self.query("#command-input"):
+            self.app.run_worker(self.run_action("app.command"))
+            return
         self.run_worker(self._type(begun), name="type", group="type", exclusive=True)
 
     def action_claim(self) -> None:
@@ -133,8 +137,13 @@ class PlayStaff(PlayPanels):
     async def _type(self, begun: str) -> None:
         activity = self._workspace.activity
         read = command_reader(activity, lambda who: self._workspace.find_person(who).id)
-        dialog = CommandDialog(read, begun, example_words(activity.rules))
+        dialog = CommandDialog(
+            lambda typed: read(typed) or read_screen(typed), begun, example_words(activity.rules)
+        )
         command = await self.app.push_screen_wait(dialog)
+        if isinstance(command, Perform):
+            await perform(self, command.action, command.on)
+            return
         if isinstance(command, StopRobot):
             await self.run_action("app.stop")
         elif isinstance(command, GoOn) and not self.control.going:

@@ -16,7 +16,7 @@ from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.answers import Spoken
-from tangy_tui.app.command_grammar import Perform, read_command, read_program
+from tangy_tui.app.command_grammar import Perform, read_command, read_screen
 from tangy_tui.app.game_commands import (
     TAKEN_OVER,
     Accept,
@@ -267,8 +267,8 @@ class AskingPanel(Vertical):
         """Put a typed answer to Tangy, or carry out a command."""
         event.stop()
         self._by_voice = False
-        word = read_program(event.text)
-        if isinstance(word, Perform) or word in ("why", "help", "phrases"):
+        word = read_screen(event.text)
+        if word is not None:
             self.query_one(CommandBar).ready()
             self._show(word)
             return
@@ -287,13 +287,12 @@ class AskingPanel(Vertical):
             self.query_one(CommandBar).ready()
             self._carry_out(command)
 
-    def _show(self, word: Perform | str) -> None:
+    def _show(self, word: Perform) -> None:
         """Show what was asked for, or do what a key does."""
-        if word == "why":
+        if word.action == "why":
             self.post_message(self.WhyWanted())
         else:
-            done = word if isinstance(word, Perform) else Perform(word)
-            self.app.run_worker(perform(self.screen, done.action, done.on))
+            self.app.run_worker(perform(self.screen, word.action, word.on))
 
     def _carry_out(self, command: GameCommand) -> None:
         match command:
