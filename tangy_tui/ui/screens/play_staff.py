@@ -124,8 +124,8 @@ class PlayStaff(PlayPanels):
 
     def action_type(self, begun: str = "") -> None:
         """Let staff type what they want done: in the line of a question, where there is one."""
-        if not begun and self.query("#command-input"):
-            self.app.run_worker(self.run_action("app.command"))
+        if not begun and (lines := self.query("#command-input")):
+            lines.first().focus()
             return
         self.run_worker(self._type(begun), name="type", group="type", exclusive=True)
 
