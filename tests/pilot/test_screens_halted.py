@@ -302,11 +302,10 @@ async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
         await pilot.press("escape")
         await pilot.pause()
         assert "r all right" in pilot.text()
-        await pilot.press("ctrl+x")
-        await sure(pilot, "r")
+        await pilot.press("ctrl+x", "r")
         await pilot.pause()
         assert game.question is not None
-        assert "press p to go on first" in seen(pilot)
+        assert "Press p to go on first" in seen(pilot)
         await pilot.press("p", "escape", "w")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
         assert "If all is well, say so" in seen(pilot)

@@ -65,7 +65,7 @@ def assert_all_over(family: Family, started: set[int], meanwhile: Callable[[], o
 def test_on_a_terminal_it_is_left_off(
     folder: Path, family: Family, stage: str, ending: str
 ) -> None:
-    command = [TANGY, "live", "--bench", "--data", str(folder)]
+    command = [TANGY, "live", "--bench", "--begin", "--data", str(folder)]
     terminal = Terminal(command, environment=family.environment)
     end, status = ENDINGS[ending]
 
@@ -144,7 +144,7 @@ def test_a_robot_whose_devices_do_not_answer_is_left_off(
 def test_what_the_program_had_started_ends_by_itself_where_that_was_killed(
     folder: Path, family: Family
 ) -> None:
-    command = [TANGY, "live", "--bench", "--data", str(folder)]
+    command = [TANGY, "live", "--bench", "--begin", "--data", str(folder)]
     terminal = Terminal(command, environment=family.environment)
     try:
         family.seconds_until(runs(ROBOT), PATIENCE, lambda: terminal.read(0.0))

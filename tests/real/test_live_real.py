@@ -87,7 +87,18 @@ def test_what_goes_wrong_on_the_bench_is_diagnosed_and_recovered_from(workspace:
 
 
 def test_a_game_can_be_watched_and_stepped_into_on_a_terminal(folder: Path) -> None:
-    command = [TANGY, "live", "--bench", "--pace", "3", "--seed", "5", "--data", str(folder)]
+    command = [
+        TANGY,
+        "live",
+        "--bench",
+        "--begin",
+        "--pace",
+        "3",
+        "--seed",
+        "5",
+        "--data",
+        str(folder),
+    ]
     terminal = Terminal(command)
     try:
         terminal.until("Steps")
@@ -127,7 +138,18 @@ def robot_process_of(program: int) -> int:
 
 
 def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path) -> None:
-    command = [TANGY, "live", "--bench", "--pace", "3", "--seed", "6", "--data", str(folder)]
+    command = [
+        TANGY,
+        "live",
+        "--bench",
+        "--begin",
+        "--pace",
+        "3",
+        "--seed",
+        "6",
+        "--data",
+        str(folder),
+    ]
     terminal = Terminal(command, columns=100, lines=40)
     try:
         if "Is all well now?" in terminal.until(

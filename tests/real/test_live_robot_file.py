@@ -55,7 +55,7 @@ ROSBRIDGE = ("base", "stop_button", "arms", "voice")
 def program(bench: DeviceSimulator, folder: Path) -> Terminal:
     corners = ",".join(f"{x:g},{y:g}" for x, y in bench.wires.corners)
     command = [
-        *(TANGY, "live", "--robot", str(robot_file(bench, folder)), "--pace", "3"),
+        *(TANGY, "live", "--robot", str(robot_file(bench, folder)), "--begin", "--pace", "3"),
         *("--requests", f"signs:{bench.wires.infrared}", "--table", corners),
         *("--data", str(folder)),
     ]

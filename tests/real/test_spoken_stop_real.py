@@ -89,7 +89,7 @@ def family() -> Family:
 
 @pytest.fixture
 def terminal(folder: Path, family: Family) -> Iterator[Terminal]:
-    game = ["live", "--bench", "--pace", "3", "--seed", "5", "--data", str(folder)]
+    game = ["live", "--bench", "--begin", "--pace", "3", "--seed", "5", "--data", str(folder)]
     hears = ["--mic", "socket", "--hands-free"]
     terminal = Terminal(
         [TANGY, *game, *hears], columns=110, lines=40, environment=family.environment
@@ -154,7 +154,7 @@ def test_a_recording_is_heard_as_if_it_were_said_once_the_robot_is_on(
         file.setsampwidth(2)
         file.setframerate(RATE)
         file.writeframes(bytes(12 * 2 * RATE) + speech)
-    command = [TANGY, "live", "--bench", "--seed", "5", "--data", str(folder)]
+    command = [TANGY, "live", "--bench", "--begin", "--seed", "5", "--data", str(folder)]
     terminal = Terminal(
         [*command, "--hands-free", "--mic", str(said)],
         columns=110,
