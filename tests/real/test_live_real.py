@@ -101,11 +101,12 @@ def test_a_game_can_be_watched_and_stepped_into_on_a_terminal(folder: Path) -> N
     ]
     terminal = Terminal(command)
     try:
-        terminal.until("Steps")
         if "Is all well now?" in terminal.until(
             lambda text: "greet everyone" in text or "well" in text
         ):
             terminal.type("y")
+        terminal.until("Now")
+        terminal.type("u")  # the steps in place of what staff see
         terminal.until("call number")
         terminal.type("h")
         terminal.until("Who needs help?")
@@ -156,6 +157,8 @@ def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path
             lambda text: "greet everyone" in text or "well" in text
         ):
             terminal.type("y")
+        terminal.until("Now")
+        terminal.type("u")  # the steps in place of what staff see
         terminal.until("call number")
         robot = robot_process_of(terminal.process.pid)
         os.kill(robot, signal.SIGSTOP)

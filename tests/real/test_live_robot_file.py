@@ -73,6 +73,8 @@ def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
         ):
             terminal.settle()
             terminal.type("y")
+        terminal.until("Now")
+        terminal.type("u")  # the steps in place of what staff see
         terminal.until("call number")
         bench.do("ask", person="user2")
         terminal.until("coming to you")
