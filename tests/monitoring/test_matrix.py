@@ -102,6 +102,7 @@ def test_each_kind_is_told_with_whatever_behaviour_it_comes() -> None:
     assert {row["kind"] for row in rows if row.get("came")} == set(KINDS)
 
 
+@pytest.mark.slow
 def test_who_complies_seldom_changes_nothing_of_it() -> None:
     for kind in ("card-out-of-sight", "never-complies", "no-effect"):
         usual = monitoring.matrix(SETTINGS, (kind, 5, 2))

@@ -66,8 +66,9 @@ def with_phrases(*phrases: tuple[str, str]) -> str:
     return text
 
 
+@pytest.mark.slow  # every activity is searched whole, as tests/profiles does one by one
 def test_everything_that_ships_is_well(tangy: Tangy) -> None:
-    done = tangy("activity", "check", "--json")  # takes seconds: every activity is searched whole
+    done = tangy("activity", "check", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     document = json.loads(done.stdout)
     assert document["ok"]

@@ -9,12 +9,12 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from tests.support.declared import DECLARED
+from tests.support.declared import DECLARED, each_of_first
 
 Tangy = Callable[..., CompletedProcess[str]]
 
 
-@pytest.mark.parametrize("name", DECLARED)
+@pytest.mark.parametrize("name", each_of_first(DECLARED))
 def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
     name: str, tangy: Tangy, tmp_path: Path
 ) -> None:

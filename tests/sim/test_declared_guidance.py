@@ -39,7 +39,7 @@ def play(world: DeclaredWorld, activity: DeclaredActivity) -> list[ActivityState
 
 
 @pytest.mark.parametrize("name", DECLARED)
-@pytest.mark.parametrize("count", [1, 2, 5])
+@pytest.mark.parametrize("count", [1, 2, pytest.param(5, marks=pytest.mark.slow)])
 def test_two_guided_games_show_all_that_can_come_about(name: str, count: int) -> None:
     activity = declared(name)
     players = activity.teams or tuple(f"user{number}" for number in range(1, count + 1))

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
+from typing import Any
+
+import pytest
 
 from tangy_profiles.activity import load_activity, shipped_activities
 from tangy_profiles.declared.activity import DeclaredActivity
@@ -19,3 +23,8 @@ def declared(name: str) -> DeclaredActivity:
 DECLARED = [
     name for name in shipped_activities() if isinstance(load_activity(name), DeclaredActivity)
 ]
+
+
+def each_of_first(names: Sequence[str]) -> list[Any]:
+    """Return the parameters of a long test: all of them, of which fast runs take the first."""
+    return [names[0], *(pytest.param(name, marks=pytest.mark.slow) for name in names[1:])]
