@@ -138,7 +138,7 @@ def test_a_window_that_is_too_small_says_so_and_loses_nothing(
 
 def test_a_dumb_terminal_gets_lines(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1", environment={"TERM": "dumb"})
-    terminal.until("Commands:")
+    terminal.until("or one of:")
     terminal.type("greet everyone\n")
     terminal.until("Type Y to execute")
     terminal.type("y\n")
