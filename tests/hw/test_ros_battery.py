@@ -44,6 +44,10 @@ class TestBattery:
             server.publish("/battery_state", "sensor_msgs/BatteryState", state(0.44, 1))
             await until(lambda: battery.reading().facts["charging"] is True)
             server.publish("/battery_state", "sensor_msgs/BatteryState", {"percentage": "full"})
+            server.publish("/battery_state", "sensor_msgs/BatteryState", state(2.0))
+            await until(lambda: battery.reading().facts["charge"] == pytest.approx(0.02))
+            server.publish("/battery_state", "sensor_msgs/BatteryState", state(1.0))
+            await until(lambda: battery.reading().facts["charge"] == pytest.approx(0.01))
             now.time += 40
             assert battery.reading().age == pytest.approx(40)
             await battery.close()

@@ -26,7 +26,7 @@ class RosBattery:
         self.name = name
         self._bridge, self._topic = bridge, topic
         self._newest: Newest[dict[str, Fact]] = Newest(bridge.clock)
-        self._begun = False
+        self._begun = self._to_hundred = False
 
     async def start(self) -> None:
         """Begin to hear it."""
@@ -48,15 +48,16 @@ class RosBattery:
 
     def _hear(self, message: Message) -> None:
         status = message["power_supply_status"]
-        charge = charge_of(message)
+        self._to_hundred |= (message["percentage"] or 0.0) > 1.0  # or 1 % would read as full
+        charge = charge_of(message, to_hundred=self._to_hundred)
         self._newest.take({"charge": charge, "charging": status in (CHARGING, FULL)})
 
 
-def charge_of(message: Message) -> float:
+def charge_of(message: Message, *, to_hundred: bool = False) -> float:
     """Return how full a battery is, from 0 to 1.
 
     What is not measured is NaN, which JSON has as null: then it is charge by capacity. Some robots
-    count `percentage` to 100.
+    count `percentage` to 100: those of which more than 1 was seen, or known to (`to_hundred`).
 
     Raises:
         ValueError, KeyError, TypeError: the message does not tell.
@@ -66,4 +67,4 @@ def charge_of(message: Message) -> float:
         full = message["capacity"] or message["design_capacity"]
         share = number(message["charge"]) / number(full)
     share = number(share)
-    return min(max(share / 100 if share > 1.0 else share, 0.0), 1.0)
+    return min(max(share / 100 if to_hundred or share > 1.0 else share, 0.0), 1.0)
