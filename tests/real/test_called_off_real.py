@@ -127,7 +127,7 @@ def test_a_robot_whose_devices_do_not_answer_is_left_off(
     text = PROFILE.read_text().replace('# source = "/dev/video0"', camera)
     file = tmp_path / "robot.toml"
     file.write_text(f"{text}\n" + "\n".join(drivers) + "\n")
-    command = [TANGY, "live", "--robot", str(file), "--data", str(folder)]
+    command = [TANGY, "live", "--robot", str(file), "--begin", "--data", str(folder)]
     terminal = Terminal(command, environment=family.environment)
     end, status = ENDINGS[ending]
     try:
