@@ -22,6 +22,8 @@ from tangy_tui.app.session_door import FILE, LONGEST_NAME, reachable
 from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.replay import GameReplay, Moment, read_replays
 
+WATCH_SECONDS = 0.2
+"""Between two looks of those who look on; views do not come more often."""
 LARGEST_VIEW = 1_000_000  # bytes
 CHUNK = 65_536
 PATIENCE_SECONDS = 1.0  # for the door to answer
@@ -189,7 +191,7 @@ class WatchedLog:
         if begun:
             self._game, self._told, self.over = game.id, 0, False
             self.names = {p.id: p.name for p in load_people(MOST_PEOPLE)} | self._store.names()
-        activity = self._activity(game.activity)
+        activity = self.activity(game.activity)
         known = {} if activity is None else {game.activity: activity}
         (replay,) = read_replays(self._store, [game], known, self.names)
         moments = tuple(replay.moments[self._told :])
@@ -199,7 +201,12 @@ class WatchedLog:
         self._told, self.over = len(replay.moments), game.ended is not None
         return News(replay, moments, begun, activity)
 
-    def _activity(self, name: str) -> Activity | None:
+    def name(self, person: str) -> str:
+        """Return what a person is called."""
+        return self.names.get(person, person)
+
+    def activity(self, name: str) -> Activity | None:
+        """Return an activity by name, None where it is not known here."""
         if name not in self._known:
             there = name in known_activities()
             self._known[name] = load_activity(name) if there else None

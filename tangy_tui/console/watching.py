@@ -10,11 +10,9 @@ from pathlib import Path
 from tangy_profiles.codec import written
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
-from tangy_tui.app.watching import Guest, WatchedLog
+from tangy_tui.app.watching import WATCH_SECONDS, Guest, WatchedLog
 from tangy_tui.text import watching as text
 from tangy_tui.text.log import game_words, moment_lines
-
-LOOK_SECONDS = 0.2
 
 
 class WatchingLines:
@@ -33,6 +31,7 @@ class WatchingLines:
         """
         self.guest = Guest(folder)
         self._log = WatchedLog(store)
+        self._name = self._log.name
         self._write, self._as_json = write, as_json
         self._said = ""
         self._there = False
@@ -45,7 +44,7 @@ class WatchingLines:
             self.look()
             if was and not self._there:
                 break
-            time.sleep(LOOK_SECONDS)
+            time.sleep(WATCH_SECONDS)
         self.guest.close()
 
     def look(self) -> None:
@@ -87,6 +86,3 @@ class WatchingLines:
 
     def _json(self, said: object) -> None:
         self._write(json.dumps(said, ensure_ascii=False))
-
-    def _name(self, person: str) -> str:
-        return self._log.names.get(person, person)

@@ -7,6 +7,7 @@ signs that ask, what staff tell of people, what is heard; and by what the robot 
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from tangy_hw.device_protocols import DeviceError, Picture
@@ -251,6 +252,5 @@ class DeclaredLiveWorld(LiveWorld):
 
     def scene(self) -> Scene:
         """Return what there is to see, for a screen to draw."""
-        asking = tuple(self.game.queue)
-        doing = {p: "asks for help" if p in asking else "watches" for p in self.people}
-        return Scene(self.link.state.going or self.game.place, asking, doing | self._did, (), None)
+        scene = super().scene()  # its tracker is a view of the game
+        return replace(scene, doing={**scene.doing, **self._did})

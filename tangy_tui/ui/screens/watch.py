@@ -10,13 +10,13 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Static
 
-from tangy_profiles.activity import Activity, known_activities, load_activity
+from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import CallMade
 from tangy_profiles.person import Person
 from tangy_profiles.room import Point, load_room
 from tangy_profiles.store import Store
 from tangy_tui.app.game_view import GameView
-from tangy_tui.app.watching import Guest, NobodyThere, WatchedLog
+from tangy_tui.app.watching import WATCH_SECONDS, Guest, NobodyThere, WatchedLog
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted
 from tangy_tui.text import watching as text
@@ -29,7 +29,6 @@ from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
-LOOK_SECONDS = 0.2
 ALARMS = ("stopped", "halted")
 KINDS: dict[type, Kind] = {Diagnosed: "warn", Moved: "dim", Noted: "dim", CallMade: "warn"}
 
@@ -79,7 +78,7 @@ class WatchScreen(TangyScreen[None]):
         self.look()
         if not self._there:
             log.write(text.NOBODY, "warn")
-        self.set_interval(LOOK_SECONDS, self.look)
+        self.set_interval(WATCH_SECONDS, self.look)
 
     def on_unmount(self) -> None:
         """Leave the door."""
@@ -123,7 +122,7 @@ class WatchScreen(TangyScreen[None]):
             log.write(game_words(news.game))
         for moment in news.moments:
             kind = _kind(moment)
-            for line in moment_lines(moment, news.replay.timed, news.activity, self._called):
+            for line in moment_lines(moment, news.replay.timed, news.activity, self._log.name):
                 log.write(line, kind)
                 kind = "text" if kind == "text" else "dim"
             if isinstance(moment.what, Done) and moment.what.said:
@@ -153,10 +152,9 @@ class WatchScreen(TangyScreen[None]):
         """Make the room and the board anew, for the people and the activity of a game."""
         left = self.query_one("#left", Vertical)
         left.remove_children(".panel")
-        known = view.activity in known_activities()
-        self._activity = load_activity(view.activity) if known else None
+        self._activity = self._log.activity(view.activity)
         room = load_room()
-        seated = room.placed([Person(one, self._called(one)) for one in people])
+        seated = room.placed([Person(one, self._log.name(one)) for one in people])
         label = str if self._activity is None else self._activity.deck.label
         left.mount(panel(RoomView(room, seated, label=label)), before="#called")
         if self._activity is not None and self._activity.deck.columns:
@@ -179,9 +177,6 @@ class WatchScreen(TangyScreen[None]):
                 alarm=alarm,
             )
         )
-
-    def _called(self, person: str) -> str:
-        return self._log.names.get(person, person)
 
 
 def _kind(moment: Moment) -> Kind:
