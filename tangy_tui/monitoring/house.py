@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
+from typing import Any
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_world import GameWorld
@@ -81,6 +82,22 @@ class PersonOverTime:
         """What the person did about what they were asked to do."""
         return [answer for one in self.games for answer in one.answers]
 
+    def to_json(self) -> dict[str, Any]:
+        """Return what reports tell of the person, with times in s."""
+        added = self.sum
+        return {
+            "name": self.name,
+            "games": len(self.games),
+            "requests": added.requests,
+            "waits": added.waits,
+            "open_waits": added.open,
+            "visits": added.visits,
+            "seconds_with": added.seconds,
+            "won": added.won,
+            "asked": len(self.answers),
+            "complied": sum(answer.complied is True for answer in self.answers),
+        }
+
 
 @dataclass(frozen=True, slots=True)
 class Month:
@@ -94,6 +111,11 @@ class Month:
     def people(self) -> tuple[PersonOverTime, ...]:
         """Who took part."""
         return people_over_time(self.games)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the month, and how many games and people it had."""
+        month = f"{self.year}-{self.month:02}"
+        return {"month": month, "games": len(self.games), "people": len(self.people)}
 
 
 def read_log(

@@ -108,7 +108,7 @@ def report_person(
     if html is not None:
         _write(html, person_page(person, logs, wanted, others))
     if as_json:
-        print_json({"world": wanted, **_person_document(person)})
+        print_json({"world": wanted, **person.to_json()})
     elif html is None:
         print_line(plain(f"{person.name}: {text.scope(wanted, len(person.games))}"))
         _print_rows(text.GAME_COLUMNS, text.game_rows(person.games))
@@ -136,11 +136,8 @@ def report_house(
     if html is not None:
         _write(html, house_page(logs, wanted, people, others))
     if as_json:
-        months = [
-            {"month": f"{m.year}-{m.month:02}", "games": len(m.games), "people": len(m.people)}
-            for m in by_month(games)
-        ]
-        people_told = [_person_document(person) for person in people]
+        months = [month.to_json() for month in by_month(games)]
+        people_told = [person.to_json() for person in people]
         print_json({"world": wanted, "months": months, "people": people_told})
     elif html is None:
         print_line(plain(f"{text.house_title(logs)}: {text.scope(wanted, len(games))}"))
@@ -239,22 +236,6 @@ def _find(people: Sequence[PersonOverTime], name: str) -> PersonOverTime:
         if folded(name) == folded(person.name) or name in ids:
             return person
     raise TangyError(plain(nobody_called(name, [person.name for person in people])))
-
-
-def _person_document(person: PersonOverTime) -> dict[str, Any]:
-    added = person.sum
-    return {
-        "name": person.name,
-        "games": len(person.games),
-        "requests": added.requests,
-        "waits": added.waits,
-        "open_waits": added.open,
-        "visits": added.visits,
-        "seconds_with": added.seconds,
-        "won": added.won,
-        "asked": len(person.answers),
-        "complied": sum(answer.complied is True for answer in person.answers),
-    }
 
 
 def _write(html: Path, text: str) -> None:
