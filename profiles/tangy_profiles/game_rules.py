@@ -14,6 +14,13 @@ PACES = (5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0)
 """The paces, in s from one call to the next, that faster and slower step through."""
 
 
+def next_pace(pace: float, by: int) -> float:
+    """Return the next shorter (-1) or longer (1) of the paces, in s; the last one stays."""
+    if by < 0:
+        return max((one for one in PACES if one < pace), default=PACES[0])
+    return min((one for one in PACES if one > pace), default=PACES[-1])
+
+
 @dataclass(frozen=True)
 class Pattern:
     """Cells that win: any of the `shapes`, or `together` different ones of them at once."""

@@ -205,3 +205,8 @@ class PlannedGame:
 
     def announce(self, text: str) -> None:
         """Say something to the group, where there is something that speaks."""
+
+
+def as_planned(world: object) -> PlannedGame | None:
+    """Return a world as staff plan its games, None where it has no cards to plan by."""
+    return world if isinstance(world, PlannedGame) and world.activity.deck.columns else None

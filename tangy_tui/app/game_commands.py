@@ -204,8 +204,14 @@ class EndGame:
     """End the game; the robot stands."""
 
 
+PlanCommand: TypeAlias = (
+    TakeBackCall | SetPace | ChangePace | ClaimCard | ChoosePatterns | LetWin | ComesIn | GoesAway
+)
+"""What staff change in a game beside what Tangy does; see `GamePlanControls`."""
+
 GameCommand: TypeAlias = (
-    Pause
+    PlanCommand
+    | Pause
     | GoOn
     | OneStep
     | StopRobot
@@ -213,14 +219,6 @@ GameCommand: TypeAlias = (
     | GiveBack
     | SetAutonomy
     | CallAgain
-    | TakeBackCall
-    | SetPace
-    | ChangePace
-    | ClaimCard
-    | ChoosePatterns
-    | LetWin
-    | ComesIn
-    | GoesAway
     | AskFor
     | Tell
     | VoidResponse
@@ -250,17 +248,6 @@ AT_ONCE = (
 )
 """What does not wait for its turn."""
 
-PLANNED = (
-    TakeBackCall,
-    SetPace,
-    ChangePace,
-    ClaimCard,
-    ChoosePatterns,
-    LetWin,
-    ComesIn,
-    GoesAway,
-)
-"""What staff change in a game beside what Tangy does; see `GamePlanControls`."""
 
 WITHOUT_GAME = (
     StopRobot,

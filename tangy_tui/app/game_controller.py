@@ -21,7 +21,6 @@ from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.fault_commands import Result, attend
 from tangy_tui.app.game_commands import (
     AT_ONCE,
-    PLANNED,
     TAKEN_OVER,
     WITHOUT_GAME,
     Accept,
@@ -39,6 +38,7 @@ from tangy_tui.app.game_commands import (
     OneStep,
     Pause,
     Phase,
+    PlanCommand,
     Proposal,
     Reached,
     SetAutonomy,
@@ -227,7 +227,7 @@ class GameController:
     def _dispatch(self, command: GameCommand) -> list[Result]:
         if self.supervision.over and not isinstance(command, WITHOUT_GAME):
             return [StaffNote("no game")]
-        if isinstance(command, PLANNED):
+        if isinstance(command, PlanCommand):
             return self.plan.do(command)
         match command:
             case StopRobot(by):

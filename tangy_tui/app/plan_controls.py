@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.game_records import ChangeKind
-from tangy_profiles.game_rules import LONGEST_PACE, PACES, SHORTEST_PACE
+from tangy_profiles.game_rules import LONGEST_PACE, SHORTEST_PACE, next_pace
 from tangy_profiles.planned_game import PlannedGame
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
@@ -17,6 +17,7 @@ from tangy_tui.app.game_commands import (
     ComesIn,
     GoesAway,
     LetWin,
+    PlanCommand,
     SetPace,
     StaffNote,
     TakeBackCall,
@@ -24,10 +25,6 @@ from tangy_tui.app.game_commands import (
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision
-
-PlanCommand = (
-    TakeBackCall | SetPace | ChangePace | ClaimCard | ChoosePatterns | LetWin | ComesIn | GoesAway
-)
 
 
 class GamePlanControls:
@@ -57,7 +54,7 @@ class GamePlanControls:
             case SetPace(seconds):
                 return [self._pace(world, seconds)]
             case ChangePace(by):
-                return [self._pace(world, next_pace(world.pace, by))]
+                return [self._pace(world, next_pace(world.pace, -by))]
             case TakeBackCall(label):
                 return self._take_back(world, label)
             case ClaimCard(card, person):
@@ -163,10 +160,3 @@ class GamePlanControls:
             self._supervision.game.change("came" if here else "left", person=person, by=self._by)
         self._note(f"staff: {person} {'is here' if here else 'has left'}")
         return [StaffNote("comes" if here else "goes", person)]
-
-
-def next_pace(pace: float, by: int) -> float:
-    """Return the next shorter (1) or longer (-1) pace, in s."""
-    if by > 0:
-        return max((one for one in PACES if one < pace), default=PACES[0])
-    return min((one for one in PACES if one > pace), default=PACES[-1])

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_rules import PACES, USUAL_PACE, GamePlan
+from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
 from tangy_profiles.health import OK
 from tangy_profiles.reading import nearest, plain
 
@@ -104,7 +104,7 @@ class SetUp:
 
     def turn_pace(self, by: int) -> None:
         """Choose a shorter (-1) or a longer (1) pace."""
-        self.pace = _turned(PACES, self.pace, by)
+        self.pace = next_pace(self.pace, by)
 
     def turn_minutes(self, by: int) -> None:
         """Plan less or more time."""

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_profiles.state import FRONT, ActivityState
 
 if TYPE_CHECKING:
@@ -43,8 +43,6 @@ class StaffView:
     called: tuple[int, ...]
     people: tuple[PersonNow, ...]
     pace: float = 0.0
-    next_call: float = 0.0
-    """s until the next number may be called, 0 where that is not known."""
 
 
 class StaffWatch:
@@ -84,7 +82,6 @@ class StaffWatch:
             scene.called,
             tuple(self._person(person, scene, now, away) for person in people),
             0.0 if planned is None else planned.pace,
-            float(getattr(world, "calls_in", 0.0)),
         )
 
     def _person(self, person: str, scene: Scene, now: float, away: frozenset[str]) -> PersonNow:
@@ -107,7 +104,7 @@ class StaffWatch:
 
 def next_step(world: object, policy: Policy) -> tuple[Decision, ActivityState] | None:
     """Return what Tangy would do next as things stand, None where that is not known."""
-    if not isinstance(world, PlannedGame) or not world.activity.deck.columns:
+    if (game := as_planned(world)) is None:
         return None
-    state = world.tracker.state()
+    state = game.tracker.state()
     return policy.decide(state.situation), state

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import PastGame
-from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.planned_game import as_planned
 from tangy_profiles.store import Store
 from tangy_tui.interaction.game_events import GameChanged
 from tangy_tui.world import World
@@ -18,9 +19,7 @@ class GameChanges:
 
     def __init__(self, world: World, store: Store) -> None:
         """Take the world and the log."""
-        self.world = (
-            world if isinstance(world, PlannedGame) and world.activity.deck.columns else None
-        )
+        self.world = as_planned(world)
         self._store = store
 
     @property
@@ -31,15 +30,7 @@ class GameChanges:
     @property
     def logged(self) -> dict[str, Any]:
         """What the log has of the plan when a game begins."""
-        plan = self.plan
-        return {
-            "patterns": plan.patterns,
-            "several": plan.several,
-            "visits": plan.visits,
-            "strength": plan.strength,
-            "absent": plan.absent,
-            "pace": plan.pace,
-        }
+        return asdict(self.plan)
 
     @property
     def left_out(self) -> tuple[str, ...]:

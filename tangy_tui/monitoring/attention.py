@@ -6,7 +6,7 @@ All of it is read from the log. Times are in s since the game began.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from statistics import median
 
@@ -155,8 +155,3 @@ def calls_in(replay: GameReplay) -> list[Call]:
                         calls[place] = Call(number, calls[place].seconds, taken_back=True)
                         break
     return calls
-
-
-def never_visited(found: Sequence[Attention]) -> list[Attention]:
-    """Return those whom Tangy never went to."""
-    return [one for one in found if not one.visits]

@@ -9,7 +9,7 @@ import pytest
 from tangy_profiles.activity import load_activity, read_activity
 from tangy_profiles.cards import Deck
 from tangy_profiles.errors import ProfileError, TangyError
-from tangy_profiles.game_rules import Patterns
+from tangy_profiles.game_rules import PACES, Patterns, next_pace
 
 BINGO = load_activity("bingo")
 ROW, COLUMN, CORNERS = 0b11111, 0x108421, 0x1100011
@@ -78,3 +78,9 @@ def test_a_mistake_is_named_by_its_key(tmp_path: Path, old: str, new: str, key: 
     file.write_text(shipped.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
     with pytest.raises(ProfileError, match=key):
         read_activity(file)
+
+
+def test_faster_and_slower_go_to_the_next_pace_from_any() -> None:
+    assert [next_pace(12, by) for by in (-1, 1)] == [10, 15]
+    assert [next_pace(20, by) for by in (-1, 1)] == [15, 25]
+    assert (next_pace(PACES[0], -1), next_pace(PACES[-1], 1)) == (PACES[0], PACES[-1])

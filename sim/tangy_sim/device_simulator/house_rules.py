@@ -50,6 +50,4 @@ def _take_back(people: People, number: int) -> None:
     if number in people.game.called:
         people.game.called.remove(number)
     for sitter in people.sitters.values():
-        if (cell := sitter.player.cell.get(number)) is not None:
-            sitter.player.called &= ~(1 << cell)
-            sitter.player.marked &= ~(1 << cell)
+        sitter.player.uncall(number)

@@ -89,6 +89,12 @@ class SimulatedUser:
                 return True
         return False
 
+    def uncall(self, number: int) -> None:
+        """Let a number count as not called: a marker on it is taken off."""
+        if (cell := self.cell.get(number)) is not None:
+            self.called &= ~(1 << cell)
+            self.marked &= ~(1 << cell)
+
     def cells(self, mask: int) -> tuple[int, ...]:
         """Return the numbers on the cells of a mask."""
         return tuple(n for place, n in enumerate(self.numbers) if mask >> place & 1)

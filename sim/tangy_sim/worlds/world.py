@@ -341,6 +341,5 @@ class SimulatedWorld(PlannedGame):
         self.order.remove(number)
         self.order.append(number)
         self._calls -= 1
-        for player, cell in self._holders[number]:
-            player.called &= ~(1 << cell)
-            player.marked &= ~(1 << cell)
+        for player in self.players.values():
+            player.uncall(number)
