@@ -146,9 +146,6 @@ def proof_words(activity: Activity, found: Reach) -> list[str]:
 
 
 TRIED = "The game has come to its end."
-NOTHING_EXPECTED = (
-    "The file does not say what is expected: add lines to 'expected', or teach it by tangy teach."
-)
 
 
 def tried_lines(number: int, situation: str, behaviour: str, whom: str, said: str) -> list[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 TAGLINE = "Teach a robot a group activity, and let it run that activity."
-ALL_PHRASES = "All that can be said or typed"
 
 NOTHING_MOVES = "Nothing is moving."
 MOUSE_ON = "Mouse on. Press {mouse} to turn it off and select text."
@@ -17,7 +16,6 @@ COLOURS = {
 }
 """The names of the colour schemes, and what each is like."""
 COMPARE_POLICIES = ("Compare policies", "Teacher against teacher, before against after")
-PHRASES = ("Phrases", f"{ALL_PHRASES}, and how it is said")
 VOICE = ("Voice on or off", "Tangy speaks what it says")
 """What the command palette offers, and what each does."""
 NOT_POSSIBLE, NOT_YET = "Not possible", "Not yet"

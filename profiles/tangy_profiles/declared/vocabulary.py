@@ -15,10 +15,8 @@ SOURCES: tuple[Source, ...] = get_args(Source)
 
 Quantifier = Literal["", "any", "every", "nobody", "most"]
 """Of how many players a condition has to hold; "": of the one whom the stage is about."""
-QUANTIFIERS: tuple[Quantifier, ...] = get_args(Quantifier)
 
 Comparison = Literal["is", "is not", ">=", "<"]
-COMPARISONS: tuple[Comparison, ...] = get_args(Comparison)
 
 Does = Literal[
     "set",  # FACT VALUE

@@ -62,11 +62,6 @@ class RosbridgeServer:
         """Where clients find it."""
         return f"ws://{self.host}:{self.port}"
 
-    @property
-    def clients(self) -> int:
-        """How many are connected."""
-        return len(self._clients)
-
     async def start(self) -> None:
         """Listen; after `close`, at the same port again.
 
