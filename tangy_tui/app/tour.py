@@ -39,7 +39,7 @@ class Tour:
         self.at: TourStop | None = TourStop.ROOM
 
     @property
-    def waits(self) -> bool:
+    def enter_goes_on(self) -> bool:
         """Whether Enter goes on from here; elsewhere a command or an answer does."""
         return self.at in _ON
 

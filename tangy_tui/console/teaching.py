@@ -288,7 +288,7 @@ class TeachingLines:
     def _tours(self, text: str) -> bool:
         """Go on with the tour, or end it, where a line says so."""
         tour, skips = self._tour, text.casefold() == "skip"
-        if tour is None or tour.at is None or not (skips or (tour.waits and not text)):
+        if tour is None or tour.at is None or not (skips or (tour.enter_goes_on and not text)):
             return False
         if skips:
             tour.skip()

@@ -220,6 +220,7 @@ def stands_words(why: str) -> str:
 
 NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it."
 BUSY = "Not now: Tangy is busy."
+ONE_MOMENT = "One moment: Tangy finishes this first."
 VOID_DETAIL = "It will count as not called, and come again later."
 WHO_NEEDS_HELP = "Who needs help?"
 BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."

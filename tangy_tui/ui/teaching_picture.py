@@ -40,7 +40,7 @@ from tangy_tui.text.situations import step_words
 from tangy_tui.text.tour import tour_words
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.panels import KeyLine
-from tangy_tui.ui.screens.teach_keys import TOUR_KEYS
+from tangy_tui.ui.screens.teach_keys import TOUR_GOES_ON, TOUR_KEYS
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.command_bar import CommandBar
@@ -171,20 +171,25 @@ class TeachingPicture:
         now.update(f"Now: {words}" if at is None else self._tour_words(at))
         if self.tour is not None:
             keys = self._keys() if at is None else TOUR_KEYS
-            self._screen.query_one(KeyLine).show(*keys, typing=True)
+            goes_on = (TOUR_GOES_ON,) if self.tour.enter_goes_on else ()
+            self._screen.query_one(KeyLine).show(*goes_on, *keys, typing=True)
 
     def tours(self, *, skip: bool) -> bool:
         """Say whether a tour goes on that could be skipped, or whose next stop Enter leads to."""
         if self.tour is None or self.tour.at is None:
             return False
         return skip or (
-            self.tour.waits and not any(bar.text for bar in self._screen.query(CommandBar))
+            self.tour.enter_goes_on and not any(bar.text for bar in self._screen.query(CommandBar))
         )
 
     def go_on_tour(self, *, skip: bool = False) -> None:
         """Go on to the tour's next stop, or end it."""
         if self.tour is not None:
             if skip:
+                for bar in self._screen.query(CommandBar):
+                    if bar.text or bar.lists:
+                        bar.drop()  # first of all Esc takes back what one has begun
+                        return
                 self.tour.skip()
             else:
                 self.tour.go_on()

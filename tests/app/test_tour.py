@@ -21,14 +21,14 @@ def begun(workspace: Workspace) -> tuple[Tour, TeachingSession]:
 def test_a_command_its_question_and_its_answer_lead_on(workspace: Workspace) -> None:
     tour, teaching = begun(workspace)
     tour.go_on()
-    assert (tour.at, tour.waits) == (TourStop.COMMAND, False)
+    assert (tour.at, tour.enter_goes_on) == (TourStop.COMMAND, False)
     tour.follow(teaching.apply(Say(teaching.sayable[0])))
-    assert (tour.at, tour.waits) == (TourStop.QUESTION, False)
+    assert (tour.at, tour.enter_goes_on) == (TourStop.QUESTION, False)
     tour.follow(teaching.apply(Reply(yes=False)))
-    assert (tour.at, tour.waits) == (TourStop.COMMAND, False)
+    assert (tour.at, tour.enter_goes_on) == (TourStop.COMMAND, False)
     tour.follow(teaching.apply(Say(teaching.sayable[0])))
     tour.follow(teaching.apply(Reply(yes=True)))
-    assert (tour.at, tour.waits) == (TourStop.STEP, True)
+    assert (tour.at, tour.enter_goes_on) == (TourStop.STEP, True)
     for _ in range(3):
         tour.go_on()
     assert tour.at is None

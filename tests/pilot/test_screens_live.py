@@ -105,6 +105,21 @@ async def test_where_it_drives_to_is_seen_in_a_small_window(
             link.free = True
 
 
+async def test_staff_are_told_at_once_that_a_command_has_to_wait_and_then_what_came_of_it(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(80, 24), notifications=True) as pilot:
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
+        link.free = False
+        try:
+            await until_shown(pilot, lambda: live(pilot).working > 0)
+            await pilot.press("colon", *"bingo 2", "enter")
+            await until_shown(pilot, lambda: "One moment" in screen_text(pilot.app))
+        finally:
+            link.free = True
+        await until_shown(pilot, lambda: "Card 2 is wrong" in screen_text(pilot.app))
+
+
 async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
     run: Run, program: Program, link: HeldLink
 ) -> None:

@@ -10,6 +10,7 @@ from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.widgets.command_bar import CommandBar
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
 
 
@@ -103,3 +104,21 @@ async def test_a_game_that_was_begun_stays_its_teachers(run: Run, workspace: Wor
         await pilot.pause()
         assert "This game stays Ada's" in screen_text(pilot.app)
         assert read_demonstrations(workspace.store, "bingo")[-1].teacher == "Ada"
+
+
+async def test_escape_takes_back_what_was_begun_before_it_skips_the_tour(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace), size=SMALL) as pilot:
+        await pilot.pause()
+        await pilot.press(*"Ada", "enter", "enter")
+        await pilot.pause()
+        assert "go on" not in screen_text(pilot.app).splitlines()[-1]  # a command does
+        for begun in (("tab",), tuple("greet")):
+            await pilot.press(*begun, "escape")
+            await pilot.pause()
+            assert "Try it: type greet everyone" in screen_text(pilot.app)
+            assert not pilot.app.screen.query_one(CommandBar).text
+        await pilot.press("escape")
+        await pilot.pause()
+        assert "Try it" not in screen_text(pilot.app)

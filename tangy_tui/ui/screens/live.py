@@ -49,6 +49,7 @@ from tangy_tui.text.control import (
     BUSY,
     MOVE_AGAIN,
     NOT_WHILE_WORKING,
+    ONE_MOMENT,
     VOID_DETAIL,
     WAITS_SHORT,
     WHO_NEEDS_HELP,
@@ -76,6 +77,7 @@ SLOW_TRACK_SECONDS = 1.0
 """Between two pictures of where the robot is."""
 STAFF_SECONDS = 1.0
 """Between two pictures of what staff have to see."""
+ANSWERS_SECONDS = 0.7  # to a command, before staff are told that it has to wait
 REST_SECONDS = 5.0  # in which what it does is broken off
 
 T = TypeVar("T")
@@ -182,7 +184,10 @@ class LiveScreen(PlayScreen):
             self.run_worker(self._do_beside(command), name="command", group="command")
 
     async def _do_beside(self, command: GameCommand) -> None:
-        self._take(await self._beside(lambda: self.control.apply(command)))
+        done = asyncio.create_task(self._beside(lambda: self.control.apply(command)))
+        if not (await asyncio.wait({done}, timeout=ANSWERS_SECONDS))[0]:
+            self._tell_now(ONE_MOMENT, "dim")
+        self._take(await done)
 
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""

@@ -12,7 +12,8 @@ KEYS = ("undo", "redo", "why", "learn", "next", "shown", "again", "library", "ba
 HEARING_KEYS = ("talk", "undo", "redo", "why", "learn", "next", "listen", "back:home", "help")
 """The same where there is a microphone."""
 
-TOUR_KEYS = ("open:go on", "undo", "redo", "back:skip the tour", "help")
+TOUR_KEYS = ("undo", "redo", "back:skip the tour", "help")
+TOUR_GOES_ON = "open:go on"
 """The same while a new teacher is shown around."""
 
 NOT_WATCHING = ("undo", "redo", "again", "next", "discard", "perform")

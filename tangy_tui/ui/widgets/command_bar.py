@@ -289,9 +289,16 @@ class CommandBar(Vertical):
         if focus:
             self._input.focus()
 
+    @property
+    def lists(self) -> bool:
+        """Whether it shows what can be said now."""
+        return bool(self._input.listed)
+
     def drop(self) -> None:
-        """Empty the line, whoever has the keys."""
+        """Empty the line and close the list, wherever the keys are."""
+        self._input.forget_list()
         self._input.put("")
+        self._show_above()
 
     def ready(self) -> None:
         """Open the bar for the next command."""
