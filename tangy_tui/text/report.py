@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from tangy_profiles.activity import Activity
@@ -123,7 +124,7 @@ def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str
 def with_names(words: str, replay: GameReplay, name: Name) -> str:
     """Put names in the place of the ids of the people of a game."""
     there = {person: name(person) for person in replay.game.people}
-    return " ".join(there.get(word, word) for word in words.split(" "))
+    return re.sub(r"[\w-]+", lambda found: there.get(found[0], found[0]), words)
 
 
 def _staff_words(moment: Moment) -> tuple[str, str] | None:

@@ -28,6 +28,7 @@ from tangy_tui.monitoring.house import (
 )
 from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted
 from tangy_tui.pages.house import house_page, person_page
+from tangy_tui.text.report import with_names
 from tests.support.games import play
 
 DICTIONARY = Path(__file__).parents[2] / "docs" / "data-dictionary.md"
@@ -125,6 +126,13 @@ def test_the_log_says_who_was_away_in_a_game(workspace: Workspace, learnt: Polic
     run.apply(GoesAway("user3"))
     (begun,) = read_games(workspace.store)
     assert begun.away == {"user2"}
+
+
+def test_names_stand_in_place_of_ids_whatever_stands_beside_them() -> None:
+    replay = replay_of(state(FRONT))
+    person = replay.game.people[0]
+    said = with_names(f"staff told of {person}: tired; x{person} is nobody", replay, str.upper)
+    assert said == f"staff told of {person.upper()}: tired; x{person} is nobody"
 
 
 def test_games_add_up() -> None:
