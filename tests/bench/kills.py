@@ -39,7 +39,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policies import load_policy
 
 TANGY = (sys.executable, "-P", "-c", "from tangy_tui.cli import main; main()")
-STEP = re.compile(r"^(\d+)\. ")
+STEP = re.compile(r"^ *(\d+)\.? (?=\w)")
 """A line that tells a step that was carried out, and kept."""
 LATEST = 0.02  # s after a line until the kill
 START = 120.0  # s until a program says something, on a busy machine
