@@ -6,11 +6,8 @@ from typing import ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.strip import Strip
 
-from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.filtering import Filtered
-from tangy_tui.ui.widgets.rows import Rows
 
 
 class Choosable(Filtered, can_focus=True):
@@ -20,10 +17,6 @@ class Choosable(Filtered, can_focus=True):
     they are written (`_show`), and what is told of one (`_tell`).
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
-    DEFAULT_CSS = """
-    Choosable { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up,k", "choose(-1)", "One up", show=False, id="up"),
         Binding("down,j", "choose(1)", "One down", show=False, id="down"),
@@ -39,7 +32,6 @@ class Choosable(Filtered, can_focus=True):
     def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._cursor: int | None = None
-        self._rows = Rows(self)
 
     def action_choose(self, by: int) -> None:
         """Move the cursor."""
@@ -62,15 +54,6 @@ class Choosable(Filtered, can_focus=True):
     def on_resize(self, event: events.Resize) -> None:
         """Lay out anew."""
         self._show()
-
-    def notify_style_update(self) -> None:
-        """Draw in the new colours."""
-        super().notify_style_update()
-        self._rows.forget()
-
-    def render_line(self, y: int) -> Strip:
-        """Draw one line."""
-        return self._rows.strip(y)
 
     def _filter_changed(self) -> None:
         self._show()

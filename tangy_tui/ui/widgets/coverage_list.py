@@ -8,26 +8,19 @@ from typing import ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
 
 from tangy_tui.text.coach import ALL_SHOWN
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.rows import Row, Rows, shorten
+from tangy_tui.ui.widgets.rows import Row, RowView, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
 
-class CoverageList(ScrollView, can_focus=True):
+class CoverageList(RowView, can_focus=True):
     """First what nobody has shown yet, a sentence each; below it, dimmed, what was seen how often.
 
     The title counts them, so that a glance at the frame is enough.
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
-    DEFAULT_CSS = """
-    CoverageList { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("k", "scroll_up", "Up", show=False),
         Binding("j", "scroll_down", "Down", show=False),
@@ -42,7 +35,6 @@ class CoverageList(ScrollView, can_focus=True):
         self.border_title = "Seen"
         self._missing: tuple[str, ...] = ()
         self._seen: tuple[tuple[str, int], ...] = ()
-        self._rows = Rows(self)
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -65,15 +57,6 @@ class CoverageList(ScrollView, can_focus=True):
     def on_resize(self, event: events.Resize) -> None:
         """Wrap anew."""
         self._draw()
-
-    def notify_style_update(self) -> None:
-        """Draw in the new colours."""
-        super().notify_style_update()
-        self._rows.forget()
-
-    def render_line(self, y: int) -> Strip:
-        """Draw one line."""
-        return self._rows.strip(y)
 
     def _draw(self) -> None:
         width = self._rows.width

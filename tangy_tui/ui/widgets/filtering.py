@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from textual import events
-from textual.scroll_view import ScrollView
 
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.widgets.rows import RowView
 
 LONGEST = 40
 """Characters of a filter."""
 
 
-class Filtered(ScrollView):
+class Filtered(RowView):
     """A list of which only the lines are shown in which all the typed words occur.
 
     A list says what it shows while it is filtered (`_show`, by `_has`), and what stands at its

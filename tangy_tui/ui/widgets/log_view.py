@@ -8,13 +8,11 @@ from typing import ClassVar, Literal
 
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.strip import Strip
 
 from tangy_tui.text.phrases import NONE_FOUND
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.filtering import Filtered
-from tangy_tui.ui.widgets.rows import Row, Rows
+from tangy_tui.ui.widgets.rows import Row
 from tangy_tui.ui.widgets.wrapping import wrap
 
 Kind = Literal["text", "dim", "good", "warn", "bad"]
@@ -29,10 +27,6 @@ class LogView(Filtered, can_focus=True):
     It follows the newest, unless it is a list to be read from its beginning (`follow=False`).
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
-    DEFAULT_CSS = """
-    LogView { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("k", "scroll_up", "Up", show=False),
         Binding("j", "scroll_down", "Down", show=False),
@@ -50,7 +44,6 @@ class LogView(Filtered, can_focus=True):
         super().__init__(id=id, classes=classes)
         self.border_title = "Log"
         self._lines: deque[tuple[str, Kind]] = deque(maxlen=most)
-        self._rows = Rows(self)
         self._follow = follow
         self._at_end = True
 
@@ -78,15 +71,6 @@ class LogView(Filtered, can_focus=True):
         """Take note whether the end (in rows) is shown: the size of now is not known later."""
         super().watch_scroll_y(old_value, new_value)
         self._at_end = self.is_vertical_scroll_end
-
-    def notify_style_update(self) -> None:
-        """Draw in the new colours."""
-        super().notify_style_update()
-        self._rows.forget()
-
-    def render_line(self, y: int) -> Strip:
-        """Draw one line."""
-        return self._rows.strip(y)
 
     def _filter_changed(self) -> None:
         self._show(True)

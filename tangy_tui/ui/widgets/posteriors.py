@@ -8,14 +8,11 @@ from typing import ClassVar
 from rich.cells import cell_len
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
 
 from tangy_profiles.beliefs import Beliefs, Beta, leading, probability_best, settled
 from tangy_tui.text.people import NOBODY_KNOWN
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.rows import Row, Rows, Span, fit, shorten
+from tangy_tui.ui.widgets.rows import Row, RowView, Span, fit, shorten
 
 BLOCKS = " ▁▂▃▄▅▆▇█"
 LOWEST_PEAK = 3.0
@@ -38,17 +35,13 @@ def curve(belief: Beta, width: int) -> str:
     return "".join(BLOCKS[round(value / peak * levels)] for value in density)
 
 
-class Posteriors(ScrollView, can_focus=True):
+class Posteriors(RowView, can_focus=True):
     """For each person and strategy: curve, times complied of times asked, mean and P(best).
 
     The strategy that alone is most probably the best has a mark, and what is settled is said beside
     the name. Only lines that changed are drawn.
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
-    DEFAULT_CSS = """
-    Posteriors { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("k", "scroll_up", "Up", show=False),
         Binding("j", "scroll_down", "Down", show=False),
@@ -83,7 +76,6 @@ class Posteriors(ScrollView, can_focus=True):
         self._names: Mapping[str, str] = {}
         self._highlight: tuple[str, str] | None = None
         self._best: dict[str, dict[str, float]] = {}
-        self._rows = Rows(self)
 
     def show(
         self,
@@ -103,15 +95,6 @@ class Posteriors(ScrollView, can_focus=True):
     def on_resize(self, event: events.Resize) -> None:
         """Lay out anew."""
         self._show()
-
-    def notify_style_update(self) -> None:
-        """Draw in the new colours."""
-        super().notify_style_update()
-        self._rows.forget()
-
-    def render_line(self, y: int) -> Strip:
-        """Draw one line."""
-        return self._rows.strip(y)
 
     def _show(self) -> None:
         width = self._rows.width

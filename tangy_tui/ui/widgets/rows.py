@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import ClassVar
 
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
@@ -11,6 +12,8 @@ from textual.geometry import Region, Size
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 from textual.widget import Widget
+
+from tangy_tui.ui.themes import INK_CLASSES
 
 Span = tuple[str, str]
 """A piece of text and the ink it is written in."""
@@ -150,3 +153,25 @@ class Rows:
             self._widget.scroll_to(y=index, animate=False, force=True)
         elif index >= top + height:
             self._widget.scroll_to(y=index - height + 1, animate=False, force=True)
+
+
+class RowView(ScrollView):
+    """A scrolled widget that is made of rows: `_rows.put` shows them, and draws what changed."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    RowView { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
+    """
+
+    def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self._rows = Rows(self)
+
+    def notify_style_update(self) -> None:
+        """Draw in the new colours."""
+        super().notify_style_update()
+        self._rows.forget()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line."""
+        return self._rows.strip(y)

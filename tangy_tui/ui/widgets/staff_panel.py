@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
 
 from rich.cells import cell_len
 from textual import events
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
 
 from tangy_tui.text.staff_view import more_words
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.block_digits import block_rows
-from tangy_tui.ui.widgets.rows import Row, Rows, fit, shorten
+from tangy_tui.ui.widgets.rows import Row, RowView, fit, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
 LARGE_WIDTH, LARGE_HEIGHT = 56, 22
@@ -30,12 +26,11 @@ PersonLine = tuple[str, str, str]
 """The name of a person, how they are, and the ink of that."""
 
 
-class StaffPanel(ScrollView, can_focus=True):
+class StaffPanel(RowView, can_focus=True):
     """Draws what it is told, line by line: only lines that changed go to the terminal."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
-    StaffPanel { overflow-x: hidden; scrollbar-size-vertical: 1; }
+    StaffPanel { scrollbar-gutter: auto; }
     """
     HELP = (
         "The last call, what it is played for, the time and the pace, what Tangy does next and "
@@ -45,7 +40,6 @@ class StaffPanel(ScrollView, can_focus=True):
     def __init__(self) -> None:
         super().__init__(id="staff")
         self.border_title = "Now"
-        self._rows = Rows(self)
         self._call, self._next = "", ""
         self._facts: tuple[str, ...] = ()
         self._people: tuple[PersonLine, ...] = ()
@@ -62,15 +56,6 @@ class StaffPanel(ScrollView, can_focus=True):
     def on_resize(self, event: events.Resize) -> None:
         """Lay out anew."""
         self._draw()
-
-    def notify_style_update(self) -> None:
-        """Draw in the new colours."""
-        super().notify_style_update()
-        self._rows.forget()
-
-    def render_line(self, y: int) -> Strip:
-        """Draw one line."""
-        return self._rows.strip(y)
 
     def _draw(self) -> None:
         width, height = self._rows.width, self._rows.height
