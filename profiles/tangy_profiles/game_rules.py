@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from math import ceil
 
 from tangy_profiles.cards import PATTERNS, Deck
 from tangy_profiles.errors import ProfileError, TangyError
@@ -45,12 +46,34 @@ class Strength:
 
 
 @dataclass(frozen=True)
+class CallsFirst:
+    """What leaves time for calls where many people ask: who asks waits for some calls now and then.
+
+    After `visits` in a row an overdue call comes first, and further calls until they have had a
+    `share` of the time since the last call, but no more than `calls`. In a group of up to
+    `small_group` people whoever asks never waits for a call.
+    """
+
+    visits: int
+    share: float
+    calls: int
+    small_group: int
+
+    def due(self, people: int, visits: int, seconds: float, pace: float) -> int:
+        """Return how many calls come first, so many s after the last one; 0: none does."""
+        if people <= self.small_group or visits < self.visits or seconds < pace:
+            return 0
+        wanted = round(seconds * self.share / (1.0 - self.share) / pace, 6)
+        return min(self.calls, max(1, ceil(wanted)))
+
+
+@dataclass(frozen=True)
 class GameRules:
     """What an activity offers staff to choose for a game; "" and 0 where it has no such rule.
 
     `claim` is the word before the number of a card that is said to win; `claim_right`,
     `claim_wrong`, `taken_back` and `play_on` are said to the group. Somebody who was not visited
-    for `unvisited` calls gets a visit, where staff want that.
+    for `unvisited` calls gets a visit, where staff want that. See `CallsFirst` for its rule.
     """
 
     patterns: tuple[Pattern, ...] = ()
@@ -61,6 +84,7 @@ class GameRules:
     play_on: str = ""
     unvisited: int = 0
     strengths: tuple[Strength, ...] = ()
+    calls_first: CallsFirst | None = None
 
     def pattern(self, name: str) -> Pattern:
         """Return a pattern by its name or label, in any case.
@@ -156,6 +180,7 @@ def read_game_rules(top: Table, deck: Deck, strategies: Sequence[str]) -> GameRu
         taken_back=_said(rules, "taken_back", ("call",)),
         play_on=_said(rules, "play_on", ("pattern",)),
         unvisited=rules.whole("unvisited", 0, 999, 0),
+        calls_first=_read_calls_first(rules) if "calls_first" in rules else None,
     )
     rules.close()
     names = [one.name for one in patterns] + [one.name for one in strengths]
@@ -173,6 +198,18 @@ def _read_pattern(entry: Table, deck: Deck) -> Pattern:
     if not pattern.on(deck).lines:
         raise entry.wrong("shapes", "make no pattern on this card.")
     return pattern
+
+
+def _read_calls_first(rules: Table) -> CallsFirst:
+    entry = rules.table("calls_first")
+    found = CallsFirst(
+        visits=entry.whole("visits", 1, 99),
+        share=entry.number("share", 0.05, 0.95),
+        calls=entry.whole("calls", 1, 99),
+        small_group=entry.whole("small_group", 0, 99),
+    )
+    entry.close()
+    return found
 
 
 def _read_strength(entry: Table, strategies: Sequence[str]) -> Strength:

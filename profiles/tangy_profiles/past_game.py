@@ -144,6 +144,16 @@ class PastGame:
                 visited[step.target] = calls
         return visited
 
+    def since_call(self, activity: Activity) -> float:
+        """Return how long the steps after the last call took, in s."""
+        draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        seconds = 0.0
+        for step in reversed(self.steps):
+            if step.behaviour in draws:
+                break
+            seconds += step.seconds or 0.0
+        return seconds
+
     def called(self, activity: Activity) -> list[int]:
         """Return the numbers that were called and count, in their order."""
         draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}

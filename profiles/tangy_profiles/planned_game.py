@@ -6,7 +6,7 @@ game that was interrupted comes to where it was.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
@@ -18,6 +18,15 @@ from tangy_profiles.state import FRONT
 if TYPE_CHECKING:
     from tangy_profiles.game_records import ChangeKind, GameChange
     from tangy_profiles.tracker import Tracker
+
+
+@dataclass(frozen=True, slots=True)
+class Due:
+    """A change that is due, for whom, and how many calls it is about."""
+
+    what: ChangeKind
+    person: str = ""
+    number: int = 0
 
 
 class PlannedGame:
@@ -42,6 +51,8 @@ class PlannedGame:
     visiting = ""
     """Who gets a visit without having asked, "" where nobody does."""
     _visited: dict[str, int]
+    _row_began: float
+    """When the visits since the last call began, in s of `seconds`."""
 
     def choose(self, plan: GamePlan) -> None:
         """Play the next game by a plan.
@@ -59,7 +70,7 @@ class PlannedGame:
         self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
         self.winner, self.visiting = "", ""
         self.vouched, self.away = frozenset(), frozenset(self.game_plan.absent)
-        self._visited = {}
+        self._visited, self._row_began = {}, 0.0
         self._play_pattern()
 
     def _play_pattern(self) -> None:
@@ -78,6 +89,11 @@ class PlannedGame:
         self.game_plan = replace(self.game_plan, pace=seconds)
 
     # ---------------------------------------------------------------- what a game shows of it
+
+    @property
+    def seconds(self) -> float:
+        """The time of the world, in s."""
+        raise NotImplementedError
 
     @property
     def called_now(self) -> tuple[int, ...]:
@@ -105,7 +121,7 @@ class PlannedGame:
         return winning_state(self.activity.user_states) if place in self.vouched else state
 
     @property
-    def due(self) -> tuple[ChangeKind, str] | None:
+    def due(self) -> Due | None:
         """Return what is to change before the next behaviour, and for whom; None: nothing is."""
         tracker = self.tracker
         if tracker.place != FRONT:
@@ -114,25 +130,40 @@ class PlannedGame:
             winner = tracker.place if tracker.place in tracker.queue else tracker.queue[:1]
             person = winner if isinstance(winner, str) else "".join(winner)
             if self.game_plan.several and set(tracker.queue) - {person}:
-                return "others first", person
-            return ("played on", person) if self.patterns.left else None
+                return Due("others first", person)
+            return Due("played on", person) if self.patterns.left else None
         if self.winner and not tracker.queue:
-            return ("played on" if self.patterns.left else "won"), self.winner
+            return Due("played on" if self.patterns.left else "won", self.winner)
+        if calls := self._calls_due():
+            return Due("calls first", number=calls)
         return self._visit_due() if self.game_plan.visits else None
 
-    def _visit_due(self) -> tuple[ChangeKind, str] | None:
+    def _calls_due(self) -> int:
+        """Return how many calls come before those who ask; 0: none does."""
+        tracker, rule = self.tracker, self.activity.rules.calls_first
+        if not tracker.visits:
+            self._row_began = self.seconds
+        waits = tracker.place in tracker.queue or self.winner or self.vouched
+        if rule is None or tracker.calls_first or waits or not tracker.queue:
+            return 0
+        here = len(self.people) - len(self.away)
+        return rule.due(here, tracker.visits, self.seconds - self._row_began, self.pace)
+
+    def _visit_due(self) -> Due | None:
         """Return whose visit is due or is put off, for it costs nobody a request."""
         queue, place, calls = self.tracker.queue, self.tracker.place, len(self.called_now)
         if self.visiting:
             if self.visiting in queue and place != self.visiting and len(queue) > 1:
-                return "visit put off", self.visiting
-            return None if self.visiting in queue else ("visit over", self.visiting)
+                return Due("visit put off", self.visiting)
+            return None if self.visiting in queue else Due("visit over", self.visiting)
         if queue or place != FRONT or not self.tracker.begun() or not self.activity.rules.unvisited:
             return None
         here = [person for person in self.people if person not in self.away]
         longest = min(here, key=lambda person: self._visited.get(person, 0), default="")
         waited = calls - self._visited.get(longest, 0)
-        return ("visit", longest) if longest and waited >= self.activity.rules.unvisited else None
+        if not longest or waited < self.activity.rules.unvisited:
+            return None
+        return Due("visit", longest)
 
     # ---------------------------------------------------------------------- what changes in it
 
@@ -167,6 +198,8 @@ class PlannedGame:
             case "visit":
                 self.visiting = person
                 self._asks(person)
+            case "calls first":
+                self.tracker.calls_first = change.number
             case "visit put off":
                 self.visiting = ""
                 self._asks_no_more(person)
@@ -188,7 +221,9 @@ class PlannedGame:
     def _wins_by_word(self, person: str) -> None:
         """Let a person win whatever is seen of their card; the robot goes there to celebrate."""
         self.vouched |= {person}
+        self.tracker.calls_first = 0
         self._asks(person)
+        self.tracker.first(person)
 
     def _asks(self, person: str) -> None:
         """Let a person ask for help who did not do so."""

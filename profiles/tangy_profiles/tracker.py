@@ -35,6 +35,10 @@ class Tracker:
         """The user activity state read from the card beside the robot, or None."""
         self.closed: str | None = None
         """Whose request the last behaviour closed."""
+        self.visits = 0
+        """How many people's places the robot has come to since the last call."""
+        self.calls_first = 0
+        """How many calls come before those who ask; until then they wait."""
         self.step = 0
         self._counts = dict.fromkeys(activity.behaviours, 0)
         self._since = {
@@ -61,9 +65,9 @@ class Tracker:
             case "after":
                 return lambda: counts[name] > 0
             case "beside requester":
-                return lambda: self.place in self.queue
+                return lambda: self.place in self.queue and not self.calls_first
             case "requested or away":
-                return lambda: bool(self.queue) or self.place != FRONT
+                return lambda: (bool(self.queue) and not self.calls_first) or self.place != FRONT
             case "count":
                 pair = (name, rule.since)
                 return lambda: since[pair] >= rule.at_least
@@ -98,6 +102,12 @@ class Tracker:
         self.queue.append(person)
         return True
 
+    def first(self, person: str) -> None:
+        """Let a person who asks be next."""
+        if person in self.queue:
+            self.queue.remove(person)
+            self.queue.insert(0, person)
+
     def withdraw(self, person: str) -> None:
         """A person who asked does not ask any more, although nobody has helped."""
         if person in self.queue:
@@ -105,6 +115,9 @@ class Tracker:
 
     def arrive(self, place: str) -> None:
         """The robot has arrived at a place; whatever card it saw before is out of sight."""
+        if place not in (FRONT, self.place):
+            self.visits += 1
+            self.calls_first = 0
         self.place = place
         self.seen = None
 
@@ -124,6 +137,8 @@ class Tracker:
             return
         name = behaviour.name
         self._counts[name] += 1
+        if behaviour.effect == "draw":
+            self.visits, self.calls_first = 0, max(0, self.calls_first - 1)
         for pair in self._since:
             if name == pair[0]:
                 self._since[pair] += 1
@@ -146,8 +161,10 @@ class Tracker:
         if behaviour is None or after is None:
             return False
         steps, counts, since, queue = self.step, {**self._counts}, {**self._since}, [*self.queue]
+        place, row = self.place, (self.visits, self.calls_first)
         for succeeded in (step.completed, False):
-            self.step, self.queue = steps, [*queue]
+            self.step, self.queue, self.place = steps, [*queue], place
+            self.visits, self.calls_first = row
             self._counts.update(counts)
             self._since.update(since)
             self._see(behaviour, after, succeeded=succeeded)
@@ -159,6 +176,8 @@ class Tracker:
         """Count a behaviour, and see what there is after it: who asks, and the card there."""
         self.arrive(after.place)
         self.executed(behaviour, succeeded=succeeded)
+        if self.calls_first:  # whoever asks is not told of meanwhile, and asks nevertheless
+            return
         asking = [user.id for user in after.users if user.request == "AR"]
         self.queue = [person for person in self.queue if person in asking]
         self.queue += [person for person in asking if person not in self.queue]
@@ -177,7 +196,7 @@ class Tracker:
         for holds, stage in self._rules:  # noqa: B007 - the last rule always holds
             if holds():
                 break
-        queue, place = self.queue, self.place
+        queue, place = [] if self.calls_first else self.queue, self.place
         if not queue or stage not in self._attending:
             situation = self._situation(stage, "ANR", self._unread)
             return ActivityState(self.step, situation, place, None, self._idle, self.closed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
@@ -9,6 +10,7 @@ from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.planned_game import as_planned
+from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
 from tangy_tui.interaction.game_events import GameChanged
 from tangy_tui.world import World
@@ -20,6 +22,8 @@ class GameChanges:
     def __init__(self, world: World, store: Store) -> None:
         """Take the world and the log."""
         self.world = as_planned(world)
+        self.on_change: Callable[[ActivityState], object] = lambda now: None
+        """Is told the state after each change: who asks no more by it is nobody's fault."""
         self._store = store
 
     @property
@@ -48,8 +52,7 @@ class GameChanges:
         """Make the change that is due before the next behaviour, if one is."""
         if self.world is None or (due := self.world.due) is None:
             return []
-        what, person = due
-        return [self.make(game, steps, what, person=person)]
+        return [self.make(game, steps, due.what, person=due.person, number=due.number)]
 
     def make(self, game: str, steps: int, what: ChangeKind, **about: Any) -> GameChanged:
         """Log a change after so many steps, carry it out, and say it to the group."""
@@ -58,6 +61,7 @@ class GameChanges:
         said = ""
         if self.world is not None:
             self.world.change(change)
+            self.on_change(self.world.tracker.state())
             if said := self._said(change):
                 self.world.announce(said)
         return GameChanged(what, change.person, change.number, change.patterns, said)

@@ -173,7 +173,7 @@ class Detector:
         return mends and unseen and any(one.variable == OWED_BY_PEOPLE[0] for one in found)
 
     def take_in(self, now: ActivityState) -> None:
-        """Begin anew from a state that staff brought about."""
+        """Begin anew from a state that staff, or a change of the game's plan, brought about."""
         self._last = now
 
     def unexpected(

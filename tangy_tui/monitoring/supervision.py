@@ -83,6 +83,7 @@ class Supervision:
         self.effects_of = effects_of
         self.detector = Detector(game.world.activity, robot, effects_of(game.policy))
         game.contradicts = self.detector.contradicts
+        game.changes.on_change = self.detector.take_in
         self.recovery = Recovery(game, self.detector, robot, store, name)
         self.watch = FaultWatch(game, book, self.detector, self.recovery)
         self._clearings: Counter[str] = Counter()

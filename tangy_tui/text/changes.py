@@ -8,6 +8,7 @@ from typing import assert_never
 from tangy_profiles.activity import Activity
 from tangy_profiles.planned_game import PlannedGame
 from tangy_tui.interaction.game_events import GameChanged
+from tangy_tui.text.numbers import counted
 from tangy_tui.world import World
 
 Name = Callable[[str], str]
@@ -45,6 +46,8 @@ def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
             return f"Others are asking, so {person}'s visit waits."
         case "visit over":
             return f"{person} has had a visit."
+        case "calls first":
+            return f"Many are asking. {calls_first_words(event.number)}"
         case "several winners":
             return "Everybody who has it at the same call wins."
         case "one winner":
@@ -57,6 +60,11 @@ def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
             return "Tangy calls at another pace."
         case forgotten:
             assert_never(forgotten)
+
+
+def calls_first_words(calls: int) -> str:
+    """Say how many calls come before those who ask."""
+    return f"Tangy first calls {counted(calls, 'number')}, then goes to them."
 
 
 def pattern_words(activity: Activity, names: tuple[str, ...]) -> str:

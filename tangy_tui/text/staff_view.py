@@ -12,6 +12,7 @@ from tangy_tui.app.game_commands import Autonomy
 from tangy_tui.app.staff_view import PersonNow, StaffView
 from tangy_tui.learning.policy import Decision
 from tangy_tui.text.control import autonomy_words
+from tangy_tui.text.numbers import counted
 
 NOTHING_CALLED = "nothing called yet"
 PAUSED, STOPPED, OVER = "Paused.", "Tangy was stopped.", "The game is over."
@@ -51,11 +52,16 @@ def tangy_words(level: Autonomy, battery: float | None) -> str:
 
 
 def next_words(
-    activity: Activity, decision: Decision, state: ActivityState, name: Callable[[str], str]
+    activity: Activity,
+    decision: Decision,
+    state: ActivityState,
+    name: Callable[[str], str],
+    calls_first: int = 0,
 ) -> str:
-    """Say what Tangy does next, and why."""
+    """Say what Tangy does next, and why; so many calls come before those who ask."""
     behaviour = activity.behaviours.get(decision.behaviour)
-    why = activity.in_words(state.situation)
+    waiting = f"{counted(calls_first, 'number')} first, then those who ask"
+    why = waiting if calls_first else activity.in_words(state.situation)
     if behaviour is None or not decision.sure:
         return f"Next: Tangy asks you. Now: {why}."
     whom = state.attended if behaviour.attends else None

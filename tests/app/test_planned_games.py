@@ -177,6 +177,76 @@ def test_everybody_is_visited_and_nobody_who_asks_waits_for_that(taught: Path) -
     planned.workspace.close()
 
 
+def test_in_a_large_group_calls_have_their_share_and_nobody_who_asks_waits_for_ever(
+    taught: Path,
+) -> None:
+    planned = Planned(taught, users=24)
+    rule = planned.workspace.activity.rules.calls_first
+    assert rule is not None
+    planned.begin(GamePlan(("full card",), visits=True, pace=5))
+    waiting, longest, world = dict[str, int](), 0, planned.world
+    while not planned.supervision.over and len(world.called_now) < 30:
+        planned.events += go_on_by_script(planned.control, expert=True)
+        assert world.tracker.visits <= rule.visits
+        calls = len(world.called_now)
+        queue = [person for person in world.tracker.queue if person != world.tracker.place]
+        waiting = {person: waiting.get(person, calls) for person in queue}
+        longest = max([longest, *(calls - since for since in waiting.values())])
+    assert len(world.called_now) == 30 and planned.supervision.faults == []
+    assert 0 < longest <= rule.calls * 24 / rule.visits
+    assert "calls first" in planned.changes()
+    planned.workspace.close()
+
+
+def test_in_a_small_group_whoever_asks_never_waits_for_a_call(planned: Planned) -> None:
+    planned.begin(GamePlan(("full card",), visits=True, pace=5))
+    planned.play()
+    assert "visit" in planned.changes() and "calls first" not in planned.changes()
+
+
+def test_a_game_in_which_calls_come_first_goes_on_after_an_interruption(taught: Path) -> None:
+    planned = Planned(taught, users=24)
+    planned.begin(GamePlan(("full card",), visits=True, pace=5))
+    while planned.world.tracker.calls_first < 3:
+        planned.events += go_on_by_script(planned.control, expert=True)
+    world = planned.world
+    stood = (world.tracker.calls_first, world.tracker.state(), list(world.tracker.queue))
+    planned.workspace.close()
+
+    again = Planned(taught, users=24)
+    past = interrupted_game(again.workspace.store, "bingo")
+    assert past is not None
+    again.control = scripted_controller(again.supervision, past)
+    again.control.begin()
+    tracker = again.world.tracker
+    assert (tracker.calls_first, tracker.state(), list(tracker.queue)) == stood
+    followed = Tracker(again.workspace.activity, again.world.people)  # as a live game does
+
+    def change(one: GameChange) -> None:
+        if one.what == "calls first":
+            followed.calls_first = one.number
+        elif one.what == "visit":
+            followed.ask(one.person)
+        elif one.what == "visit put off":
+            followed.withdraw(one.person)
+
+    past.follow(followed, change)
+    assert (followed.calls_first, followed.state()) == stood[:2]
+    again.workspace.close()
+
+
+def test_a_right_claim_waits_for_no_call(taught: Path) -> None:
+    planned = Planned(taught, users=24)
+    planned.begin(GamePlan(("full card",), pace=5))
+    while not planned.world.tracker.calls_first:
+        planned.events += go_on_by_script(planned.control, expert=True)
+    planned.world.wins = lambda card: True  # type: ignore[method-assign]
+    planned.do(ClaimCard(20))
+    planned.play(calls=len(planned.world.called_now) + 1)
+    assert planned.celebrated() == ["user20"]
+    planned.workspace.close()
+
+
 @pytest.mark.parametrize("calls", [6, 40, 60])
 def test_a_planned_game_that_was_interrupted_goes_on_as_it_would_have(
     taught: Path, calls: int

@@ -122,6 +122,7 @@ class LiveWorld(LivePlan):
         past.follow(self.tracker, self.change)
         self.calls.resume(past, self.activity)
         self._visited = past.visited(self.activity)
+        self._row_began = self.seconds - past.since_call(self.activity)
         self.over = False
         self.commands.settle()
         return self.observe()

@@ -94,6 +94,7 @@ class SimulatedWorld(PlannedGame):
         """Go on where a game was interrupted, or raise NotResumable."""
         state = past.replay(self)
         self._visited = past.visited(self.activity)
+        self._row_began = self.seconds - past.since_call(self.activity)
         return state
 
     def observe(self) -> ActivityState:

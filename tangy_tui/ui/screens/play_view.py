@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.set_up import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
@@ -49,7 +49,11 @@ def _next(shown: ViewSource) -> str:
     if control.stopped:
         return text.STOPPED
     found = next_step(world, control.supervision.policy)
-    words = "" if found is None else text.next_words(world.activity, *found, shown.name)
+    planned = as_planned(world)
+    calls_first = 0 if planned is None else planned.tracker.calls_first
+    words = ""
+    if found is not None:
+        words = text.next_words(world.activity, *found, shown.name, calls_first)
     return words if control.going else f"{text.PAUSED} {words}".strip()
 
 
