@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import shutil
-import threading
 import time
 import wave
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 
 from tangy_hw.audio.wav import RATE
@@ -22,13 +17,10 @@ from tests.real.microphone import Laptop
 from tests.real.voices import Voices
 from tests.support.processes import Family
 from tests.support.terminal import TANGY, Terminal
-
-if TYPE_CHECKING:
-    from websockets.sync.connection import Connection
+from tests.support.wheels import Wheels, rosbridge
 
 STOPS = 0.5  # s after the last word, in which the wheels stand
 DRIVES = 0.1  # m/s, from which it is on its way
-LISTENING = 0x0A  # the state of such a socket in /proc/net/tcp
 PATIENCE = 60.0
 
 pytestmark = [
@@ -36,50 +28,6 @@ pytestmark = [
     pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),
     pytest.mark.xdist_group("robot"),
 ]
-
-
-class Wheels:
-    """What the bench's odometry tells another client of its, as it comes."""
-
-    def __init__(self, link: Connection) -> None:
-        self.told: list[tuple[float, float]] = []
-        """When (on the monotonic clock), and how fast it drove, in m/s."""
-        self._link = link
-        self._link.send(json.dumps({"op": "subscribe", "topic": "/odom"}))
-        threading.Thread(target=self._hear, daemon=True).start()
-
-    def _hear(self) -> None:
-        with suppress(WebSocketException, OSError):
-            for text in self._link:
-                twist = json.loads(text)["msg"]["twist"]["twist"]
-                speed = float(np.hypot(twist["linear"]["x"], twist["angular"]["z"]))
-                self.told.append((time.monotonic(), speed))
-
-    @property
-    def speed(self) -> float:
-        """How fast it drives, in m/s; a turn of a rad/s counts as one."""
-        return self.told[-1][1] if self.told else 0.0
-
-    def still_since(self) -> float:
-        """Return when it came to stand, on the monotonic clock."""
-        return max((at for at, speed in self.told if speed > 1e-3), default=0.0)
-
-
-def rosbridge(pid: int) -> str:
-    """Return the address of the one of a process's ports that speaks rosbridge."""
-    for port in _listens(pid):
-        url = f"ws://127.0.0.1:{port}"
-        with suppress(WebSocketException, OSError), connect(url, open_timeout=2):
-            return url
-    raise AssertionError("the bench has no rosbridge")
-
-
-def _listens(pid: int) -> list[int]:
-    names = [str(entry.readlink()) for entry in Path(f"/proc/{pid}/fd").iterdir()]
-    rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-    own = {name[8:-1] for name in names if name.startswith("socket:[")}
-    listening = (row for row in rows if row[9] in own and int(row[3], 16) == LISTENING)
-    return [int(row[1].rpartition(":")[2], 16) for row in listening]
 
 
 @pytest.fixture
