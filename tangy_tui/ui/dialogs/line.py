@@ -1,0 +1,102 @@
+"""A line that people type over a screen: what the dialogs have in common that ask for one."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Generic, TypeVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.content import Content
+from textual.widgets import Input, Static
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+
+LONGEST = 200  # characters of a line
+
+ValueT = TypeVar("ValueT")
+
+
+class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
+    """Takes a line: Enter takes what `taken` makes of it, esc leaves.
+
+    What is wrong with a line is said below it, and it stays.
+    """
+
+    DEFAULT_CSS = """
+    LineDialog Input { margin: 1 0 0 0; }
+    LineDialog .wrong { color: $warning; height: auto; display: none; }
+    LineDialog .wrong.-shown { display: block; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Back", priority=True)]
+
+    def __init__(
+        self,
+        title: str,
+        words: str,
+        keys: str,
+        *,
+        begun: str = "",
+        selected: bool = False,
+        longest: int = LONGEST,
+    ) -> None:
+        """Make the dialog.
+
+        Args:
+            title: what is asked.
+            words: what helps to answer it.
+            keys: what keys do.
+            begun: stands in the line already.
+            selected: the next letter takes the place of what stands there.
+            longest: how many characters a line may have.
+        """
+        super().__init__(None)
+        self._title, self._words, self._keys = title, words, keys
+        self._begun, self._selected, self._longest = begun, selected, longest
+
+    def taken(self, line: str) -> ValueT | None:
+        """Return what a line means; None leaves.
+
+        Raises:
+            TangyError: it is not to be taken.
+        """
+        raise NotImplementedError
+
+    def compose(self) -> ComposeResult:
+        """Lay out the words and the line."""
+        line = Input(self._begun, max_length=self._longest, select_on_focus=self._selected)
+        line.cursor_blink = False
+        wrong = Static("", classes="wrong", markup=False)
+        box = Vertical(Static(clean(self._words), markup=False), line, wrong, classes="box")
+        box.border_title = Content(self._title)
+        box.border_subtitle = self._keys
+        yield box
+
+    def on_mount(self) -> None:
+        """Let the line be typed."""
+        line = self.query_one(Input)
+        line.focus()
+        if not self._selected:
+            line.cursor_position = len(self._begun)
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Take the line, if it can be taken."""
+        event.stop()
+        try:
+            self.answer(self.taken(event.value))
+        except TangyError as error:
+            wrong = self.query_one(".wrong", Static)
+            wrong.update(str(error))
+            wrong.add_class("-shown")
+
+    def on_key(self, event: events.Key) -> None:
+        """Let letters be letters: none is a key here."""
+        if event.is_printable:
+            event.stop()
+
+    def action_leave(self) -> None:
+        """Go back."""
+        self.answer(None)
