@@ -97,7 +97,8 @@ def understand(
     text, margin = best_words(evidence, phrasebook)
     if stops(text, phrasebook.game):
         return StopCommand(text)
-    if text not in phrasebook.phrases and _steers(text, evidence, settings, WHILE_TEACHING):
+    steers = text not in phrasebook.phrases and _steers(text, evidence, settings, WHILE_TEACHING)
+    if steers and (not evidence.stop or steering_of(evidence.phrase) == steering_of(text)):
         return Say(text, 1.0, None)
     near, confidence = _nearest(text, margin, phrasebook, settings)
     if confidence >= SURE and near[0].confidence >= 1:
@@ -212,8 +213,8 @@ def answer(
     if settings.mode == "paper":
         return None
     reply, phrase = _reply(said, choices), _reply(evidence.phrase, choices)
-    if evidence.stop and reply is None:
-        return StopCommand(evidence.stop)
+    if evidence.stop and (reply is None or (reply == Reply(True) and phrase != reply)):
+        return StopCommand(evidence.stop)  # a yes would move the robot
     if reply is None and phrase == Reply(False) and evidence.margin < SMALL_MARGIN:
         reply = phrase  # a no that was misheard moves nothing
     if reply is None:

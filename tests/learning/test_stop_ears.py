@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tangy_profiles.activity import load_activity
@@ -81,3 +83,15 @@ def test_in_games_what_steers_them_is_taken_where_it_was_heard_well(
 def test_a_stop_that_was_found_stops_while_a_question_is_open_but_for_an_answer() -> None:
     assert answer(heard("they stop", "hey stop"), USUAL) == StopCommand("hey stop")
     assert answer(heard("no thank you", "don't move", 0.5), USUAL) == Reply(False)
+
+
+def test_a_stop_that_was_found_stops_unless_both_decoders_heard_a_yes() -> None:
+    said = heard("yes please", "please stop", 0.5)
+    assert answer(said, USUAL) == StopCommand("please stop")
+    assert answer(replace(said, phrase="yes please"), USUAL) == Reply(True)
+
+
+def test_a_stop_that_was_found_stops_unless_both_decoders_heard_steering() -> None:
+    said = heard("undo that", "don't move", 0.5)
+    assert understand(said, BOOK, USUAL) == StopCommand("don't move")
+    assert understand(replace(said, phrase="undo that"), BOOK, USUAL) == Say("undo that", 1.0, None)
