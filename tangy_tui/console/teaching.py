@@ -6,14 +6,12 @@ It drives the same sessions as the screens. One thing is said per line, and noth
 from __future__ import annotations
 
 import asyncio
-import shlex
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from threading import Thread
 from typing import Any
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.reading import plain
 from tangy_tui.app.command_grammar import (
     AgainFrom,
     Inquiry,
@@ -25,6 +23,7 @@ from tangy_tui.app.command_grammar import (
     read_teaching,
 )
 from tangy_tui.app.tour import Tour
+from tangy_tui.console.after_teaching import AfterTeaching
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.teaching_events import (
@@ -54,13 +53,15 @@ from tangy_tui.text.coach import coach_words
 from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
 from tangy_tui.text.teaching_commands import (
+    GAME_OVER,
+    HELP,
+    MEANINGS,
     NOTHING_CHANGED,
     ON_THE_SCREEN,
     STOPPED,
     WHICH_STEP,
     learn_next,
     left_after,
-    next_or_quit,
 )
 from tangy_tui.text.tour import tour_line
 from tangy_tui.text.voice import OR_SAY_WHICH, OR_SAY_YES
@@ -69,27 +70,6 @@ from tangy_tui.text.who import renamed_teacher, teaches_as
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
 Write = Callable[[str], None]
-
-HELP = (
-    "Type what Tangy should do, or one of: undo, redo, again N, where, seen, why, help, next, quit."
-)
-MEANINGS = (
-    ("undo", "take the last step back"),
-    ("redo", "do the step again that was taken back"),
-    ("again N", "go back before step N, to show it and what follows again"),
-    ("where", "say what Tangy sees"),
-    ("seen", "say which situations nobody has shown yet"),
-    ("why", "say what Tangy would do here by what it has learnt, and why"),
-    ("next", "begin another demonstration"),
-    ("my name is ROSA", "teach by another name"),
-    ("quit", "leave; what you confirmed is kept"),
-)
-
-
-def command_line(verb: str, **options: str | None) -> str:
-    """Write a command as it is to be typed, with those of its options that have a value."""
-    given = [f"--{name} {shlex.quote(value)}" for name, value in options.items() if value]
-    return plain(" ".join(["tangy", verb, *given]))
 
 
 class TeachingLines:
@@ -109,6 +89,7 @@ class TeachingLines:
         learn: str = "tangy learn",
         yes: TypedYes | None = None,
         rename: Callable[[str], str] | None = None,
+        after: AfterTeaching | None = None,
         tour: bool = False,
     ) -> None:
         """Make the session.
@@ -125,6 +106,7 @@ class TeachingLines:
             learn: the command that learns from it.
             yes: how a yes is typed.
             rename: keeps another name of the teacher, and returns it.
+            after: learns from what was shown, and plays by it.
             tour: show a new teacher around.
         """
         self._together = ears is not None and ears.live and not scripted
@@ -138,6 +120,9 @@ class TeachingLines:
         self._learn = learn
         self._yes = yes or TypedYes()
         self._rename = rename
+        self._after = after
+        self.plays = False
+        """Whether the teacher has left to see Tangy run a game."""
         self._tour = Tour() if tour else None
         self._kept = False  # something of the present demonstration is in the log
         self._complete = False  # a demonstration was completed in this session
@@ -166,7 +151,7 @@ class TeachingLines:
         self._tell_of_tour()
         while (line := await self._next_line()) is not None:
             command = self._command(line) if isinstance(line, str) else line
-            if isinstance(command, Leave):
+            if isinstance(command, Leave) or self.plays:
                 break
             asked = teaching.question
             if isinstance(command, StopCommand):
@@ -182,6 +167,8 @@ class TeachingLines:
 
     def _leave(self) -> None:
         """Say what becomes of what was shown, and what to do next."""
+        if self.plays:
+            return
         shown = self._teaching.demonstration
         if shown.finished or (self._complete and not shown.steps):
             self._write(learn_next(self._learn))
@@ -276,7 +263,7 @@ class TeachingLines:
         elif isinstance(word, TeachAs) or word == Perform("name"):
             self._write(self._named(word.name if isinstance(word, TeachAs) else ""))
         elif isinstance(word, Perform):
-            self._write(ON_THE_SCREEN)
+            self._perform(word)
         elif isinstance(word, AgainFrom):
             if word.step is not None:
                 return Again(self._teaching.demonstration.id, word.step - 1)
@@ -316,6 +303,13 @@ class TeachingLines:
         if not teaching.demonstration.steps:
             self._tell(teaching.apply(Discard()))
         return renamed_teacher(teaching.teacher, teaching.demonstration.teacher)
+
+    def _perform(self, word: Perform) -> None:
+        """Learn, or leave for a game; what else keys do needs a screen."""
+        lines, self.plays = (
+            ([ON_THE_SCREEN], False) if self._after is None else (self._after.perform(word))
+        )
+        self._write_all(lines)
 
     def _inquire(self, what: Inquiry) -> None:
         match what:
@@ -375,7 +369,7 @@ class TeachingLines:
                 self._write(OR_SAY_YES if isinstance(event, Asked) else OR_SAY_WHICH)
             if isinstance(event, Finished):
                 self._write_all(self._seen()[:1])
-                self._write(next_or_quit(self._learn))
+                self._write(GAME_OVER)
             if isinstance(event, Executed | StepUndone) and not self._teaching.world.over:
                 self._where()
         if self._tour is not None and self._tour.follow(events):

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.teacher_profile import change_name, login_name, read_profile
-from tangy_tui.text.who import TYPE_NAME, WHO, WHO_DETAIL
+from tangy_tui.app.teacher_profile import NOBODY, change_name, login_name, read_profile
+from tangy_tui.text.who import TYPE_A_NAME, TYPE_NAME, WHO, WHO_DETAIL
 
 
 def ask_who(
@@ -25,11 +25,12 @@ def ask_who(
         return profile.name, False
     write(f"{WHO} {WHO_DETAIL}")
     while True:
-        write(TYPE_NAME.format(usual))
+        write(TYPE_A_NAME if usual == NOBODY else TYPE_NAME.format(usual))
         line = read()
         if line is None:
             return usual, False
         try:
-            return change_name(folder, line.strip() or usual), True
+            suggested = "" if usual == NOBODY else usual
+            return change_name(folder, line.strip() or suggested), True
         except TangyError as error:
             write(str(error))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from tangy_profiles.declared.whom import first_addressee
-from tangy_profiles.state import EVERYBODY, ActivityState
+from tangy_profiles.state import EVERYBODY, FRONT, ActivityState
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
 from tangy_tui.language.stop_sentence import stops
 
@@ -157,8 +157,16 @@ class Verifier:
         return self._ask(commands[0], commands[1:])
 
     def sayable(self, usual: Sequence[str] = ()) -> tuple[str, ...]:
-        """Return a phrase for each behaviour that can be done now; `usual` ones come first."""
-        order = dict.fromkeys((*usual, *self._activity.behaviours))
+        """Return a phrase for each behaviour that can be done now, best first.
+
+        First come the `usual` ones, then what the activity expects here. Beside a person follows
+        what is done for a person, elsewhere what is done for everybody.
+        """
+        state, activity = self._observe(), self._activity
+        expected = activity.expected.get(state.situation)
+        beside = state.place != FRONT
+        rest = sorted(activity.behaviours, key=lambda name: self._attends(name) is not beside)
+        order = dict.fromkeys((*usual, *([expected] if expected else ()), *rest))
         phrases: list[str] = []
         for name in order:
             behaviour = self._activity.behaviours.get(name)
@@ -168,6 +176,9 @@ class Verifier:
             if self._obstacle(behaviour, target) is None:
                 phrases.append(behaviour.phrases[0])
         return tuple(phrases)
+
+    def _attends(self, behaviour: str) -> bool:
+        return self._activity.behaviour(behaviour).attends
 
     def stops(self, text: str) -> bool:
         """Say whether what was typed stops the robot, instead of asking for a behaviour."""

@@ -5,6 +5,10 @@ from __future__ import annotations
 from tangy_tui.text.numbers import counted
 
 NOTHING_LEARNT = "Nothing learnt yet."
+NOW_PLAY = "Press {begin} to see Tangy run a game by this; esc goes back to teach more."
+PLAY_BY_THIS = "Let Tangy run a game by this"
+PLAY_NOW = "Let Tangy run a game in the simulated room?"
+PLAY_DETAIL = "It does what stands in this table, and asks you where nothing was shown."
 NOT_AS_KEPT = "The policy is not the one that was kept"
 SAME_DECISIONS = "It decides the same everywhere; only the votes differ."
 OTHER_DECISIONS = "What has changed"

@@ -2,11 +2,39 @@
 
 from __future__ import annotations
 
+import shlex
+
+from tangy_profiles.reading import plain
 from tangy_tui.text.numbers import counted
+
+HELP = (
+    "Type what Tangy should do, or one of: undo, redo, again N, where, seen, why, help, next, "
+    "learn, play, quit."
+)
+MEANINGS = (
+    ("undo", "take the last step back"),
+    ("redo", "do the step again that was taken back"),
+    ("again N", "go back before step N, to show it and what follows again"),
+    ("where", "say what Tangy sees"),
+    ("seen", "say which situations nobody has shown yet"),
+    ("why", "say what Tangy would do here by what it has learnt, and why"),
+    ("next", "begin another game"),
+    ("learn", "let Tangy learn from the games that were shown to their end"),
+    ("play", "leave, and see Tangy run a game in the simulated room"),
+    ("discard game", "put this game away, and begin another"),
+    ("my name is ROSA", "teach by another name"),
+    ("quit", "leave; what you confirmed is kept"),
+)
+"""What can be typed by lines beside what Tangy should do, and what each does."""
 
 STOPPED = "STOP: the simulated robot stands still until your next command."
 NOTHING_CHANGED = "You confirmed nothing, so nothing has changed."
 ON_THE_SCREEN = "That works on the screen only: run tangy without --plain."
+GAME_OVER = (
+    "Type next for another game, learn to let Tangy learn from this one, play to see Tangy run a "
+    "game, or quit."
+)
+NOW_PLAY = "Type play to see Tangy run a game, next to show it another one, or quit."
 WHICH_STEP = "Say which step: `again 5` goes back to before step 5."
 
 
@@ -23,6 +51,7 @@ def left_after(steps: int, command: str) -> str:
     )
 
 
-def next_or_quit(command: str) -> str:
-    """Say what can be done after a demonstration; a command learns from it."""
-    return f"Type next for another demonstration, or quit and run `{command}`."
+def command_line(verb: str, **options: str | None) -> str:
+    """Write a command as it is to be typed, with those of its options that have a value."""
+    given = [f"--{name} {shlex.quote(value)}" for name, value in options.items() if value]
+    return plain(" ".join(["tangy", verb, *given]))

@@ -33,7 +33,7 @@ def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
             return "Tangy does nothing before you say yes. Look at the question, and answer it."
         case TourStop.STEP:
             return (
-                "That is your first step; it stands under Steps. {undo} takes a step back, {redo} "
+                "That is your first step; see it under Steps. {undo} takes a step back, {redo} "
                 "brings it back. Enter goes on."
             )
         case TourStop.PEOPLE:
@@ -43,8 +43,8 @@ def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
             )
         case TourStop.COACH:
             return (
-                "This line tells what is going on, and what a host might do. Under it stands what "
-                "Tangy has not seen yet. Enter: now you teach."
+                "This line says what is going on, and what a host might do. The line below lists "
+                "what Tangy has not seen yet. Now it is your turn: press Enter to teach."
             )
         case _:
             assert_never(stop)

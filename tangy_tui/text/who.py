@@ -6,6 +6,7 @@ WHO = "Who are you?"
 WHO_DETAIL = "Tangy keeps with each game who has shown it, and tells teachers apart by their names."
 NAME_KEYS = "enter keeps the name   esc not now"
 TYPE_NAME = "Type your name and press Enter, or just Enter to be called {}."
+TYPE_A_NAME = "Type your name and press Enter."
 
 
 HOW_TO_RENAME = "To change that, type: my name is Rosa."

@@ -6,7 +6,7 @@ from collections.abc import Callable, Coroutine
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.teacher_profile import change_name, read_profile
+from tangy_tui.app.teacher_profile import NOBODY, change_name, read_profile
 from tangy_tui.text.who import renamed_teacher
 from tangy_tui.ui.old_games import ask_about_old_games
 
@@ -39,7 +39,9 @@ async def ask_name(program: Program) -> str | None:
     """Ask who teaches, and keep the answer; None: it is left as it is."""
     from tangy_tui.ui.dialogs.name import NameDialog
 
-    name = await program.push_screen_wait(NameDialog(program.workspace.teacher))
+    usual = program.workspace.teacher
+    suggested = "" if usual == NOBODY else usual  # a name that nobody has tells nobody apart
+    name = await program.push_screen_wait(NameDialog(suggested))
     return name if name is not None and _keep(program, name) else None
 
 

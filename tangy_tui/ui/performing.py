@@ -6,7 +6,7 @@ from typing import Any
 
 from textual.screen import Screen
 
-ACTIONS = {"palette": "command_palette", "draw": "draw_again"}
+ACTIONS = {"palette": "command_palette", "draw": "draw_again", "begin": "play"}
 """What Textual calls an action of the keymap, where that is something else."""
 
 

@@ -270,6 +270,14 @@ class Program(SoundingApp):
             else:
                 await self.push_screen_wait(screen)
 
+    async def action_play(self, wanted: str = "") -> None:
+        """Let Tangy run a game in the simulated room: from home, teaching, or what it learnt."""
+        from tangy_tui.ui.screens.policy import PolicyScreen
+        from tangy_tui.ui.screens.teach import TeachScreen
+
+        if isinstance(self.screen, HomeScreen | TeachScreen | PolicyScreen):
+            await self.play(wanted=wanted)
+
     async def live(self) -> None:
         """Play a live game: with the robot whose drivers are named, else on the bench."""
         policy = await self.load_policy()

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import shlex
+import sys
 from pathlib import Path
+from textwrap import wrap
 from typing import Annotated, Any
 
 import typer
@@ -35,8 +38,28 @@ def as_given(data: Path | None, users: int = REGISTERED) -> str:
 
 
 def print_line(line: str) -> None:
-    """Print a line at once."""
-    print(line, flush=True)
+    """Print a line at once; on a terminal it is broken between words, not within them."""
+    print(fitted(line, _columns()), flush=True)
+
+
+def fitted(line: str, columns: int) -> str:
+    """Break a line between words where it is longer than so many columns; 0 breaks nowhere."""
+    if not columns or len(line) <= columns:
+        return line
+    inset = line[: len(line) - len(line.lstrip())]
+    further = f"{inset}  " if inset else ""
+    return "\n".join(
+        wrap(line, columns, subsequent_indent=further, break_long_words=False,
+             break_on_hyphens=False, tabsize=1)
+    )  # fmt: skip
+
+
+def _columns() -> int:
+    """Return how wide the terminal is that lines are printed on; 0 where it is none."""
+    try:
+        return os.get_terminal_size(sys.stdout.fileno()).columns if sys.stdout.isatty() else 0
+    except (OSError, ValueError):  # it has gone, or has no file
+        return 0
 
 
 def print_json(document: Any) -> None:

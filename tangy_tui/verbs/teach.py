@@ -156,10 +156,13 @@ def _teach_by_lines(
     from tangy_tui.app.chosen_activity import chosen_activity
     from tangy_tui.app.teacher_profile import change_name
     from tangy_tui.app.workspace import data_folder
+    from tangy_tui.console.after_teaching import AfterTeaching
     from tangy_tui.console.inputs import is_typed, line_reader
-    from tangy_tui.console.teaching import TeachingLines, command_line
+    from tangy_tui.console.teaching import TeachingLines
     from tangy_tui.console.typed_yes import TypedYes
+    from tangy_tui.learning.policies import need_policy
     from tangy_tui.text.documents import demonstration_document
+    from tangy_tui.text.teaching_commands import command_line
 
     folder = workspace.store.folder
     usual = chosen_activity(folder)
@@ -181,11 +184,39 @@ def _teach_by_lines(
         learn=command_line("learn", **options),
         yes=TypedYes(terminal=is_typed(script), setting=workspace.settings.question),
         rename=partial(change_name, folder),
+        after=AfterTeaching(
+            learn=lambda: _learn(workspace),
+            check=lambda: need_policy(workspace.store, workspace.activity),
+        ),
         tour=tour,
     )
     asyncio.run(lines.run(resume=resume))
     if as_json:
         common.print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
+    elif lines.plays:
+        _play(workspace, teaching.teacher)
+
+
+def _learn(workspace: Workspace) -> list[str]:
+    """Learn from what was shown to its end, and say what was learnt."""
+    from tangy_tui.app.training import learn
+    from tangy_tui.learning.coverage import NOT_SHOWN
+    from tangy_tui.learning.library import read_library
+    from tangy_tui.text.learnt import learnt_lines
+
+    policy = learn(workspace)
+    library = read_library(workspace.store, workspace.activity.name)
+    steps = sum(len(shown.steps) for shown in library.finished)
+    return learnt_lines(workspace.activity, policy, steps, 0, NOT_SHOWN)
+
+
+def _play(workspace: Workspace, teacher: str) -> None:
+    """Let Tangy run a game by what it learnt last, with the same lines."""
+    from tangy_tui.verbs.play import SPEED
+    from tangy_tui.verbs.playing import play_with_staff, recall
+
+    supervision = workspace.supervision(recall(workspace, "", quiet=False), None, asks=True)
+    play_with_staff(workspace, supervision, 1, teacher, speed=SPEED)
 
 
 def _seen(workspace: Workspace, teaching: TeachingSession) -> list[str]:

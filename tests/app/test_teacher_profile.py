@@ -35,9 +35,18 @@ def test_a_name_is_asked_once_and_kept(tmp_path: Path) -> None:
         assert workspace.teacher == "Ada"
 
 
-def test_enter_alone_takes_the_login_name(tmp_path: Path) -> None:
+def test_enter_alone_takes_the_login_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("USER", "rosa")
     assert ask(tmp_path, "\n")[0] == login_name()
     assert read_profile(tmp_path).name == login_name()
+
+
+def test_without_a_login_name_a_name_has_to_be_typed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("USER", raising=False)
+    monkeypatch.delenv("USERNAME", raising=False)
+    assert ask(tmp_path, "\n", " \n", "Ada\n")[0] == "Ada"
 
 
 def test_a_name_that_cannot_be_kept_is_asked_again(tmp_path: Path) -> None:

@@ -72,6 +72,7 @@ WAYS = (
     *(Way(f"lines, {delay:g} s", Link(delay), plain=True) for delay in (0.0, 0.1, 0.3, 0.6, 1.2)),
     Way("lines, 0.3 s, jitter 0.4 s", Link(0.3, jitter=0.4), plain=True),
     Way("lines, 0.1 s, 2 kB/s", Link(0.1, rate=2000), plain=True),
+    Way("lines, no replies, 0.3 s", Link(0.3), "nobody", plain=True),
     Way("lines here", Link(), plain=True, remote=False),
 )
 

@@ -12,6 +12,7 @@ from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
+from tangy_profiles.state import FRONT, Situation
 from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
@@ -128,6 +129,26 @@ def test_what_can_be_said_now_is_never_refused_and_begins_with_what_was_shown_mo
     fourth = session(store, seed=4)
     fourth.begin(resume=False)
     assert fourth.sayable[:2] == ("tell a joke", "greet everyone")
+
+
+@pytest.mark.parametrize("expected", [BINGO.expected, {}])
+def test_what_can_be_said_now_begins_with_what_helps_here(
+    store: Store, expected: dict[Situation, str]
+) -> None:
+    teaching = session(store, activity=replace(BINGO, expected=expected))
+    teaching.begin()
+    beside = 0
+    while not teaching.demonstration.finished:
+        state = teaching.world.observe()
+        best = BINGO.behaviour(BINGO.expected[state.situation])
+        if expected:
+            assert teaching.sayable[0] == best.phrases[0]
+        elif state.place != FRONT and best.place == "attended":
+            helps = sum(b.attends for b in BINGO.behaviours.values())
+            assert best.phrases[0] in teaching.sayable[:helps]
+            beside += 1
+        teach(teaching, best.phrases[0])
+    assert expected or beside
 
 
 def test_what_can_be_said_now_is_nothing_once_the_game_is_over(store: Store) -> None:

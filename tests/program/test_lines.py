@@ -19,12 +19,13 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.teaching import TeachingLines, command_line
+from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.interaction.game_events import BeliefUpdated
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.text.games import belief_lines, game_lines
+from tangy_tui.text.teaching_commands import command_line
 from tests.support.staff_lines import play_by_turns
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
@@ -243,12 +244,22 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(workspace: Worksp
     after = said[said.index(over) + 1 :]
     assert after[:2] == [
         "9 of 11 situations were shown.",
-        "Type next for another demonstration, or quit and run `tangy learn --data d`.",
+        "Type next for another game, learn to let Tangy learn from this one, play to see Tangy "
+        "run a game, or quit.",
     ]
     assert after[2].startswith("This game is over.")
     assert after[3] == "A new demonstration by Ada (game 2)."
     assert after[-1] == "Let Tangy learn from it with `tangy learn --data d`."
     assert not any(line.startswith("You left after") for line in after)
+
+
+def test_after_a_game_by_lines_tangy_learns_and_plays_by_their_words(tangy: Tangy) -> None:
+    whole = tangy("teach", "--teacher", "scripted", "--seed", "1")
+    assert whole.returncode == 0
+    session = tangy("teach", "--plain", "--teacher", "Ada", stdin="play\nlearn\nplay\nend\ny\n")
+    assert session.returncode in (0, 1)
+    said = session.stdout
+    assert said.index("tangy learn") < said.index("Learnt 'bingo-1'") < said.index("Game 1 begins")
 
 
 @given(st.lists(st.text(max_size=20) | st.sampled_from(["y", "n", "1", "undo", "next number"])))

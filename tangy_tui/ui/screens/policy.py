@@ -12,11 +12,14 @@ from tangy_profiles.activity import Activity
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.text import policies as text
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.learnt import effects_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.closing import close
-from tangy_tui.ui.keys import bind
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.policy_options import DIGEST_SHOWN
 from tangy_tui.ui.reasons import why_row
@@ -53,11 +56,12 @@ class PolicyScreen(TangyScreen[None]):
         "One row for each situation that can come about: what Tangy does, which share of the "
         "trees voted for it, and how often it was demonstrated. Below: what was seen to follow "
         "each behaviour. Choose a row and press Enter or {why} to see why; {compare} compares with "
-        "another policy or a teacher, {another} shows another policy. Where nothing was shown, or "
-        "demonstrations disagree, Tangy asks in the game."
+        "another policy or a teacher, {another} shows another policy, {begin} lets Tangy "
+        "play by it. Where nothing was shown, or demonstrations disagree, Tangy asks in the game."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bind("why"),
+        *bind("begin", "play", name=text.PLAY_BY_THIS),
         *bind("compare"),
         *bind("another", "app.other_policy"),
         *bind("back", "leave"),
@@ -79,12 +83,14 @@ class PolicyScreen(TangyScreen[None]):
         """Lay out the table and the effects."""
         note = f"{self.policy.name} {self.policy.digest[:DIGEST_SHOWN]}"
         yield StatusLine(Status(mode="policy", note=note))
+        keymap = keymap_of(self.app)
         yield Static(self._summary(), id="summary", markup=False)
+        yield Static(with_keys(text.NOW_PLAY, keymap), id="what-now", markup=False)
         yield panel(PolicyTable())
         yield panel(LogView(id="effects", follow=False), "What follows")
         yield key_line(
-            "why", "filter", "compare", "another", "panel:next panel", ("up down", "choose"),
-            "back", "help",
+            "begin:play", "why", "filter", "compare", "another", "panel:next panel",
+            ("up down", "choose"), "back", "help",
         )  # fmt: skip
 
     def on_mount(self) -> None:
@@ -114,6 +120,16 @@ class PolicyScreen(TangyScreen[None]):
     def _explain(self, index: int) -> None:
         situation = self._workspace.activity.situations[index]
         self.app.push_screen(why_row(self._workspace, self.policy, situation))
+
+    def action_play(self) -> None:
+        """Let Tangy run a game by this policy, if that is meant."""
+        self.run_worker(self._play(), name="play")
+
+    async def _play(self) -> None:
+        app: Any = self.app
+        dialog = ConfirmDialog(text.PLAY_NOW, text.PLAY_DETAIL, yes="play", no="not now")
+        if await app.push_screen_wait(dialog):
+            await app.action_play(self.policy.digest)
 
     def action_compare(self) -> None:
         """Compare this policy with another, or with what a teacher shows."""

@@ -1,0 +1,35 @@
+"""What a teacher at the lines may do with what was shown: let Tangy learn, and let it play."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.app.command_grammar import Perform
+from tangy_tui.text.teaching_commands import NOW_PLAY, ON_THE_SCREEN
+
+
+@dataclass(frozen=True, slots=True)
+class AfterTeaching:
+    """Learning, and whether there is something to play by.
+
+    `learn` learns from what was shown, and says what was learnt; `check` raises TangyError where
+    nothing was learnt yet.
+    """
+
+    learn: Callable[[], list[str]]
+    check: Callable[[], object]
+
+    def perform(self, word: Perform) -> tuple[list[str], bool]:
+        """Do what a word wants; return what is to be said, and whether a game is to be played."""
+        try:
+            match word.action:
+                case "learn":
+                    return [*self.learn(), NOW_PLAY], False
+                case "begin":
+                    self.check()
+                    return [], True
+        except TangyError as error:
+            return [str(error)], False
+        return [ON_THE_SCREEN], False
