@@ -49,7 +49,7 @@ def read_questions(text: str, name: str) -> list[ChoiceQuestion]:
     found = list(_aiken(text, name) if aiken else _kahoot(text, name))
     if not found:
         raise TangyError(
-            plain(f"{name}: holds no question, neither in the Aiken format nor as CSV of Kahoot.")
+            plain(f"{name}: there is no question in it, in the Aiken format or in Kahoot's CSV.")
         )
     return found
 
@@ -61,7 +61,7 @@ def _aiken(text: str, name: str) -> Iterator[ChoiceQuestion]:
         if answer := _ANSWER.fullmatch(line):
             letter = answer[1].upper()
             if letter not in options:
-                raise _wrong(name, number, f"the answer {letter} is none of the options")
+                raise _wrong(name, number, f"the answer {letter} is not one of the options")
             yield _checked(name, number, " ".join(ask), list(options.values()),
                            [list(options).index(letter)])  # fmt: skip
             ask, options = [], {}

@@ -84,7 +84,7 @@ def archive_person(store: Store, person: str, *, on: bool = True) -> None:
         TangyError: nobody would be left.
     """
     if on and _alone(registered(store), person):
-        raise TangyError("Somebody has to take part: add another person first.")
+        raise TangyError("At least one person must take part: add another person first.")
     store.append(PersonArchived(on=on), person=person)
 
 

@@ -165,11 +165,11 @@ def with_activity(mode: str, activity: Activity) -> str:
     return mode if activity.name == DEFAULT_ACTIVITY else f"{mode}: {activity.title}"
 
 
-CHOOSE_ACTIVITY = "Which activity is taught and played?"
+CHOOSE_ACTIVITY = "Which activity do you want to teach and play?"
 
 
 def activity_note(activity: Activity) -> str:
-    """Say in a few words what an activity is made of."""
+    """Count an activity's behaviours, situations and teams in words."""
     behaviours = len(activity.behaviours)
     teams = f", for {len(activity.teams)} teams" if activity.teams else ""
     return f"{behaviours} behaviours, {len(activity.situations)} situations{teams}"
@@ -177,4 +177,4 @@ def activity_note(activity: Activity) -> str:
 
 def chosen_words(title: str) -> str:
     """Say that an activity was chosen."""
-    return f"{title} is taught and played from now on."
+    return f"From now on you teach and play {title}."

@@ -11,9 +11,9 @@ ASK_AGAIN = "Please give it a name with at least one letter. "
 
 
 OR = "{} or {}"
-"""The options of a question in a sentence: all but the last one, and the last one."""
+"""Joins the options of a question: all but the last one, and the last one."""
 HINT = "It is not {}."
-"""The hint of a question that came without one, with a wrong option."""
+"""The hint for a question without one; it names a wrong option."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ NEAR = 1e-9  # m^2 within which a point is on the edge
 
 
 def draw_body(body: BodyProfile) -> list[str]:
-    """Return lines that show a body from above, ahead at the top, and say how large all is."""
+    """Return the drawing of a body from above, front at the top, and its sizes in words."""
     high = max(FINEST, 2 * body.radius / ROWS)  # metres of a row
     wide = high / 2  # of a column: signs are twice as high as wide
     half = ceil(body.radius / high)  # rows from the middle to the edge, or a little more
@@ -41,7 +41,7 @@ def draw_body(body: BodyProfile) -> list[str]:
 
 
 def _sign(body: BodyProfile, x: float, y: float, high: float) -> str:
-    """Return what is drawn at a point on the floor; a row is so many m high."""
+    """Return the character for a point on the floor (m); a row is `high` m high."""
     if not _within(body, x, y):
         return " "
     beside = ((x + high, y), (x - high, y), (x, y + high / 2), (x, y - high / 2))
@@ -60,14 +60,14 @@ def _within(body: BodyProfile, x: float, y: float) -> bool:
 
 
 def _words(body: BodyProfile) -> list[str]:
-    """Say what is drawn, and what cannot be."""
+    """Say how large the body is, and where its devices sit."""
     if body.corners:
         xs, ys = zip(*body.corners, strict=True)
         size = f"{max(xs) - min(xs):.2f} m long and {max(ys) - min(ys):.2f} m wide"
     else:
         size = f"round, {2 * body.radius:.2f} m across"
     lines = [
-        f"The robot from above, ahead is up: {size}.",
+        f"The robot from above, front at the top: {size}.",
         f"{WHEELS} the middle between its wheels; {LASER} the laser scanner, {_place(body.laser)}.",
     ]
     lines += [f"{CAMERA} {name}, {_place(mount)}." for name, mount in body.cameras.items()]
@@ -78,11 +78,11 @@ def _words(body: BodyProfile) -> list[str]:
 
 
 def _place(mount: Mount) -> str:
-    """Say where a device sits, and which way it looks where that is not straight ahead."""
+    """Say where a device sits, and which way it faces unless that is straight ahead."""
     aside = f"{abs(mount.y):.2f} m to the {'left' if mount.y > 0 else 'right'}, " * bool(mount.y)
     along = f"{abs(mount.x):.2f} m {'ahead' if mount.x > 0 else 'behind'}, " * bool(mount.x)
     turned = ""
     if mount.yaw:
         turned = f", turned {abs(mount.yaw):.0f}° to the {'left' if mount.yaw > 0 else 'right'}"
-    high = f"{mount.height:.2f} m high" if mount.height else "of a height that nobody has told"
+    high = f"{mount.height:.2f} m high" if mount.height else "height unknown"
     return f"{along}{aside}{high}{turned}"

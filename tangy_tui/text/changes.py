@@ -1,4 +1,4 @@
-"""What staff are told of what changes in a game beside Tangy's behaviours."""
+"""Words for changes in a game other than Tangy's behaviours."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
     person = name(event.person) if event.person else ""
     match event.what:
         case "taken back":
-            return f"{activity.deck.label(event.number)} is taken back and comes again later."
+            return f"{activity.deck.label(event.number)} is taken back. Tangy calls it again later."
         case "patterns chosen":
             return f"Next: {pattern_words(activity, event.patterns)}."
         case "others first":
-            return f"{person} has won. Tangy looks after the others who are asking."
+            return f"{person} has won. Tangy helps the others who are asking first."
         case "played on":
             return f"{person} has won. The game goes on."
         case "won":
@@ -37,7 +37,7 @@ def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
         case "claimed":
             return f"Tangy goes to {person}, whose card wins."
         case "left":
-            return f"{person} has left. Tangy does not go there any more."
+            return f"{person} has left. Tangy no longer goes there."
         case "came":
             return f"{person} is here now."
         case "visit":
@@ -49,15 +49,15 @@ def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
         case "calls first":
             return f"Many are asking. {calls_first_words(event.number)}"
         case "several winners":
-            return "Everybody who has it at the same call wins."
+            return "Everybody who has the pattern at the same call wins."
         case "one winner":
-            return "One person wins."
+            return "Only one person wins."
         case "visits on":
             return "Tangy also visits people who do not ask."
         case "visits off":
             return "Tangy visits only people who ask."
         case "pace":
-            return "Tangy calls at another pace."
+            return "The pace has changed."
         case forgotten:
             assert_never(forgotten)
 
@@ -74,7 +74,7 @@ def pattern_words(activity: Activity, names: tuple[str, ...]) -> str:
 
 
 def patterns_line(world: World) -> str:
-    """Say what is played for, what follows, and what else can be chosen."""
+    """Say which pattern is played for, which follow, and which can be chosen."""
     names = ", ".join(pattern.name for pattern in world.activity.rules.patterns)
     if not isinstance(world, PlannedGame) or not names:
         return "There is nothing to choose in this activity."

@@ -37,7 +37,7 @@ def recordings_deleted(count: int) -> str:
 def counts_as(game: int, world: str) -> str:
     """Say in which world a game was played, from now on."""
     if world == "unknown":
-        return f"Game {game} counts as played nobody knows where."
+        return f"It is not known where game {game} was played."
     return f"Game {game} counts as a {world} game."
 
 

@@ -46,7 +46,7 @@ def autonomy_words(level: Autonomy) -> str:
     """Say what Tangy does of itself."""
     match level:
         case "alone":
-            return "does all of it by itself"
+            return "does everything by itself"
         case "unsure":
             return "asks where it is less sure"
         case "each":
@@ -67,7 +67,7 @@ def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
     """Ask whether the next behaviour is to be done."""
     whom = f" ({name(proposal.target)})" if proposal.target else ""
     because = shown_here(proposal.seen, proposal.share)
-    return f"Next: {proposal.behaviour}{whom}, {because}. Y does it, N lets you say what else."
+    return f"Next: {proposal.behaviour}{whom}, {because}. Y: do it. N: tell Tangy what else."
 
 
 REFUSALS: tuple[NoteKind, ...] = (
@@ -92,7 +92,7 @@ BY_KEYS: dict[NoteKind, str] = {
     "paused": "Paused: {pause} goes on.",
     "stopped": "STOP. Press {pause} to go on.",
     "stopped first": "Not now: Tangy was stopped. Press {pause} to go on first.",
-    "asks first": "Tangy asks first: answer it ({command} types); esc gives the game up.",
+    "asks first": "Tangy is asking: answer it first ({command} to type); esc gives the game up.",
 }
 """What is said otherwise where staff have keys, and type only to answer."""
 
@@ -125,15 +125,15 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "pace":
             return f"Tangy calls every {about} seconds."
         case "claim right":
-            return f"Card {about} is right: it wins."
+            return f"Card {about} wins."
         case "claim wrong":
-            return f"Card {about} is wrong: it does not win yet."
+            return f"Card {about} does not win yet."
         case "patterns":
             return f"Played for: {about}."
         case "several":
-            return "Everybody who has it at the same call wins."
+            return "Everybody who has the pattern at the same call wins."
         case "one winner":
-            return "One person wins."
+            return "Only one person wins."
         case "visits":
             return "Tangy also visits people who do not ask."
         case "no visits":
@@ -147,15 +147,15 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "away before":
             return f"{name(about)} has left already."
         case "no cards":
-            return "This activity has no cards, and no pace."
+            return "This activity has no cards and no pace."
         case "no such card":
             return f"There is no card {about} in this game."
         case "whose card":
-            return f"Nobody is known to have card {about}. Say whose it is, and Tangy goes there."
+            return f"Tangy does not know whose card {about} is. Say whose, and it goes there."
         case "asked for":
             return f"{name(about)} asks for help."
         case "told":
-            return f"Noted of {name(about)}: {noted.words}." if about else f"Noted: {noted.words}."
+            return f"{name(about)}: {noted.words}. Noted." if about else f"Noted: {noted.words}."
         case "voided":
             return f"{name(about)}'s last response does not count any more."
         case "driven":
@@ -175,10 +175,10 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "no robot":
             return "That needs a robot, or the bench: this game is simulated."
         case "not told":
-            goes_by = f" It goes by: {noted.words}." if noted.words else ""
-            return f"The game does not go by that.{goes_by}"
+            counts = f" These do: {noted.words}." if noted.words else ""
+            return f"That does not count in this game.{counts}"
         case "nothing to tell":
-            return "In this activity Tangy sees for itself what people do."
+            return "In this activity Tangy itself sees what people do."
         case "nothing called":
             return "No number was called yet."
         case "not called":

@@ -66,7 +66,7 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
 
 
 def because_words(decision: Decision) -> str:
-    """Say in a few words what decided: a teacher, what was shown, or a guess of the trees."""
+    """Say why in a few words: a rule, a teacher's answer, demonstrations, or the trees' guess."""
     if decision.whatever and not decision.seen:
         return f"by a rule: whatever {listed(decision.whatever, 'or')}"
     if decision.behaviour in decision.right:
@@ -77,13 +77,13 @@ def because_words(decision: Decision) -> str:
 def addressed_words(
     policy: Policy, action: Action, state: ActivityState, name: Callable[[str], str]
 ) -> str:
-    """Say whom an action is for, and what decided that: " (Rosa, who asked first)".
+    """Say whom an action is for, and why: " (Rosa, who asked first)".
 
     Args:
-        policy: by which it was decided.
-        action: what was done.
-        state: the state in which it was.
-        name: what people are called.
+        policy: the policy that decided.
+        action: the action.
+        state: the state before the action.
+        name: returns a person's name.
     """
     if not action.target:
         return ""

@@ -1,4 +1,4 @@
-"""The demo, as it is told: captions of what a real teacher, learner and game do."""
+"""Words of the demo: captions for a real teaching session, policy and game."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tangy_tui.text.numbers import counted
 from tangy_tui.text.questions import DID_YOU_SAY
 
 TEACHER = "Ada"
-"""Who teaches in the demo."""
+"""The teacher in the demo."""
 
 SCENES = (
     "A command and its question",
@@ -32,41 +32,41 @@ STEPS, LEARNT, WHY, GAME, BELIEVES = (
     "The game",
     "What works with whom",
 )
-"""Heads of the panel beside the room."""
+"""Titles of the panel beside the room."""
 
 TYPES = f"{TEACHER} types"
 ANSWERS_YES = "yes"
 WELCOME = (
     f"{TEACHER} teaches Tangy to host {{}}. Tangy stands at the front, and four people sit behind "
-    "the table. All that you see happens now, in the simulated room."
+    "the table. Everything you see happens now, in the simulated room."
 )
 SHE_TYPES = "She types what Tangy should do, in her own words."
 IT_ASKS = "Tangy asks before it does anything. Nothing happens until she says yes."
 SHE_SAYS_YES = "She says yes, and Tangy does it. That is the first step of the demonstration."
 SECOND = "So she goes on, one command and one yes at a time."
-GOES_ON = "And on. People mark their cards, and make mistakes as people do."
+GOES_ON = "People mark their cards. Now and then they make mistakes, as people do."
 SLIP = "Now a mistake. She types this, and says yes too soon."
 NOTICED = "Tangy notices at once, and says what may be wrong. It learns nothing from a slip."
 NOT_NOTICED = "That was not what she wanted."
-TAKEN_BACK = "One key takes the step back, and the room is as it was."
+TAKEN_BACK = "One key takes the step back, and the room is as it was before."
 NOW_RIGHT = "Now she gives the right command."
-HELPED = "Tangy helps as she tells it to, and learns what each card looks like when it helps."
-THE_REST = "The rest of the game, faster. Everything comes up that Tangy has to learn."
+HELPED = "Tangy helps as she says, and learns which card needs which help."
+THE_REST = "The rest of the game, faster. It has everything that Tangy needs to learn."
 THINKS = "The game is over. Tangy learns from it."
-BEGINS = "Now Tangy runs a game by itself, by what it has learnt."
-PLAYS = "It calls, listens for who needs help, and goes there."
+BEGINS = "Now Tangy runs a game by itself, with what it has learnt."
+PLAYS = "It calls, notices when a person needs help, and goes there."
 SAYS_IT = "Tangy can ask in several ways. Now it {}."
-REFUSED = "{} does not do it. Tangy takes note, and does not press."
-LATE = "{} takes so long that Tangy counts it as a no. It takes note, and does not press."
-ANOTHER_WAY = "The next time it asks in another way: it {}."
+REFUSED = "{} does not do it. Tangy notes that, and does not insist."
+LATE = "{} takes so long that Tangy counts it as a no. Tangy does not insist."
+ANOTHER_WAY = "Next time it asks in another way: it {}."
 COMPLIED = "That worked. Tangy will ask {} this way more often."
 AT_ONCE = "{} does it. Tangy notes which way of asking worked."
 NOW_A_FAULT = "Now a scarf falls over the camera in Tangy's head."
-DIAGNOSED = "Tangy sees that something is wrong, finds out what, and says so."
+DIAGNOSED = "Tangy notices that something is wrong, finds the cause, and says so."
 ASKS_PEOPLE = "It can put this right itself: it asks the people at the table."
-RECOVERED = "The scarf is gone, and the game goes on. What it cannot put right, it calls staff for."
+RECOVERED = "The scarf is gone, and the game goes on. If it cannot help itself, Tangy calls staff."
 PLAYS_ON = "It plays the game to its end."
-BELIEVES_THIS = "This is what it knows by now of how to ask each person. It goes on learning."
+BELIEVES_THIS = "This is what Tangy now knows about asking each person. It goes on learning."
 YOUR_TURN = "Your turn. One guided game is enough for Tangy to learn from you."
 YOUR_TURN_LINES = (
     "In the program: choose Guided on the first screen.",
@@ -75,30 +75,36 @@ YOUR_TURN_LINES = (
 
 
 def learnt_caption(steps: int, shown: int, situations: int) -> str:
-    """Say from how much Tangy has learnt, and for how many situations."""
+    """Say how many steps Tangy has learnt from, and how many situations it knows."""
     return (
         f"From {counted(steps, 'step')} Tangy has learnt what to do in {shown} of "
-        f"{situations} situations. The share says how sure it is."
+        f"{situations} situations. The percentage shows how sure it is."
     )
 
 
 def why_caption(times: int) -> str:
     """Say what a decision rests on."""
     steps = counted(times, "step")
-    return f"Ask why, and Tangy names what it rests on: {steps} that {TEACHER} showed."
+    return f"Ask why, and Tangy names its reason: {steps} that {TEACHER} showed."
 
 
 def belief_lines(beliefs: Mapping[str, Beliefs], name: Callable[[str], str]) -> list[str]:
-    """Say of each person which ways of asking were tried, and how often they worked."""
+    """Say for each person which ways of asking Tangy tried, and how often they worked."""
     lines = []
     for person, profile in beliefs.items():
         tried = [
-            f"{strategy} worked {belief.complied} of {counted(belief.trials, 'time')}"
+            f"{strategy} {_worked(belief.complied, belief.trials)}"
             for strategy, belief in profile.items()
             if belief.trials
         ]
-        lines.append(f"{name(person)}: {', '.join(tried) or 'was not asked for anything yet'}")
+        lines.append(f"{name(person)}: {', '.join(tried) or 'not asked yet'}")
     return lines
+
+
+def _worked(complied: int, trials: int) -> str:
+    if trials == 1:
+        return "worked once" if complied else "did not work"
+    return f"worked {complied} of {trials} times"
 
 
 def addressed(phrase: str, name: str) -> str:
@@ -120,7 +126,7 @@ def learnt_lines(activity: Activity, policy: Policy) -> list[str]:
 
 
 def why_lines(activity: Activity, why: Why) -> list[str]:
-    """Say why Tangy does something, and which steps that rests on."""
+    """Say why Tangy does something, and which steps support it."""
     steps = [shown_words(activity, shown, lambda id: "this game") for shown in why.rests_on]
     return [*why_words(activity, why), *steps]
 
@@ -128,7 +134,7 @@ def why_lines(activity: Activity, why: Why) -> list[str]:
 def response_caption(
     response: Response, before: Sequence[Response], name: Callable[[str], str]
 ) -> str:
-    """Say what a person did after a request, and what Tangy makes of it."""
+    """Say what a person did after a request, and what Tangy concludes."""
     who = name(response.person)
     if not response.complied:
         return (LATE if response.followed else REFUSED).format(who)
@@ -137,36 +143,36 @@ def response_caption(
 
 
 def scene_words(number: int) -> str:
-    """Head a scene, from 1 on."""
+    """Return the title of a scene, from 1."""
     return f"Scene {number} of {len(SCENES)}: {SCENES[number - 1]}"
 
 
 def typed_words(typed: str) -> str:
-    """Say by lines what the teacher types."""
+    """Say in a line what the teacher types."""
     return f"{TYPES}: {typed}"
 
 
 def asked_words(question: str) -> str:
-    """Say by lines what Tangy asks, and what is answered."""
+    """Say in a line what Tangy asks, and the answer."""
     return f"{DID_YOU_SAY}{question}? {TEACHER}: {ANSWERS_YES}."
 
 
 NOTHING_TO_SAY = "The scripted teacher has no command for this."
 ASKS = f"{DID_YOU_SAY}{{}}?"
 YES_KEYS = (("Y", "yes, do it"), ("N", "no, let me change it"))
-"""How the question is drawn."""
-HOLD, EARLIER, LATER = "hold", "back", "on"
+"""The keys of the question."""
+HOLD, EARLIER, LATER = "pause", "back", "forward"
 """What keys do."""
-HELD, ENDED = "held", "the end"
+HELD, ENDED = "paused", "the end"
 
 
 def scene_note(number: int) -> str:
-    """Say which scene is shown, from 1 on."""
+    """Say which scene is shown, from 1."""
     return f"scene {number} of {len(SCENES)}"
 
 
 HELP = (
-    "A story in six scenes. A teacher shows a game, Tangy learns and plays: all of it happens "
-    "while you watch, in a data folder that is gone afterwards. {still} holds it, {left} and "
-    "{right} go back and on, {back} leaves."
+    "A story in six scenes: a teacher shows a game, Tangy learns it and plays it. It all happens "
+    "while you watch, in a temporary data folder. {still} pauses it, {left} and {right} go back "
+    "and forward, {back} leaves."
 )

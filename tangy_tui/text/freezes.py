@@ -1,12 +1,12 @@
-"""What staff are told after the program itself stood still."""
+"""Words for a game that was paused because the program stood still."""
 
 from __future__ import annotations
 
 from tangy_tui.text.times import length
 
 DETAIL = (
-    "The program or this computer was stopped, or slept. The game is paused. Look how the robot "
-    "stands and how people are before you go on."
+    "The program or this computer was stopped, or asleep. The game is paused. Before you go on, "
+    "check where the robot stands and how people are."
 )
 GO_ON, STAY = "go on", "stay paused"
 
@@ -17,5 +17,5 @@ def question(seconds: float) -> str:
 
 
 def told_words(seconds: float) -> str:
-    """Say by a line how many seconds it stood still, and how the game goes on."""
+    """Say in a line how many seconds it stood still, and how to go on."""
     return f"Tangy stood still for {length(seconds)}. The game is paused. Type: go on."

@@ -1,4 +1,4 @@
-"""What staff read in the reports of a person over time and of a house over months."""
+"""Words of the reports on a person over time and on a house over months."""
 
 from __future__ import annotations
 
@@ -43,12 +43,10 @@ FAULTS = "What went wrong, and how often"
 FAULT_COLUMNS = ("fault", "times", "critical", "last")
 ROBOTS = "Robots"
 ROBOT_COLUMNS = ("robot", "games", "time", "faults")
-NOTHING = "No game of this kind stands in the log."
+NOTHING = "The log has no games of this kind."
 NOT_THERE = "Not in this log"
-SAME_NAME = (
-    "People of several robots are taken for the same person where they were given the same name."
-)
-EACH_WORLD = "Only these games count here. Others: add --world {others}."
+SAME_NAME = "People with the same name in the logs of several robots count as one person."
+EACH_WORLD = "This report covers only these games. For others, add --world {others}."
 
 
 def house_title(logs: Sequence[RobotLog]) -> str:
@@ -57,12 +55,12 @@ def house_title(logs: Sequence[RobotLog]) -> str:
 
 
 def scope(world: GameWorld, games: int) -> str:
-    """Say which games a report tells of."""
+    """Say which games a report covers."""
     return f"{counted(games, 'game')}, {WORLD_WORDS[world]}"
 
 
 def others_words(worlds: Sequence[GameWorld]) -> str:
-    """Say which other games there are, that are left out; "" where there are none."""
+    """Name the worlds whose games are left out; "" if there are none."""
     return EACH_WORLD.format(others=listed(worlds, "or")) if worlds else ""
 
 

@@ -63,7 +63,7 @@ NAMES: Mapping[str, Named] = MappingProxyType(
         "claim": Named("Check whether a card wins", "check card"),
         "presence": Named("Who has come, or has left", "who is here"),
         "whose_card": Named("Say whose card is whose", "whose card"),
-        "tell": Named("Tell what a person answers or does", "tell"),
+        "tell": Named("Tell Tangy what a person answers or does", "tell"),
         "put_away": Named("Put away, or bring back", "put away"),
         "mark": Named("Mark, to merge", "mark"),
         "merge": Named("Merge the marked demonstrations", "merge"),
@@ -96,15 +96,15 @@ NAMES: Mapping[str, Named] = MappingProxyType(
 
 HELP_KEYS = "up down more   esc closes"
 DIGIT_SHOWN = "the digit it shows for yes"
-"""The key of the questions to come, where each has another."""
+"""Stands for the yes key while each question has a key of its own."""
 
 _PLACE = re.compile(r"\{(\^?)([a-z_]+)\}")
 
 
 def with_keys(text: str, keymap: Keymap, *, typing: bool = False) -> str:
-    """Write keys into a text where it names actions: "{undo} takes it back".
+    """Replace names of actions in a text with their keys: "{undo} takes it back".
 
-    "{^talk}" is the key that works while letters go to a line, as all do where `typing`.
+    "{^talk}" is the key that works while letters go to a line; `typing` chooses it for all.
     """
 
     def key(found: re.Match[str]) -> str:

@@ -46,11 +46,11 @@ EFFECTS: Mapping[tuple[str, str], str] = {
     ("others' requests", "kept"): "nobody else's request is lost",
     ("others' requests", "fewer"): "somebody else's request is lost",
 }
-"""What was seen after a behaviour, by variable and value."""
+"""Words for the effects of a behaviour, by variable and value."""
 
 
 def effects_words(variables: Mapping[str, Iterable[str]]) -> str:
-    """Say what was seen after a behaviour; several values of a variable are joined by "or"."""
+    """Describe the effects of a behaviour; several values of a variable are joined by "or"."""
     return "; ".join(
         " or ".join(EFFECTS.get((variable, value), f"{variable} {value}") for value in sorted(seen))
         for variable, seen in variables.items()

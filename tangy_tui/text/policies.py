@@ -25,7 +25,7 @@ ONE_POLICY = (
     "person teach."
 )
 WHICH = "Which policy do you want to see?"
-ALL_THE_SAME = "They do the same everywhere; {differences} shows all rows."
+ALL_THE_SAME = "Both do the same in every situation; {differences} shows all rows."
 
 
 def compared_words(differ: int, situations: int) -> str:

@@ -22,8 +22,8 @@ def meaning_words(
 
     Args:
         row: see `tangy_tui.speech.transcription.listen`.
-        questions: how each behaviour is asked about.
-        names: what each person is called.
+        questions: the words of the question about each behaviour.
+        names: the name of each person.
     """
     choices = [
         questions.get(choice["behaviour"], choice["behaviour"])

@@ -120,4 +120,4 @@ def settled_words(settled: Settled, activity: Activity) -> str:
 
 def no_own_phrase(phrase: str, teacher: str) -> str:
     """Say that a teacher has no such phrase to remove."""
-    return f"{phrase!r} is no phrase of {teacher}'s own. See: tangy activity phrases"
+    return f"{teacher} has no phrase {phrase!r}. See: tangy activity phrases"

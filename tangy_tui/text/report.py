@@ -1,4 +1,4 @@
-"""What staff read in the report of a session: people, waits, calls, what they did themselves."""
+"""Words of the report on a session for staff: people, waits, calls, their own actions."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from tangy_tui.text.situations import Name
 from tangy_tui.text.times import length, time_of_day
 
 WORLD_WORDS: Mapping[GameWorld, str] = {
-    UNKNOWN: "played where the log does not tell",
+    UNKNOWN: "from an unknown world",
     SIMULATED: "simulated",
-    BENCH: "on the bench of simulated devices",
+    BENCH: "on the bench, with simulated devices",
     LIVE: "live, with a robot",
 }
-"""Where a game was played, as reports have it."""
+"""Where a game was played, in reports."""
 
 PEOPLE = "Who got what"
 PEOPLE_COLUMNS = (
@@ -36,16 +36,16 @@ STAFF_COLUMNS = ("when", "who", "what")
 NO_STAFF = "Staff did not step in."
 FAULTS_SHORT = "What went wrong"
 FAULT_COLUMNS = ("when", "what", "what came of it")
-LONG_WAIT = 300.0  # s after which a wait is something to look after
+LONG_WAIT = 300.0  # s from which a wait needs attention
 STAFF_MOVES: Mapping[MoveKind, str] = {
     "acknowledged": "saw",
     "expert called": "called the expert",
     "taught": "said what to do",
-    "accepted": "said that all was right",
+    "accepted": "said that all was well",
     "cleared": "cleared it",
     "given up": "ended the game",
 }
-"""What people do about a fault."""
+"""Words for what staff do about a fault."""
 
 
 def asked_words(one: Attention) -> str:
@@ -84,7 +84,7 @@ def helped_words(one: Attention, activity: Activity | None) -> str:
 
 
 def response_words(answers: Sequence[AnsweredRequest]) -> str:
-    """Say how often a person did what they were asked to do: "4 of 5", and what is not known."""
+    """Say how often a person did as asked, "did 4 of 5", and how often that was not seen."""
     known = [one for one in answers if one.complied is not None]
     if not answers:
         return "\N{EN DASH}"
@@ -96,7 +96,7 @@ def response_words(answers: Sequence[AnsweredRequest]) -> str:
 
 
 def care_lines(found: Iterable[Attention], name: Name) -> list[str]:
-    """Say which people staff should look after: who was not visited, and who waited in vain."""
+    """Name the people who need attention: without a visit, still waiting, or after a long wait."""
     people = list(found)
     lines = []
     if never := [name(one.id) for one in people if not one.visits]:
@@ -111,7 +111,7 @@ def care_lines(found: Iterable[Attention], name: Name) -> list[str]:
 
 
 def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str, str]]:
-    """Return what people did, and when: the time on the clock, who, and what."""
+    """Return the actions of staff: the time on the clock, who, and what."""
     rows = []
     for replay in replays:
         for moment in replay.moments:
@@ -122,7 +122,7 @@ def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str
 
 
 def with_names(words: str, replay: GameReplay, name: Name) -> str:
-    """Put names in the place of the ids of the people of a game."""
+    """Replace the ids of a game's people with their names."""
     there = {person: name(person) for person in replay.game.people}
     return re.sub(r"[\w-]+", lambda found: there.get(found[0], found[0]), words)
 
@@ -139,12 +139,12 @@ def _staff_words(moment: Moment) -> tuple[str, str] | None:
 
 
 def fault_outcome(fault: Fault, status: str) -> str:
-    """Say what came of a fault: the last that was done about it, and how it stands."""
+    """Say what came of a fault: the last action about it, and its status."""
     told = [move_words(move) for move in fault.moves]
     return "; ".join(dict.fromkeys([*told[-1:], status]))
 
 
 def call_labels(calls: Sequence[Call], activity: Activity | None) -> list[tuple[str, bool]]:
-    """Write each number that was called, with whether it was taken back."""
+    """Return the label of each call, and whether it was taken back."""
     label = str if activity is None else activity.deck.label
     return [(label(call.number), call.taken_back) for call in calls]

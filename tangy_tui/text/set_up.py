@@ -1,4 +1,4 @@
-"""The page on which staff set a live game up, in words."""
+"""Words of the page on which staff set up a live game."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from tangy_tui.app.set_up import Check, CheckName, SetUp
 TITLE = "Set up"
 PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
 HERE, AWAY = "here", "not here yet"
-LATER = "You can change all of this in the game, too, except who sits where."
+LATER = "You can change all of this during the game, except the seats."
 SOUND = "Hello. Can everybody hear me?"
 CARD_HOW = "Hold a card in front of Tangy, then press Enter."
 NO_CARD = "Tangy saw no card. Hold one closer, flat, and in good light."
-NO_SOUND = "Tangy could not speak. Look at its loudspeaker."
-SWITCH_FIRST = "Press Enter on the line Robot first: Tangy is still off."
-SEATED = "Tangy is on, so the seats stay as they are. Leave with esc to change them."
+NO_SOUND = "Tangy could not speak. Check its loudspeaker."
+SWITCH_FIRST = "First press Enter on Robot: Tangy is still off."
+SEATED = "Tangy is on, so you cannot change seats. To change them, leave with esc."
 SAID = "Tangy has spoken. Press Enter if you heard it."
 STOPPED = "Tangy was stopped. Begin the game when all is well."
 BEGIN_ANYWAY = "Begin although not everything is ready?"
-BEGIN_DETAIL = "Tangy starts to move and to speak."
+BEGIN_DETAIL = "Tangy starts moving and speaking."
 
 NAMES: dict[CheckName, str] = {
     "robot": "Robot",
@@ -31,12 +31,12 @@ NAMES: dict[CheckName, str] = {
 
 
 def people_words(setup: SetUp) -> str:
-    """Say how many of those who take part are here."""
+    """Say how many people are here."""
     return f"{len(setup.seats) - len(setup.away)} of {len(setup.seats)} are here"
 
 
 def patterns_words(setup: SetUp) -> str:
-    """Say what is played for."""
+    """Name the patterns that are played for."""
     rules = setup.workspace.activity.rules
     labels = [rules.pattern(name).label for name in setup.patterns]
     return ", then ".join(labels) or "as usual"
@@ -50,7 +50,7 @@ def pattern_keys(setup: SetUp) -> str:
 
 def winners_words(setup: SetUp) -> str:
     """Say how many people can win."""
-    return "everybody who has it at the same call" if setup.several else "one"
+    return "everybody with the pattern at the same call" if setup.several else "one"
 
 
 def visits_words(setup: SetUp) -> str:
@@ -71,21 +71,21 @@ def minutes_words(minutes: int) -> str:
 
 
 def pace_words(pace: float) -> str:
-    """Say how fast numbers are called: `pace` is in s from call to call."""
+    """Say how fast Tangy calls: `pace` is in s from call to call."""
     return f"a call every {pace:g} s"
 
 
 def check_words(check: Check) -> str:
-    """Say how something is, and what to do where it is not ready."""
+    """Say how a part is, and what to do if it is not ready."""
     match check.state:
         case "off":
             return "off: Enter switches it on" if check.name == "robot" else "when Tangy is on"
         case "ready":
             return _ready(check)
         case "not checked":
-            return "Enter looks at one" if check.name == "cards" else "Enter lets Tangy speak"
+            return "Enter reads one" if check.name == "cards" else "Enter lets Tangy speak"
         case "not told":
-            return "no page for a tablet" if check.name == "tablet" else "this robot does not say"
+            return "this robot has no tablet" if check.name == "tablet" else "not reported"
         case "not ready":
             return _to_do(check)
         case forgotten:
@@ -93,7 +93,7 @@ def check_words(check: Check) -> str:
 
 
 def not_ready_words(check: Check) -> str:
-    """Say in a sentence what is not ready, and what to do."""
+    """Say in a sentence which part is not ready, and what to do."""
     return f"{NAMES[check.name]}: {_to_do(check)}."
 
 
@@ -116,7 +116,7 @@ def _ready(check: Check) -> str:
 def _to_do(check: Check) -> str:
     match check.name:
         case "robot":
-            return f"look at: {check.about}"
+            return f"check: {check.about}"
         case "battery":
             return f"{check.about}: charge it first"
         case "tablet":
@@ -137,13 +137,13 @@ LINES_ANYWAY = "Not everything is ready. Type begin to begin anyway, or end."
 
 
 def line_of(check: Check) -> str:
-    """Say how something is, where there are no keys."""
+    """Say how a part is, in line mode, which has no keys."""
     unchecked = check.state == "not checked"
     return "not tried" if unchecked else check_words(check)
 
 
 def lines_of(setup: SetUp) -> list[str]:
-    """Tell all that is set up, line by line."""
+    """Describe the set-up line by line."""
     name = setup.workspace.name
     people = (
         f"  {seat}. {name(person)}: {AWAY if person in setup.away else HERE}"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tangy_tui.learning.policy import Policy
 
 OVER_NOW = "the game is over"
-"""What the status line says of a game that has ended."""
+"""The status line's words for a game that has ended."""
 
 MOST_STEPS = 3
 """Steps that are named for each answer of a conflict."""

@@ -1,4 +1,4 @@
-"""What staff see of a game at any time, in words."""
+"""Words of the panel that shows staff how a game stands."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def clock_words(seconds: float) -> str:
 
 
 def time_words(view: StaffView, minutes: int) -> str:
-    """Say how long the game takes so far, and how much of the planned time is left."""
+    """Say how long the game has lasted, and how much of the planned time is left."""
     gone = f"{clock_words(view.seconds)} so far"
     if not minutes:
         return gone
@@ -34,12 +34,12 @@ def time_words(view: StaffView, minutes: int) -> str:
 
 
 def pace_words(view: StaffView) -> str:
-    """Say how fast numbers are called."""
+    """Say how fast Tangy calls."""
     return f"a call every {view.pace:g} s" if view.pace else ""
 
 
 def played_words(patterns: Patterns | None) -> str:
-    """Say what is played for, and what follows."""
+    """Name the pattern that is played for, and those that follow."""
     if patterns is None or patterns.present is None:
         return ""
     return "for " + ", then ".join(one.label for one in (patterns.present, *patterns.left))
@@ -62,10 +62,14 @@ def next_words(
     behaviour = activity.behaviours.get(decision.behaviour)
     waiting = f"{counted(calls_first, 'number')} first, then those who ask"
     why = waiting if calls_first else activity.in_words(state.situation)
-    if behaviour is None or not decision.sure:
-        return f"Next: Tangy asks you. Now: {why}."
-    whom = state.attended if behaviour.attends else None
-    return f"Next: {behaviour.question}{f' ({name(whom)})' if whom else ''}. Now: {why}."
+    clause = why in {label for rule in activity.stage_rules for label in rule.label.values()}
+    done, whom = "Tangy asks you", ""
+    if behaviour is not None and decision.sure:
+        done = behaviour.question
+        whom = name(state.attended) if behaviour.attends and state.attended else ""
+    notes = "; ".join(filter(None, (whom, "" if clause else why)))
+    because = f", because {why}" if clause else ""
+    return f"Next: {done}{f' ({notes})' if notes else ''}{because}."
 
 
 def person_words(person: PersonNow) -> str:
@@ -86,5 +90,5 @@ def person_words(person: PersonNow) -> str:
 
 
 def more_words(count: int) -> str:
-    """Say that more people are here than there is room for."""
+    """Say how many more people there are than the panel shows."""
     return f"and {count} more"

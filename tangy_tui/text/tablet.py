@@ -1,4 +1,4 @@
-"""How a tablet is connected, in words."""
+"""Words about connecting a tablet."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ TABLET_TITLE = "The tablet on Tangy's chest"
 
 
 def tablet_lines(address: str, code: str) -> list[str]:
-    """Say how a tablet is connected: its address and the pairing code."""
-    return [f"Open on the tablet: {address}", f"The code there is: {code}", "Or scan this:"]
+    """Say how to connect a tablet: the address to open, and the pairing code."""
+    return [f"Open on the tablet: {address}", f"Enter this code there: {code}", "Or scan this:"]

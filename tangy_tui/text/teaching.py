@@ -79,8 +79,8 @@ SAY_OR_TYPE = "Say or type"
 STOPPED = "STOP: the simulated robot stands still."
 WHICH_STEP = "Choose the step first: up and down, or type again 7."
 BY_KEY = (
-    "To talk, press {talk}, say it, and press {talk} again; after 6 seconds it ends by itself. The "
-    "line of the microphone says what it hears, and what is wrong if nothing comes. Say stop, and "
+    "To talk, press {talk}, speak, and press {talk} again; after 6 seconds it ends by itself. The "
+    "microphone line shows what Tangy hears, or what is wrong if it hears nothing. Say stop, and "
     "the robot stops."
 )
 HANDS_FREE = (
@@ -153,8 +153,8 @@ def beginning_words(teaching: TeachingSession, *, resumed: bool) -> str:
 
 
 def left_words(steps: int) -> str:
-    """Say what was kept of a game that was left before its end, and how it goes on."""
-    return f"Kept: {counted(steps, 'step')} of this game. Teach goes on from there."
+    """Say how many steps of an unfinished game Tangy keeps, and how to go on."""
+    return f"Tangy keeps {counted(steps, 'step')} of this game. Teach goes on from there."
 
 
 def complete_words(steps: int) -> str:
@@ -163,14 +163,14 @@ def complete_words(steps: int) -> str:
 
 
 def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:
-    """Say which rule a step got, that it was taken back, or why there is none."""
+    """Say that a step became a rule, that the rule was taken back, or why there is none."""
     if isinstance(event, NoRule):
         return _no_rule(event)
     rule = event if isinstance(event, Ruled) else event.rule
     same = f"{activity.behaviour_words(rule.step.behaviour)}, whatever {listed(rule.facts, 'or')}"
-    covers = counted(len(rule.covers), "situation")
+    covers = counted(len(rule.covers), "more situation")
     if isinstance(event, Ruled):
-        return f"   Step {rule.number} is a rule now: {same}. It covers {covers} more."
+        return f"   Step {rule.number} is now a rule: {same}. It covers {covers}."
     return f"The rule of step {rule.number} is taken back: {same}. The step stays."
 
 
@@ -179,8 +179,8 @@ def _no_rule(event: NoRule) -> str:
         case "no step":
             return "Show a step first: a rule is about the last one."
         case "no facts":
-            return "Tangy goes by no fact here, so there is nothing that could be otherwise."
+            return "No fact counts here, so there is nothing for a rule to leave out."
         case "all shown":
-            return "All that this covers was shown already."
+            return "Every situation that this covers has been shown already."
         case "not gone by":
-            return f"Tangy does not go by {event.fact!r} here. {nearest(event.fact, event.known)}"
+            return f"{event.fact!r} does not count here. {nearest(event.fact, event.known)}"

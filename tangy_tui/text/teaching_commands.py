@@ -13,7 +13,7 @@ HELP = (
 )
 MEANINGS = (
     ("undo", "take the last step back"),
-    ("redo", "do the step again that was taken back"),
+    ("redo", "redo the step you took back"),
     ("again N", "go back before step N, to show it and what follows again"),
     ("where", "say what Tangy sees"),
     ("seen", "say which situations nobody has shown yet"),
@@ -22,7 +22,7 @@ MEANINGS = (
     ("learn", "let Tangy learn from the games that were shown to their end"),
     ("play", "leave, and see Tangy run a game in the simulated room"),
     ("discard game", "put this game away, and begin another"),
-    ("my name is ROSA", "teach by another name"),
+    ("my name is ROSA", "change your name"),
     ("quit", "leave; what you confirmed is kept"),
 )
 """What can be typed by lines beside what Tangy should do, and what each does."""

@@ -1,23 +1,23 @@
-"""What is said where staff type what they want done in a game."""
+"""Words of the line in which staff type commands in a game."""
 
 from __future__ import annotations
 
 from tangy_profiles.game_rules import GameRules
 from tangy_profiles.reading import plain
 
-TITLE = "What shall be done?"
+TITLE = "What do you want to do?"
 KEYS = "enter does it   esc goes back"
 WHO_IS_HERE = "Who has come, or has left?"
 IS_HERE, IS_AWAY = "here: Enter if they leave", "not here: Enter if they have come"
 
 
 def example_words(rules: GameRules) -> str:
-    """Give examples of what can be typed."""
+    """Give examples of commands."""
     claim = f", {rules.claim} 17" if rules.claim else ""
     patterns = f", play for {rules.patterns[-1].name}" if rules.patterns else ""
     return f"For example: pace 20{claim}{patterns}, take back, left Rosa, here Rosa."
 
 
 def not_known(words: str) -> str:
-    """Say that words are no command."""
+    """Say that words are not a command."""
     return plain(f"Tangy does not know {words[:60]!r} here.")

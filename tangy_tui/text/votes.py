@@ -1,10 +1,10 @@
-"""How often something was shown, and which votes it has, in a few words."""
+"""Words for how often a behaviour was shown, and its share of the votes."""
 
 from __future__ import annotations
 
 
 def shown_here(seen: int, share: float) -> str:
-    """Say how often something was shown, and its share of the votes where that is not 1."""
+    """Say how often a behaviour was shown, and its share of the votes if that is not 1."""
     votes = f"{share:.0%} of the votes"
     if not seen:
         return f"a guess of the trees, {votes}"

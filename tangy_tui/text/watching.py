@@ -1,4 +1,4 @@
-"""What somebody reads who looks on at a game that another program runs."""
+"""Words for a second console that watches another program's game."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from tangy_tui.app.game_view import GameView
 from tangy_tui.text.situations import Name
 
 WORLDS: dict[GameWorld, str] = {
-    UNKNOWN: "nobody knows where",
+    UNKNOWN: "world unknown",
     SIMULATED: "simulated",
     BENCH: "on the bench",
     LIVE: "live, with the robot",
 }
-"""Where a game is played, as it stands on screens and pages."""
+"""Where a game is played, on screens and pages."""
 
 PHASES: dict[Phase, str] = {
     "idle": "no game",
@@ -28,23 +28,23 @@ PHASES: dict[Phase, str] = {
 
 LAST_CALLS = 5
 
-READ_ONLY = "You look on: nothing you press changes the game, only STOP stops the robot."
+READ_ONLY = "You are watching. Your keys do not change the game; only STOP stops the robot."
 NOBODY = "No Tangy runs here. This screen shows a game as soon as one begins."
-NO_GAME = "Tangy is open here, and no game has begun yet."
+NO_GAME = "Tangy is open here, but no game has begun yet."
 GONE = "The program that ran the game has ended."
 GOES_ON_LATER = "The game is not over: start Tangy again to go on with it."
 NOTHING_TO_STOP = "There is no game to stop: no Tangy shows one here."
-RUNNING_HERE = "Tangy is open in another window already, so you look on here."
+RUNNING_HERE = "Tangy is already open in another window, so here you only watch."
 ASKED_TO_STOP = "STOP was sent."
-STOPPED_HERE = "You stopped the robot. Whoever drives lets it go on."
+STOPPED_HERE = "You stopped the robot. Only the console that drives can let it go on."
 HELP = (
-    "You see the game that somebody else runs, as they see it. Nothing that you press changes it. "
+    "You see another console's game, as it is shown there. Your keys do not change it. "
     "STOP works here as well: it stops the robot at once, and the log says that it was you."
 )
 
 
 def stopped_by_guest(guest: str) -> str:
-    """Say that somebody who looks on has stopped the robot."""
+    """Say that a guest has stopped the robot."""
     return f"{guest} stopped the robot from another console."
 
 
@@ -54,7 +54,7 @@ def driver_words(view: GameView) -> str:
 
 
 def called_words(view: GameView, activity: Activity | None) -> str:
-    """Say how much was called, and what last; "" where nothing was."""
+    """Say how many calls there were, and the last ones; "" if there were none."""
     called = view.scene.called
     if not called:
         return ""
@@ -63,7 +63,7 @@ def called_words(view: GameView, activity: Activity | None) -> str:
 
 
 def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> list[str]:
-    """Say in lines how a game stands, for those who read lines."""
+    """Describe in lines how a game stands."""
     if view is None:
         return [NO_GAME]
     scene = view.scene

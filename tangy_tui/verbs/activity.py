@@ -164,7 +164,7 @@ def activity_import(
     title: Annotated[str, typer.Option(help="What the activity is called.")],
     folder: Annotated[Path, typer.Option(help="Where the files go.")] = Path(),
 ) -> None:
-    """Make an activity of the questions in a file: a table, and a file that can be played."""
+    """Make an activity from a file of questions: a table, and a file that can be played."""
     from tangy_profiles.activity import known_activities
     from tangy_profiles.defaults import QUESTIONS_ACTIVITY
     from tangy_profiles.given_file import read_given_text
@@ -188,7 +188,7 @@ def activity_use(
     activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
     data: Data = None,
 ) -> None:
-    """Teach and play this activity where none is named."""
+    """Teach and play this activity by default."""
     from tangy_profiles.activity import load_activity
     from tangy_tui.app.chosen_activity import choose_activity
     from tangy_tui.app.workspace import data_folder

@@ -23,7 +23,7 @@ ActivityName = Annotated[
 Users = Annotated[
     int,
     typer.Option(
-        help="How many people take part, 1 to 24; usually all who are registered.",
+        help="How many people take part, 1 to 24. Default: everybody registered.",
         show_default=False,
     ),
 ]

@@ -104,7 +104,7 @@ def live(
     spoken_answers: SpokenAnswers = False,
     mode: Mode = None,
     begin: Annotated[
-        bool, typer.Option("--begin", help="Begin at once, without the page to set the game up.")
+        bool, typer.Option("--begin", help="Begin at once, without the set-up page.")
     ] = False,
     resume: Resume = False,
     discard: Discard = False,

@@ -109,7 +109,7 @@ def log_world(
     game: Annotated[
         str,
         typer.Argument(
-            metavar="GAME", help="A number, an id, 'last'; 'unknown': all whose world is unknown."
+            metavar="GAME", help="A number, an id, 'last', or 'unknown' (all in no world)."
         ),
     ],
     world: Annotated[
@@ -118,14 +118,14 @@ def log_world(
             metavar="WORLD", help="Where it was played: simulated, bench, live, or unknown."
         ),
     ],
-    by: Annotated[str, typer.Option("--by", help="Who says so; stands in the log.")] = "",
+    by: Annotated[str, typer.Option("--by", help="Your name, for the log.")] = "",
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Say where a game was played, if the list of games has that wrong, or does not know it.
+    """Say where a game was played, if the list of games is wrong or does not know.
 
-    Games of version 0.6.0 and before do not tell that themselves, and their times do not always.
-    What people did counts only for games of the same world.
+    Version 0.6.0 and before did not log it, and the times of a game do not always show it.
+    People's responses count only for games of the same world.
     """
     from tangy_profiles.game_world import UNKNOWN, read_game_world
     from tangy_profiles.store import Store

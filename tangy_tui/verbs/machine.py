@@ -45,12 +45,11 @@ def doctor(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Say what of this machine works: terminal, store, speech, voice, microphone, camera.
+    """Check this machine: terminal, store, speech, voice, microphone, camera.
 
-    With --robot each driver that the robot's profile names is tried, too; nothing is moved. So is
-    every person whom it names to be called: they get a message that says that it is a test. Its
-    body is drawn as the profile describes it. The exit status is 1 where the data folder, a device
-    of that robot, or a call is broken.
+    With --robot it also tries each driver in the robot's file, without moving anything, sends each
+    contact in that file a test message, and draws the robot's body. The exit status is 1 if the
+    data folder, a device of that robot, or a call does not work.
     """
     from tangy_tui.app.workspace import data_folder
 

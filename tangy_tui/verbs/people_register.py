@@ -22,7 +22,7 @@ Who = Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")]
 
 
 def people_add(name: Name, data: Data = None, as_json: Json = False) -> None:
-    """Add a person, who takes part from the next game on. Up to 24 people can."""
+    """Add a person from the next game on. Up to 24 people can take part."""
     from tangy_tui.app.register import add_person
 
     with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:
@@ -34,7 +34,7 @@ def people_add(name: Name, data: Data = None, as_json: Json = False) -> None:
 
 
 def people_archive(person: Who, data: Data = None, as_json: Json = False) -> None:
-    """Let a person take part no more. What Tangy knows of them stays; bring-back undoes it."""
+    """Archive a person. Tangy keeps what it knows about them; bring-back undoes it."""
     from tangy_tui.app.register import archive_person
 
     with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:
@@ -44,7 +44,7 @@ def people_archive(person: Who, data: Data = None, as_json: Json = False) -> Non
 
 
 def people_bring_back(person: Who, data: Data = None, as_json: Json = False) -> None:
-    """Let a person who was archived take part again."""
+    """Bring back an archived person."""
     from tangy_tui.app.register import archive_person, archived_people
 
     with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:

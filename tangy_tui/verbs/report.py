@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="Reports of a session, a person, the house; tables. Without a verb: of the last session.",
+    help="Reports on a session, a person, the house; tables. Without a verb: the last session.",
 )
 
 Which = Annotated[
@@ -34,19 +34,22 @@ Which = Annotated[
 Html = Annotated[Path | None, typer.Option("--html", help="Write it as a page to this file.")]
 Also = Annotated[
     list[Path] | None,
-    typer.Option("--also", help="The data folder of another robot, taken together. Repeatable."),
+    typer.Option("--also", help="The data folder of another robot to include. Repeatable."),
 ]
 WhichWorld = Annotated[
-    str, typer.Option("--world", help="Whose games: live, bench, simulated. Default: the realest.")
+    str,
+    typer.Option(
+        "--world", help="Which games: live, bench, simulated. Default: the first there are."
+    ),
 ]
 Full = Annotated[
-    bool, typer.Option("--full", help="With what researchers ask: beliefs, faults in full, sums.")
+    bool, typer.Option("--full", help="Add details for researchers: beliefs, full faults, totals.")
 ]
 
 
 @app.callback(invoke_without_command=True)
 def report(context: typer.Context, data: Data = None, as_json: Json = False) -> None:
-    """Report on the last session, where no verb is given."""
+    """Report on the last session, without a verb."""
     if context.invoked_subcommand is None:
         report_session(data=data, as_json=as_json)
 
@@ -60,7 +63,7 @@ def report_session(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Report on a session: people, waits, numbers, faults, what staff did, what to look after."""
+    """Report on a session: what needs attention, people, waits, numbers, faults, staff."""
     from tangy_tui.monitoring.games import find_games, read_games
     from tangy_tui.monitoring.house import last_session
     from tangy_tui.monitoring.session import read_session
@@ -124,7 +127,7 @@ def report_house(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Report on the house, month by month: games, people, waits, faults; of several robots."""
+    """Report on the house, month by month: games, people, waits, faults of one or more robots."""
     from tangy_tui.monitoring.house import by_month, of_world, people_over_time
     from tangy_tui.pages.house import house_page
     from tangy_tui.text import house as text
@@ -149,8 +152,8 @@ def report_house(
 
 @app.command("tables")
 def report_tables(
-    folder: Annotated[Path, typer.Argument(help="The folder that the tables are written to.")],
-    lines: Annotated[bool, typer.Option("--jsonl", help="JSON lines in the place of CSV.")] = False,
+    folder: Annotated[Path, typer.Argument(help="The folder to write the tables to.")],
+    lines: Annotated[bool, typer.Option("--jsonl", help="JSON lines instead of CSV.")] = False,
     also: Also = None,
     activity: Of = "",
     data: Data = None,

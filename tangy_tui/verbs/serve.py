@@ -1,4 +1,4 @@
-"""`tangy serve`: looking on at a game in a browser."""
+"""`tangy serve`: watch a game in a browser."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ PORT = 8770
 
 def serve(
     host: Annotated[
-        str, typer.Option(help="Where it listens; without one, for browsers of this machine only.")
+        str, typer.Option(help="The address to listen at. Default: this machine's browsers only.")
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535, help="The port it listens at.")] = PORT,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="The port to listen at.")] = PORT,
     data: Data = None,
 ) -> None:
-    """Show the game that another Tangy runs in a browser, as `tangy watch` does.
+    """Show another Tangy's game in a browser, as `tangy watch` does in a terminal.
 
-    The address that is printed holds a token, which is new each time: without it nobody gets in.
+    It prints an address with a token, which is new each time: without it nobody gets in.
     """
     from tangy_tui.app.serving import (
         EVERYWHERE,

@@ -1,4 +1,4 @@
-"""`tangy watch`: a second console that looks on at the games of another, and can stop the robot."""
+"""`tangy watch`: a second console that shows another one's games, and can stop the robot."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.watching import Guest
 
 Stop = Annotated[bool, typer.Option("--stop", help="Stop the robot now, and leave.")]
-By = Annotated[str, typer.Option("--by", help="Who looks on; stands in the log with a STOP.")]
+By = Annotated[str, typer.Option("--by", help="Your name; the log shows it with a STOP.")]
 Lines = Annotated[bool, typer.Option("--plain", help="By lines, for any terminal.")]
 JsonLines = Annotated[
     bool, typer.Option("--json", help="Print a JSON document on each line, as things happen.")
@@ -28,10 +28,10 @@ def watch(
     as_json: JsonLines = False,
     ascii_only: Ascii = False,
 ) -> None:
-    """Look on at the game that another Tangy runs, and stop the robot if need be.
+    """Watch the game that another Tangy runs, and stop the robot if need be.
 
     It shows what happens as it happens, and changes nothing. ctrl+x (--stop) stops the robot at
-    once; the log says who did.
+    once; the log says who stopped it.
     """
     from tangy_profiles.store import Store
     from tangy_tui.app.teacher_profile import login_name

@@ -126,7 +126,7 @@
     if (!waiting) { waiting = window.setTimeout(connect, milliseconds); }
   }
 
-  // What sleeps shows nothing: keep awake where the browser lets pages do so, and say where not.
+  // A sleeping screen shows nothing: keep it awake if the browser allows that, else say so.
   function stayAwake() {
     if (document.hidden) { return; }
     if (!navigator.wakeLock) {

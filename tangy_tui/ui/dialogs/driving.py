@@ -30,8 +30,8 @@ class DrivingDialog(Dialog[None]):
         Binding("down", "drive(-1, 0)", "Back"),
         Binding("left", "drive(0, 1)", "Turn left"),
         Binding("right", "drive(0, -1)", "Turn right"),
-        Binding("shift+up", "override(1, 0)", "Forward in spite of it"),
-        Binding("shift+down", "override(-1, 0)", "Back in spite of it"),
+        Binding("shift+up", "override(1, 0)", "Crawl forward"),
+        Binding("shift+down", "override(-1, 0)", "Crawl back"),
         Binding("space", "drive(0, 0)", "Stand still"),
         Binding("escape,q", "close", "Drive no more", key_display="esc"),
     ]

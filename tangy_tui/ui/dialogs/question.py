@@ -223,8 +223,8 @@ class QuestionDialog(VerifyingDialog):
     ]
     HELP = (
         "Tangy never moves on a guess: it names the behaviour that it understood and waits. "
-        "Press {yes} to have it done, n or esc to give the command again, or the number of another "
-        "behaviour, which is asked about again."
+        "Press {yes} to do it, n or esc to give the command again, or the number of another "
+        "behaviour; Tangy then asks about that one."
     )
 
     def __init__(

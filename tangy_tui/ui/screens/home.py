@@ -48,7 +48,7 @@ CHOICES = (
     MenuItem("o", "Policy", "what Tangy does in which situation"),
     MenuItem("e", "People", "who takes part, and what persuades them"),
     MenuItem("c", "Sensors", "cameras and devices, and the last card"),
-    MenuItem("a", "Activity", "choose what is taught and played"),
+    MenuItem("a", "Activity", "choose what to teach and play"),
     MenuItem("d", "Demo", "the whole story, in four minutes"),
     MenuItem("n", "Name", "who teaches: change your name"),
     MenuItem("h", "Help", "keys, and how to begin"),

@@ -31,11 +31,10 @@ HELP = (
     "keys. {call_again} calls the last number again, {undo} takes it back, {ask_for} asks for "
     "help for a person who cannot, {whose_card} says whose card is whose; in an activity without "
     "cards {tell} tells Tangy what a person answers or does. {faster} and {slower} "
-    "change the pace, {claim} checks whether a card wins, {presence} says who has come or left, "
+    "change the pace, {claim} checks whether a card wins, {presence} notes who has come or left, "
     "{command} takes all of these and more in words, and {inside} shows how Tangy decides. "
-    "{inject} brings about a fault, on the bench. With a microphone, stop and stop the robot stop "
-    "it at once when they are said, and {talk} talks where a key is pushed to talk. Esc ends the "
-    "game."
+    "{inject} simulates a fault, on the bench. With a microphone, saying stop or stop the robot "
+    "stops it at once, and with push-to-talk {talk} lets you talk. Esc ends the game."
 )
 
 BINDINGS: list[BindingType] = [

@@ -28,23 +28,22 @@ def faster(speed: float, by: int) -> float:
 
 
 HELP = (
-    "Tangy plays by what it has learnt. {pause} pauses and goes on, {step} does one step, "
+    "Tangy plays with what it has learnt. {pause} pauses and goes on, {step} does one step, "
     "{slower} and {faster} change the speed, {skip} skips to the end of the game, {next} begins "
-    "another. {why} tells why: of the step that is chosen, or of the last one. {inside} changes "
+    "another. {why} gives the reason for the chosen step, or for the last one. {inside} switches "
     "between how Tangy decides and what staff need: the last call, the clock, and everybody. "
-    "Where there is no room for all panels, 1 to 6 choose one. Where Tangy is not sure it does "
-    "nothing but ask: type what it should do, and a yes has it done; it learns that from you, and "
-    "the game goes on. While it asks, esc leaves the line, so that keys are keys again, {command} "
-    "leads back to it, and a second esc gives the game up, if you mean it. Where something "
-    "unexpected happened, {accept} (or typing: all right) says that it is all right. When "
-    "something goes wrong, a line under the first one says what, what Tangy does about it and "
-    "what it asks for; {acknowledge} says that you have seen it and takes the line away, 6 shows "
-    "all faults of this game, and Enter there what to do. 7 shows how all devices are, what "
-    "cameras see and the last card that was read. When it is critical Tangy stands still until "
-    "you clear it. {inject} brings about a fault in the simulated room. {voice} lets Tangy speak, "
-    "or be quiet: as fast as in life (x1) every line is heard to its end, and in a faster game "
-    "the next one cuts it. With a microphone, {talk} talks where Tangy asks, and stop, said while "
-    "Tangy does not speak, stops the robot ({stop} always does)."
+    "On a small screen, 1 to 6 choose the panel. If Tangy is not sure, it only asks: type what it "
+    "should do, and say yes; Tangy does it, learns it from you, and the game goes on. While it "
+    "asks, esc leaves the line so that keys work again, {command} goes back to it, and a second "
+    "esc gives the game up, after a question. After something unexpected, {accept} (or typing: "
+    "all right) says that all is well. When something goes wrong, the second line says what, what "
+    "Tangy does about it and what it asks for; {acknowledge} says that you have seen it and hides "
+    "the line, 6 lists all faults of this game, and Enter there shows what to do. 7 shows the "
+    "state of all devices, what cameras see and the last card that was read. After a critical "
+    "fault Tangy stands still until you clear it. {inject} simulates a fault in the simulated "
+    "room. {voice} turns Tangy's voice on or off: at life speed (x1) it finishes every line, in a "
+    "faster game the next line cuts it short. With a microphone, {talk} lets you talk when Tangy "
+    "asks; saying stop while Tangy is quiet stops the robot ({stop} always does)."
 )
 
 PANELS = ("room", "transcript", "policy", "posteriors", "log", "faults")

@@ -40,12 +40,12 @@ class SetUpScreen(TangyScreen[bool]):
     SetUpScreen #setup { height: 1fr; }
     """
     HELP = (
-        "Set a game up from top to bottom. Up and down choose a line. On a person Enter says "
-        "whether they are here, left and right give them another seat. On a choice Enter, left "
-        "and right change it; a number adds what the game is played for, or takes it away. Enter "
-        "on Robot switches Tangy on: it stands still. Then Enter on Cards lets it read a card that "
-        "you hold before it, Enter on Sound lets it speak, and Enter on Tablet shows the address. "
-        "{begin} begins the game: nothing moves before."
+        "Set a game up from top to bottom. Up and down choose a line. On a person, Enter switches "
+        "between here and away, left and right move them to another seat. On a choice, Enter, left "
+        "and right change it; a number adds a pattern to play for, or takes it away. Enter on "
+        "Robot switches Tangy on: it stands still. Then Enter on Cards lets it read a card that "
+        "you hold in front of it, Enter on Sound lets it speak, and Enter on Tablet shows the "
+        "address. {begin} begins the game: nothing moves before that."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bind("begin"),

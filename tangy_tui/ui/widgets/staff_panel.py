@@ -33,8 +33,8 @@ class StaffPanel(RowView, can_focus=True):
     StaffPanel { scrollbar-gutter: auto; }
     """
     HELP = (
-        "The last call, what it is played for, the time and the pace, what Tangy does next and "
-        "why, and how everybody is: who asks, for how long, and when Tangy was there last."
+        "The last call, the pattern to play for, the time, the pace, what Tangy does next and why, "
+        "and each person: how long they have waited, and when Tangy last visited them."
     )
 
     def __init__(self) -> None:
