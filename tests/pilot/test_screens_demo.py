@@ -48,7 +48,7 @@ async def test_space_holds_it_and_lets_it_go_on(run: Run, workspace: Workspace) 
         screen = await shown(pilot, lambda s: s.at >= 0)
         await pilot.press("space")
         held = screen.at
-        assert "held" in screen_text(pilot.app)
+        assert "paused" in screen_text(pilot.app)
         await pilot.pause(0.1)
         assert screen.at == held
         await pilot.press("space")
