@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import hypot
 from pathlib import Path
 
@@ -60,12 +60,43 @@ class Room:
     """Each of several tables in a row; `table` is what they take together."""
 
     def seated(self, count: int) -> tuple[Point, ...]:
-        """Return a seat for each of `count` people: the room's own, or as many spread evenly."""
-        if count == len(self.seats) or (self.tables and count < len(self.seats)):
-            return self.seats[:count]
+        """Return a seat for each of `count` people: the room's own, or as many spread evenly.
+
+        At several tables so many sit at each, from the left, as `at_tables` has it.
+        """
+        if count == len(self.seats):
+            return self.seats
+        if self.tables and count < len(self.seats):
+            return tuple(
+                own[int((place + 0.5) * len(own) / len(sitting))]
+                for own, sitting in zip(self._seats_at_tables, self.at_tables(count), strict=True)
+                for place in range(len(sitting))
+            )
         left, _, right, _ = self.table
         y = self.seats[0].y
         return tuple(Point(left + (right - left) * (i + 0.5) / count, y) for i in range(count))
+
+    def at_tables(self, count: int) -> tuple[range, ...]:
+        """Return which of `count` people (from 0 on) sit at each table: about as many at each."""
+        if not self.tables:
+            return (range(count),)
+        free = [len(own) for own in self._seats_at_tables]
+        taken = [0] * len(free)
+        for _ in range(min(count, sum(free))):
+            table = min(
+                (t for t in range(len(free)) if taken[t] < free[t]), key=lambda t: (taken[t], t)
+            )
+            taken[table] += 1
+        ends = list(accumulate(taken))
+        return tuple(range(end - of, end) for end, of in zip(ends, taken, strict=True))
+
+    @property
+    def _seats_at_tables(self) -> tuple[tuple[Point, ...], ...]:
+        """The room's own seats at each of its tables, from the left."""
+        return tuple(
+            tuple(seat for seat in self.seats if left <= seat.x <= right)
+            for left, _, right, _ in self.tables
+        )
 
     def placed(self, people: Sequence[Person]) -> tuple[Person, ...]:
         """Return the people with the ways to call their seats, which they take in this order.
@@ -119,6 +150,9 @@ def load_room(name: str = "common-room") -> Room:
         seats.append(Point(entry.number("x", 0, width), entry.number("y", 0, depth)))
         names.append(_words(entry, "name"))
         entry.close()
+    alone = [s for s in seats if not any(t[0] <= s.x <= t[2] for t in tables)]
+    if len(tables) > 1 and alone:
+        raise top.wrong("seats", "must each be at one of the tables.")
     if not seats:
         raise top.wrong("seats", "must hold at least one seat.")
     if len(set(filter(None, names))) < len(list(filter(None, names))):

@@ -64,6 +64,16 @@ def test_everybody_has_a_seat_of_their_own_in_the_room_for_so_many(count: int) -
         assert min(a.distance(b) for a in seats for b in seats if a != b) > 0.8
 
 
+@pytest.mark.parametrize(
+    ("count", "each"), [(9, [3, 3, 3]), (12, [4, 4, 4]), (13, [5, 4, 4]), (24, [8, 8, 8])]
+)
+def test_people_in_a_hall_share_the_tables(count: int, each: list[int]) -> None:
+    hall = load_room("hall")
+    assert [len(sitting) for sitting in hall.at_tables(count)] == each
+    for sitting, (left, _, right, _) in zip(hall.at_tables(count), hall.tables, strict=True):
+        assert all(left <= hall.seated(count)[place].x <= right for place in sitting)
+
+
 def test_the_tables_of_a_hall_stand_in_a_row_within_what_they_take_together() -> None:
     hall = load_room("hall")
     assert len(hall.tables) == 3
