@@ -99,6 +99,8 @@ ACTIONS: tuple[KeyAction, ...] = (
     _line("hear", ("ctrl+g", "H"), "hear"),
     KeyAction("feedback", ("F",), "feedback"),
     KeyAction("method", ("P",), "method"),
+    KeyAction("join", ("J",), "add a person"),
+    KeyAction("rename", ("T",), "rename"),
     KeyAction("world", ("W",), "games"),
     KeyAction("camera", ("V",), "camera"),
     # the same in every program

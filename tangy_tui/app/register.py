@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from datetime import datetime
 
 from tangy_profiles.defaults import REGISTERED, TO_BEGIN_WITH
 from tangy_profiles.errors import TangyError
@@ -29,6 +30,32 @@ def archived_people(store: Store) -> list[str]:
     return [person for person, on in archived.items() if on]
 
 
+def guest_ids(store: Store) -> list[str]:
+    """Return the ids of all guests of any day."""
+    return [guest.id for guest, _ in _guests(store)]
+
+
+def guests_today(store: Store) -> tuple[Person, ...]:
+    """Return the guests of this day who have not left again, first come first."""
+    archived = archived_people(store)
+    return tuple(guest for guest, today in _guests(store) if today and guest.id not in archived)
+
+
+def past_guests(store: Store) -> tuple[Person, ...]:
+    """Return the guests of earlier days whose names are still kept."""
+    named = store.names()
+    return tuple(guest for guest, today in _guests(store) if not today and guest.id in named)
+
+
+def _guests(store: Store) -> Iterator[tuple[Person, bool]]:
+    """Give each guest, and whether they came on this day, as the clock on the wall has it."""
+    today, names = store.now().astimezone().date(), store.names()
+    for event in store.events(PersonAdded):
+        if event.person and event.record.guest:
+            came = datetime.fromisoformat(event.at).astimezone().date()
+            yield Person(event.person, names.get(event.person, event.person)), came == today
+
+
 def participants(store: Store, count: int) -> tuple[Person, ...]:
     """Return the first `count` of those who take part, numbered on where there are fewer.
 
@@ -37,7 +64,7 @@ def participants(store: Store, count: int) -> tuple[Person, ...]:
     """
     people = registered(store)
     if count == REGISTERED:
-        return people
+        return (*people, *guests_today(store))[:MOST_PEOPLE]
     archived = archived_people(store)
     numbered = load_people(count)  # which refuses what cannot be
     more = [p for p in load_people(MOST_PEOPLE) if p.id not in archived and p not in people]
@@ -64,12 +91,12 @@ def add_person(store: Store, *, guest: bool = False) -> str:
     Raises:
         TangyError: there is no room for more.
     """
+    if len(participants(store, REGISTERED)) >= MOST_PEOPLE:
+        raise TangyError(f"{MOST_PEOPLE} people take part already: archive somebody first.")
     taken = {str(event.person) for event in store.events(PersonAdded)}
     if guest:
         id = next(f"guest{n}" for n in range(1, len(taken) + 2) if f"guest{n}" not in taken)
     else:
-        if len(registered(store)) >= MOST_PEOPLE:
-            raise TangyError(f"{MOST_PEOPLE} people take part already: archive somebody first.")
         taken |= {person.id for person in load_people(TO_BEGIN_WITH)}
         free = [person.id for person in load_people(MOST_PEOPLE) if person.id not in taken]
         id = free[0] if free else f"user{len(taken) + 1}"

@@ -14,6 +14,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
 from tangy_profiles.health import OK
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.app.joining import let_join
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-CheckName = Literal["robot", "battery", "tablet", "cards", "sound"]
-CHECKS: tuple[CheckName, ...] = ("robot", "battery", "tablet", "cards", "sound")
+CheckName = Literal["robot", "battery", "tablet", "cards", "faces", "sound"]
+CHECKS: tuple[CheckName, ...] = ("robot", "battery", "tablet", "cards", "faces", "sound")
 CheckState = Literal["off", "ready", "not ready", "not checked", "not told"]
 """Of a check: the robot is off, all is well or not, nobody has looked yet, or no device tells."""
 
@@ -62,6 +63,8 @@ class SetUp:
     """The robot, once it is on."""
     card: str = ""
     """What was seen of a card that was held before the robot."""
+    face: str = ""
+    """Who was seen last that stood before the robot, by id."""
     said: bool = False
     heard: bool = False
 
@@ -76,13 +79,61 @@ class SetUp:
         """Take a person for being here, or for not being here."""
         self.away ^= {person}
 
+    @property
+    def tables(self) -> tuple[tuple[str, ...], ...]:
+        """Who sits at each table, as the tables stand in the room."""
+        at_tables = self.workspace.room.at_tables(len(self.seats))
+        return tuple(tuple(self.seats[place] for place in sitting) for sitting in at_tables)
+
     def move(self, person: str, by: int) -> None:
         """Let a person change seats with another so many on, as long as the robot is off."""
         at = self.seats.index(person)
-        to = min(len(self.seats) - 1, max(0, at + by))
+        self.change_seats(person, self.seats[min(len(self.seats) - 1, max(0, at + by))])
+
+    def change_seats(self, person: str, other: str) -> None:
+        """Let two people change seats, as long as the robot is off."""
+        at, to = self.seats.index(person), self.seats.index(other)
         if self.world is None and to != at:
             self.seats[at], self.seats[to] = self.seats[to], self.seats[at]
             self.workspace.seat(self.seats)
+
+    def add(self, name: str, *, guest: bool) -> None:
+        """Let a person take part from now on, or as a guest today, as long as the robot is off.
+
+        Raises:
+            TangyError: there is no room for more, or the name cannot be given.
+        """
+        if self.world is None:
+            self.seats.append(let_join(self.workspace, name, guest=guest))
+
+    def rename(self, person: str, name: str) -> None:
+        """Give a person another name.
+
+        Raises:
+            TangyError: it cannot be given.
+        """
+        self.workspace.rename(self.workspace.find_person(person), name)
+
+    def play(self, activity: str) -> None:
+        """Play another activity, as long as the robot is off.
+
+        Raises:
+            TangyError: it cannot be played, as nobody has taught it.
+        """
+        from tangy_tui.learning.policies import need_policy
+
+        workspace, before = self.workspace, self.workspace.profile
+        if self.world is not None or activity == before:
+            return
+        workspace.change_activity(activity)
+        try:
+            need_policy(workspace.store, workspace.activity)
+        except TangyError:
+            workspace.change_activity(before)
+            raise
+        self.patterns, self.strength = [], ""
+        self.seats = [person.id for person in workspace.people]
+        self.away &= set(self.seats)
 
     def choose_strength(self, name: str) -> None:
         """Choose how strongly people may be spoken to, by name.
@@ -141,7 +192,14 @@ class SetUp:
         """Return how everything is that has to be ready, in the order in which it is looked at."""
         if self.world is None:
             return [Check(name, "off") for name in CHECKS]
-        return [self._robot(), self._battery(), self._tablet(), self._cards(), self._sound()]
+        return [
+            self._robot(),
+            self._battery(),
+            self._tablet(),
+            self._cards(),
+            self._faces(),
+            self._sound(),
+        ]
 
     @property
     def not_ready(self) -> list[Check]:
@@ -173,6 +231,12 @@ class SetUp:
     def _cards(self) -> Check:
         return Check("cards", "ready" if self.card else "not checked", self.card)
 
+    def _faces(self) -> Check:
+        if self.world is None or not self.world.knows_faces:
+            return Check("faces", "not told")
+        seen = self.workspace.name(self.face) if self.face else ""
+        return Check("faces", "ready" if seen else "not checked", seen)
+
     def _sound(self) -> Check:
         state: CheckState = "ready" if self.heard else "not ready" if self.said else "not checked"
         return Check("sound", state)
@@ -186,6 +250,27 @@ class SetUp:
             return ""
         self.card = "" if seen["card"] is None else str(seen["card"])
         return self.card
+
+    def holder(self, card: int) -> str:
+        """Return who is known to have a card, "" for nobody."""
+        return "" if self.world is None else self.world.cards.dealt.owner(card)
+
+    def comes_with(self, card: int, person: str) -> None:
+        """Take a person for being here, with a card."""
+        self.away.discard(person)
+        if self.world is not None:
+            self.world.cards.dealt.give(person, card)
+
+    def look_at_face(self) -> str:
+        """Look who stands before the robot, who is here then; return the id, "" for nobody."""
+        assert self.world is not None  # noqa: S101 - as above
+        try:
+            seen = self.world.commands.do("face").get("person")
+        except DeviceError:
+            return ""
+        self.face = str(seen) if seen in self.seats else ""
+        self.away.discard(self.face)
+        return self.face
 
     def speak(self, words: str) -> bool:
         """Say something that staff are to hear; return whether it could be said."""

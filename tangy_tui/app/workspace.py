@@ -23,7 +23,7 @@ from tangy_profiles.room import room_for
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
 from tangy_tui.app.chosen_activity import choose_activity, chosen_activity
-from tangy_tui.app.register import known_people, participants
+from tangy_tui.app.register import known_people, participants, past_guests
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 from tangy_tui.app.session_door import SessionDoor
@@ -87,6 +87,8 @@ class Workspace:
             self._logging.enter_context(logging_to(folder))
         self.people: tuple[Person, ...] = ()
         self.register(users)
+        for guest in past_guests(self.store) if write else ():
+            self.forget(guest)  # a guest is there for a day
 
     def _take_up(self, activity: str) -> None:
         loaded: Activity = load_activity(activity)

@@ -128,7 +128,7 @@ def read_log(
 
     Args:
         store: the log.
-        names: of the people, by id; those in the log come first.
+        names: of the people, by id; who has none there is called as the log has it.
         activities: those that are known, by name.
         games: which games; None: all of them.
     """
@@ -136,7 +136,7 @@ def read_log(
     chosen = read_games(store) if games is None else games
     first = next(iter(store.events()), None)
     robot = "" if first is None else first.robot
-    called = {**names, **given}
+    called = {**given, **names}
     return RobotLog(
         robot,
         robot[:SHORT_ROBOT],

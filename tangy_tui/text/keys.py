@@ -75,6 +75,8 @@ NAMES: Mapping[str, Named] = MappingProxyType(
         "hear": Named("Hear it", "hear"),
         "feedback": Named("Say what the person did", "answer"),
         "method": Named("How Tangy persuades this person", "method"),
+        "join": Named("Add a person or a guest", "add"),
+        "rename": Named("Give a person another name", "rename"),
         "world": Named("Simulated, bench or live games", "games"),
         "camera": Named("Show what the camera sees, or hide it", "camera"),
         "back": Named("Back", "back"),

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable, Mapping
+
 
 def added_words(name: str, id: str) -> str:
     """Say that a person now takes part."""
@@ -21,3 +24,15 @@ def back_words(name: str) -> str:
 def not_archived(person: str, known: str) -> str:
     """Say that nobody of that name is archived, and who is."""
     return f"Nobody called {person!r} is archived. Archived: {known or 'nobody'}."
+
+
+def guest_added_words(name: str, id: str) -> str:
+    """Say that a guest was added."""
+    return f"{name} is a guest today (id {id}). Tangy forgets the name tomorrow."
+
+
+def with_guests(names: Mapping[str, str], guests: Iterable[str]) -> dict[str, str]:
+    """Return what people are called in reports, by id: guests as such, also once forgotten."""
+    numbered = {id: re.sub(r"\D+", "Guest ", id, count=1) for id in guests}
+    called = {id: f"{names[id]} (guest)" if id in names else numbered[id] for id in numbered}
+    return {**names, **called}

@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import assert_never
 
 from tangy_tui.app.set_up import Check, CheckName, SetUp
 
 TITLE = "Set up"
 PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
-HERE, AWAY = "here", "not here yet"
+HERE, AWAY, AWAY_SHORT = "here", "not here yet", "away"
 LATER = "You can change all of this during the game, except the seats."
 SOUND = "Hello. Can everybody hear me?"
 CARD_HOW = "Hold a card in front of Tangy, then press Enter."
 NO_CARD = "Tangy saw no card. Hold one closer, flat, and in good light."
 NO_SOUND = "Tangy could not speak. Check its loudspeaker."
 SWITCH_FIRST = "First press Enter on Robot: Tangy is still off."
-SEATED = "Tangy is on, so you cannot change seats. To change them, leave with esc."
+SEATED = "Tangy is on, so you cannot change people or seats. To change them, leave with esc."
+ACTIVITY = "Activity"
+ADD, ADD_GUEST, RENAME = "Who has come?", "Is {} here for good?", "What is {} called?"
+FOR_GOOD, TODAY = "takes part from now on", "is a guest today"
+FOR_GOOD_NOTE, TODAY_NOTE = "Tangy remembers the person", "Tangy forgets the person tomorrow"
+NAME_DETAIL = "Tangy calls people by this name."
+FACE_HOW = "Stand in front of Tangy, one person at a time."
+NO_FACE = "Tangy knows nobody it sees. Stand closer, or press Enter on the name."
+WHOSE = "Whose card is {}?"
+OTHER_ACTIVITY = "Tangy is on, so the activity stays as it is. Leave with esc to change it."
 SAID = "Tangy has spoken. Press Enter if you heard it."
 STOPPED = "Tangy was stopped. Begin the game when all is well."
+UNHEARD = "Sound: nobody has said yet that they heard Tangy."
 BEGIN_ANYWAY = "Begin although not everything is ready?"
 BEGIN_DETAIL = "Tangy starts moving and speaking."
 
@@ -26,6 +37,7 @@ NAMES: dict[CheckName, str] = {
     "battery": "Battery",
     "tablet": "Tablet on its chest",
     "cards": "Cards",
+    "faces": "Faces",
     "sound": "Sound",
 }
 
@@ -83,18 +95,62 @@ def check_words(check: Check) -> str:
         case "ready":
             return _ready(check)
         case "not checked":
-            return "Enter reads one" if check.name == "cards" else "Enter lets Tangy speak"
+            return _to_try(check.name)
         case "not told":
-            return "this robot has no tablet" if check.name == "tablet" else "not reported"
+            return _NOT_TOLD.get(check.name, "not reported")
         case "not ready":
             return _to_do(check)
         case forgotten:
             assert_never(forgotten)
 
 
+_NOT_TOLD: dict[CheckName, str] = {
+    "tablet": "this robot has no tablet",
+    "faces": "Tangy knows no faces here",
+}
+
+
+def _to_try(name: CheckName) -> str:
+    match name:
+        case "cards":
+            return "Enter reads one: its owner is here"
+        case "faces":
+            return "Enter looks who is there"
+        case _:
+            return "Enter lets Tangy speak"
+
+
 def not_ready_words(check: Check) -> str:
     """Say in a sentence which part is not ready, and what to do."""
+    if check.name == "sound":
+        return UNHEARD
     return f"{NAMES[check.name]}: {_to_do(check)}."
+
+
+def summary_words(checks: Sequence[Check]) -> str:
+    """Say in a line what is ready, and what is not."""
+    if all(check.state == "off" for check in checks):
+        return "Tangy is off: nothing is checked yet"
+    wrong = [NAMES[check.name] for check in checks if check.state == "not ready"]
+    untried = [NAMES[check.name] for check in checks if check.state == "not checked"]
+    if wrong:
+        return f"not ready: {', '.join(wrong)}".lower()
+    return f"ready; not tried: {', '.join(untried)}".lower() if untried else "all is ready"
+
+
+def table_words(number: int) -> str:
+    """Name one of several tables."""
+    return f"Table {number}"
+
+
+def card_seen_words(card: str, name: str) -> str:
+    """Say whose card was read, and that they are here."""
+    return f"Card {card}: {name} is here."
+
+
+def face_seen_words(name: str) -> str:
+    """Say who was seen, and that they are here."""
+    return f"{name} is here."
 
 
 def _ready(check: Check) -> str:
@@ -107,6 +163,8 @@ def _ready(check: Check) -> str:
             return f"connected, {check.about}"
         case "cards":
             return f"card {check.about} was read"
+        case "faces":
+            return f"{check.about} was seen last"
         case "sound":
             return "heard"
         case forgotten:
@@ -123,6 +181,8 @@ def _to_do(check: Check) -> str:
             return f"open {check.about} on it"
         case "cards":
             return CARD_HOW
+        case "faces":
+            return FACE_HOW
         case "sound":
             return "did you hear it? Enter: yes"
         case forgotten:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import known_activities, load_activity
@@ -15,8 +16,16 @@ if TYPE_CHECKING:
 
 async def choose_at_home(program: Program) -> None:
     """Ask which activity it is to be from now on, and take it up."""
-    from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
     from tangy_tui.ui.screens.home import HomeScreen
+
+    await choose_activity(program, program.workspace.change_activity)
+    if isinstance(program.screen, HomeScreen):
+        program.screen.show_activity(program.workspace.activity.title)
+
+
+async def choose_activity(program: Program, take: Callable[[str], object]) -> None:
+    """Ask which activity it is to be from now on, and `take` it up, or say why that cannot be."""
+    from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 
     workspace = program.workspace
     options = [Option(*one) for one in choices(workspace)]
@@ -24,15 +33,13 @@ async def choose_at_home(program: Program) -> None:
     if wanted is None or wanted == workspace.profile:
         return
     try:
-        workspace.change_activity(wanted)
+        take(wanted)
     except TangyError as error:
         program.say(str(error), bad=True)
         return
     await program.speaker.speak_of(workspace.activity)
     if program.hearing is not None:
         program.hearing.ears.understand_by(workspace.phrasebook())
-    if isinstance(program.screen, HomeScreen):
-        program.screen.show_activity(workspace.activity.title)
     program.say(chosen_words(workspace.activity.title))
 
 

@@ -66,7 +66,7 @@ async def play_live(
 
     workspace = program.workspace
     robot = SwitchingOn(opening)
-    setup = SetUp.of(workspace, pace)
+    setup, activity = SetUp.of(workspace, pace), workspace.profile
     try:
         if set_up:
             world = await _set_up(program, setup, robot)
@@ -74,8 +74,11 @@ async def play_live(
             world = await _switch_on(program, robot)
         if world is None:
             return
+        from tangy_tui.learning.policies import load_policy
         from tangy_tui.ui.screens.live import LiveScreen
 
+        if workspace.profile != activity:
+            policy, _ = load_policy(workspace.store, workspace.activity)
         if set_up:
             setup.carry_out(world)
         elif past is None:
@@ -92,6 +95,7 @@ async def play_live(
 
 async def _set_up(program: Program, setup: SetUp, robot: SwitchingOn) -> LiveWorld | None:
     """Let staff set the game up; None where they leave."""
+    from tangy_tui.ui.activity_choice import choose_activity
     from tangy_tui.ui.dialogs.confirm import ConfirmDialog
     from tangy_tui.ui.screens.set_up import SetUpScreen
 
@@ -104,7 +108,10 @@ async def _set_up(program: Program, setup: SetUp, robot: SwitchingOn) -> LiveWor
                 return None
         return await _switch_on(program, robot)
 
-    begins = await program.push_screen_wait(SetUpScreen(setup, switch_on))
+    async def choose() -> None:
+        await choose_activity(program, setup.play)
+
+    begins = await program.push_screen_wait(SetUpScreen(setup, switch_on, choose))
     return setup.world if begins else None
 
 

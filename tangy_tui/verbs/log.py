@@ -157,13 +157,15 @@ def open_log(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
     """Open the log for reading, with the names of the people."""
     from tangy_profiles.person import MOST_PEOPLE, load_people
     from tangy_profiles.store import Store
+    from tangy_tui.app.register import guest_ids
     from tangy_tui.app.workspace import data_folder
+    from tangy_tui.text.register import with_guests
 
     with Store.open(data_folder(data), write=False) as store:
         say_notices(store.notices)
         names = {person.id: person.name for person in load_people(MOST_PEOPLE)}
         try:
-            yield store, names | store.names()
+            yield store, with_guests(names | store.names(), guest_ids(store))
         finally:
             say_aside(store)
 

@@ -10,7 +10,13 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, folded, load_people
 from tangy_profiles.reading import plain
-from tangy_tui.text.register import added_words, archived_words, back_words, not_archived
+from tangy_tui.text.register import (
+    added_words,
+    archived_words,
+    back_words,
+    guest_added_words,
+    not_archived,
+)
 from tangy_tui.verbs.common import REGISTERED, Data, Json, print_json
 from tangy_tui.verbs.opening import open_workspace
 
@@ -18,19 +24,20 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
 
 Name = Annotated[str, typer.Argument(help="The name of the person.")]
+Guest = Annotated[
+    bool, typer.Option("--guest", help="Only for today: Tangy forgets the name tomorrow.")
+]
 Who = Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")]
 
 
-def people_add(name: Name, data: Data = None, as_json: Json = False) -> None:
+def people_add(name: Name, guest: Guest = False, data: Data = None, as_json: Json = False) -> None:
     """Add a person from the next game on. Up to 24 people can take part."""
-    from tangy_tui.app.register import add_person
+    from tangy_tui.app.joining import let_join
 
     with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:
-        with workspace.store.transaction():
-            id = add_person(workspace.store)
-            workspace.register()
-            workspace.rename(workspace.find_person(id), name)
-        _told(workspace, id, added_words(workspace.name(id), id), as_json)
+        id = let_join(workspace, name, guest=guest)
+        words = guest_added_words if guest else added_words
+        _told(workspace, id, words(workspace.name(id), id), as_json)
 
 
 def people_archive(person: Who, data: Data = None, as_json: Json = False) -> None:

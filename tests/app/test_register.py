@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -9,10 +10,12 @@ import pytest
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.room import load_room, room_for
-from tangy_tui.app.register import add_person, archive_person, participants, registered
+from tangy_tui.app.joining import let_join
+from tangy_tui.app.register import add_person, archive_person, guest_ids, participants, registered
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
+from tangy_tui.text.register import with_guests
 
 
 def ids(workspace: Workspace) -> list[str]:
@@ -93,4 +96,34 @@ def test_a_game_is_set_up_by_lines(data_folder: Path) -> None:
     assert (setup.pace, setup.several, setup.strength, setup.minutes) == (20, True, "gentle", 40)
     assert next(lines) == "never read"
     assert not SetUpLines(setup, lambda: "end", said.append).run()
+    workspace.close()
+
+
+def test_a_guest_takes_part_on_that_day_alone_and_is_forgotten_then(data_folder: Path) -> None:
+    now = [datetime(2026, 5, 1, 10, tzinfo=UTC)]
+    workspace = Workspace(data_folder, now=lambda: now[0])
+    guest = let_join(workspace, "Anna", guest=True)
+    assert list(workspace.names)[-1] == guest and workspace.name(guest) == "Anna"
+    assert with_guests(workspace.store.names(), guest_ids(workspace.store))[guest] == "Anna (guest)"
+    workspace.close()
+
+    again = Workspace(data_folder, now=lambda: now[0])
+    assert list(again.names)[-1] == guest  # as a game that was interrupted needs
+    again.close()
+
+    now[0] += timedelta(days=1)
+    tomorrow = Workspace(data_folder, now=lambda: now[0])
+    assert guest not in tomorrow.names and guest not in tomorrow.store.names()
+    assert with_guests(tomorrow.store.names(), guest_ids(tomorrow.store))[guest] == "Guest 1"
+    assert let_join(tomorrow, "Anna", guest=True) != guest
+    tomorrow.close()
+
+
+def test_a_person_whose_name_is_taken_does_not_join(data_folder: Path) -> None:
+    workspace = Workspace(data_folder)
+    let_join(workspace, "Anna")
+    before = ids(workspace)
+    with pytest.raises(TangyError, match="choose another name"):
+        let_join(workspace, "anna")
+    assert ids(workspace) == before
     workspace.close()

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import STAFF
+from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.health import OK, STALE
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.tablet import qr_lines
 from tangy_tui.ui.program import Program
@@ -58,7 +61,7 @@ async def test_people_patterns_and_seats_are_chosen_by_keys_and_nothing_moves(
 ) -> None:
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
-        await pilot.press("enter", "down", "right", "1", "6")
+        await pilot.press("enter", "down", "space", "down", "space", "1", "6")
         setup = setting.setup
         assert setup.away == {"user1"} and setup.seats == ["user1", "user3", "user2", "user4"]
         assert list(setting.workspace.names) == setup.seats
@@ -125,6 +128,93 @@ async def test_sound_is_ready_once_it_was_heard(run: Run, setting: Setting) -> N
         await pilot.press("enter")
         await until_shown(pilot, lambda: setting.setup.heard)
         assert not setting.setup.not_ready
+
+
+async def test_people_are_carried_from_table_to_table_in_a_hall(
+    run: Run, data_folder: Path
+) -> None:
+    workspace = Workspace(data_folder, users=12)
+    setting = Setting(workspace)
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        setup = setting.setup
+        assert [len(table) for table in setup.tables] == [4, 4, 4]
+        await pilot.press("space", "right", "right", "down", "space")  # the first one to the third
+        assert setup.tables[0][0] == "user5" and setup.tables[2][1] == "user1"
+        assert sorted(setup.seats) == sorted(workspace.names)
+        assert list(workspace.names) == setup.seats
+        await pilot.press("enter")
+        assert setup.away == {"user1"}
+    workspace.close()
+
+
+async def test_whether_all_is_ready_is_told_in_view_however_many_people_there_are(
+    run: Run, data_folder: Path
+) -> None:
+    workspace = Workspace(data_folder, users=24)
+    setting = Setting(workspace)
+    setting.link.ail("voice", STALE)
+    setting.setup.world = live_world(workspace, setting.link)
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        await pilot.press("home")
+        await pilot.pause()
+        assert "robot" in pilot.lines()[-2]
+    workspace.close()
+
+
+async def test_a_guest_and_a_new_name_are_taken_in_on_the_page(run: Run, setting: Setting) -> None:
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        await pilot.press("J", *"Anna", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("down", "enter")
+        await until_shown(pilot, lambda: len(setting.setup.seats) == 5)
+        assert setting.setup.seats[-1] == "guest1"
+        assert setting.workspace.name("guest1") == "Anna"
+        await opened(pilot)
+        await pilot.press("home", "T", *"Rosa", "enter")
+        await until_shown(pilot, lambda: setting.workspace.name("user1") == "Rosa")
+
+
+async def test_who_holds_a_card_before_the_robot_is_here(run: Run, setting: Setting) -> None:
+    setting.setup.world = live_world(setting.workspace, setting.link)
+    setting.setup.toggle("user2")
+    setting.setup.look_at_card = lambda: "17"  # type: ignore[method-assign]
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        await pilot.press("end", "up", "up", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("down", "enter")
+        await until_shown(pilot, lambda: not setting.setup.away)
+        assert setting.setup.holder(17) == "user2"
+        setting.setup.toggle("user2")
+        await opened(pilot)
+        await pilot.press("enter")
+        await until_shown(pilot, lambda: not setting.setup.away)
+
+
+async def test_who_is_seen_by_the_robot_is_here(run: Run, setting: Setting) -> None:
+    world = setting.setup.world = live_world(setting.workspace, setting.link)
+    world.knows_faces = True
+    setting.setup.toggle("user3")
+    setting.setup.world.commands.do = lambda *_, **__: {"person": "user3"}  # type: ignore
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        await pilot.press("end", "up", "enter")
+        await until_shown(pilot, lambda: not setting.setup.away)
+        assert setting.setup.face == "user3"
+
+
+def test_an_activity_that_nobody_has_taught_is_not_chosen(
+    taught: Path,
+) -> None:
+    workspace = Workspace(taught)
+    setup = SetUp.of(workspace)
+    with pytest.raises(TangyError):
+        setup.play("trivia")  # nobody has taught it
+    assert workspace.profile == "bingo"
+    workspace.close()
 
 
 def test_a_code_has_light_all_round_and_is_square() -> None:

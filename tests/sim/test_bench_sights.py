@@ -15,9 +15,10 @@ from tangy_hw.perception.cards.reader import CardReader
 from tangy_hw.perception.faces.gallery import Gallery
 from tangy_hw.perception.faces.reader import HaarReader
 from tangy_hw.perception.requests.signs import SignWatcher, TableView
+from tangy_profiles.room import load_room
 from tangy_sim.device_simulator.camera_views import HeadCamera
 from tangy_sim.device_simulator.people import HIDES
-from tangy_sim.device_simulator.signs import CORNERS, InfraredCamera
+from tangy_sim.device_simulator.signs import CORNERS, InfraredCamera, corners_in
 from tangy_sim.device_simulator.world import HeadScene
 from tangy_sim.rendering.faces import drawn_face
 from tests.sim.bench_game import ACTIVITY, ROOM, bench, drive_to
@@ -138,6 +139,17 @@ class TestSigns:
         groups = [g for size in (0, 1, 2, count) for g in combinations(range(count), size)]
         for group in groups[:: max(1, len(groups) // 12)]:
             watcher = SignWatcher(TableView(CORNERS, ROOM, count))
+            for _ in range(6):
+                seen = watcher.look(picture(infrared.frame([people[seat] for seat in group])))
+            assert set(seen) == {seat + 1 for seat in group}
+
+    @pytest.mark.parametrize("count", [9, 12, 24])
+    def test_signs_in_a_hall_are_told_apart(self, count: int) -> None:
+        hall = load_room("hall")
+        people = [f"user{number}" for number in range(1, count + 1)]
+        infrared = InfraredCamera(hall, people, seed=count)
+        for group in ([0], [1, 2], [count - 1], [0, count // 2], list(range(count))):
+            watcher = SignWatcher(TableView(corners_in(hall), hall, count))
             for _ in range(6):
                 seen = watcher.look(picture(infrared.frame([people[seat] for seat in group])))
             assert set(seen) == {seat + 1 for seat in group}

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 
 from tangy_sim.device_simulator.camera_views import HeadCamera
-from tangy_sim.device_simulator.signs import CORNERS, InfraredCamera
+from tangy_sim.device_simulator.signs import InfraredCamera, corners_in
 from tangy_sim.device_simulator.world import BenchWorld, HeadScene
 from tangy_sim.servers.mjpeg_server import MjpegServer
 
@@ -24,12 +24,11 @@ CLOSE_UP = ("card", "face")
 class Film:
     """Streams what the cameras of a world see."""
 
-    corners = CORNERS
-
     def __init__(self, world: BenchWorld, faces: Mapping[str, int], *, seed: int) -> None:
         people = world.people.ids
         self._world = world
         self._head = HeadCamera(world.activity, people, faces, seed=seed)
+        self.corners = corners_in(world.room)
         self._signs = InfraredCamera(world.room, people, seed=seed)
         self._server = MjpegServer((HEAD, INFRARED))
         self._thread = ThreadPoolExecutor(1, "film")

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from math import ceil
+from typing import TypeAlias
 
 import cv2
 import numpy as np
@@ -17,10 +19,27 @@ from tangy_profiles.room import Room
 SIZE = (320, 240)
 CORNERS = ((20.0, 222.0), (300.0, 222.0), (262.0, 96.0), (58.0, 96.0))
 """Where the table's corners are in the picture: left near, right near, right far, left far."""
+WIDE = 8.0
+"""Metres of table that so wide a picture shows well; of more it has as many more columns."""
 SIGN = 19.0  # pixels to a side
 VARIANTS = 5  # frames with other noise, which then come round again
+Corners: TypeAlias = tuple[
+    tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]
+]
 QUALITY = 92
 NOISE = 3.0  # grey levels
+
+
+def corners_in(room: Room) -> Corners:
+    """Return where the corners of a room's table, or tables, are in the picture, in pixels."""
+    (a, b), (c, d), (e, f), (g, h) = CORNERS
+    times = _times(room)
+    return (a * times, b), (c * times, d), (e * times, f), (g * times, h)
+
+
+def _times(room: Room) -> int:
+    left, _, right, _ = room.table
+    return ceil((right - left) / WIDE)
 
 
 class InfraredCamera:
@@ -30,8 +49,10 @@ class InfraredCamera:
         self._random = np.random.default_rng([seed, 8])
         self._people = list(people)
         left, near, right, far = room.table
+        self._corners = corners_in(room)
+        self._size = (SIZE[0] * _times(room), SIZE[1])
         corners = np.array(((left, near), (right, near), (right, far), (left, far)), np.float32)
-        there = cv2.getPerspectiveTransform(corners, np.array(CORNERS, np.float32))
+        there = cv2.getPerspectiveTransform(corners, np.array(self._corners, np.float32))
         places = [
             (min(max(seat.x, left), right), near + 0.6 * (far - near))
             for seat in room.seated(len(self._people))
@@ -60,8 +81,8 @@ class InfraredCamera:
         return self._frames[0]
 
     def _background(self) -> NDArray[np.float32]:
-        image = np.full((SIZE[1], SIZE[0]), 18, np.uint8)
-        cv2.fillPoly(image, [np.array(CORNERS, np.int32)], 38)
+        image = np.full((self._size[1], self._size[0]), 18, np.uint8)
+        cv2.fillPoly(image, [np.array(self._corners, np.int32)], 38)
         for x, _ in self._places.values():
             cv2.ellipse(image, (round(float(x)), 62), (15, 24), 0, 0, 360, 60, -1)
         return cv2.GaussianBlur(image, (0, 0), 1.5).astype(np.float32)

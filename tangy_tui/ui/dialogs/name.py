@@ -19,11 +19,11 @@ class NameDialog(LineDialog[str]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Not now", priority=True)]
     HELP = "Type the name under which Tangy keeps what you show, and press Enter. Esc: not now."
 
-    def __init__(self, suggested: str) -> None:
+    def __init__(self, suggested: str, title: str = WHO, detail: str = WHO_DETAIL) -> None:
         """Make the dialog; `suggested` stands in the line, selected."""
         begun = clean(suggested)
         super().__init__(
-            WHO, WHO_DETAIL, NAME_KEYS, begun=begun, selected=True, longest=LONGEST_NAME
+            clean(title), detail, NAME_KEYS, begun=begun, selected=True, longest=LONGEST_NAME
         )
 
     def taken(self, line: str) -> str:

@@ -11,6 +11,7 @@ from textual.containers import Container
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import PLAYED_WORLDS
+from tangy_tui.app.joining import let_join
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
@@ -23,6 +24,7 @@ from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodChoice, MethodDialog
 from tangy_tui.ui.dialogs.pronunciation import NewPronunciation, PronunciationDialog
+from tangy_tui.ui.joining import ask_new_name, ask_who_joins
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.person_lines import (
@@ -49,9 +51,10 @@ class PeopleScreen(TangyScreen[None]):
         "each way of asking and the history game by game. tab goes from one panel to the next. "
         "{put_away} switches the chosen way of asking off or on; in the history it leaves the "
         "chosen response out. Every change is asked about first, and {undo} takes the last one "
-        "back. {pronounce} is for how a name is said, so that Tangy hears it. To rename a person, "
-        "use the command line: tangy people rename. What is known is kept apart for simulated "
-        "games, games on the bench, and live ones: {world} shows the next of them."
+        "back. {pronounce} is for how a name is said, so that Tangy hears it. {join} adds "
+        "a person or a guest, {rename} gives the chosen person another name. What is known is "
+        "kept apart for simulated games, games on the bench, and live ones: {world} shows the "
+        "next of them."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bind("put_away", name=text.PUT_AWAY),
@@ -59,6 +62,8 @@ class PeopleScreen(TangyScreen[None]):
         *bind("method"),
         *bind("pronounce"),
         *bind("undo"),
+        *bind("join"),
+        *bind("rename"),
         *bind("world"),
         *bind("back", "leave"),
     ]
@@ -81,8 +86,8 @@ class PeopleScreen(TangyScreen[None]):
                 yield panel(ChoiceList("What works", text.STRATEGIES_HELP, id="strategies"))
             yield panel(ChoiceList("History", text.HISTORY_HELP, id="history"))
         yield key_line(
-            "panel", "put_away:off", "feedback", "method", "undo", "pronounce", "world",
-            "filter", "back", "help",
+            "panel", "put_away:off", "feedback", "method", "undo", "pronounce", "join", "rename",
+            "world", "filter", "back", "help",
         )  # fmt: skip
 
     @property
@@ -168,6 +173,25 @@ class PeopleScreen(TangyScreen[None]):
                 self._do(lambda: self._feedback.choose_method(person.id, answer.chosen))
 
         self.app.push_screen(MethodDialog(person.name, known.chosen, known.own, default), take)
+
+    def action_join(self) -> None:
+        """Ask who joins the group, and let them take part."""
+
+        async def join() -> None:
+            if who := await ask_who_joins(self.app):
+                self._do(lambda: let_join(self._workspace, who[0], guest=who[1]))
+
+        self.run_worker(join(), name="join", exclusive=True)
+
+    def action_rename(self) -> None:
+        """Ask what the chosen person is called from now on."""
+        person = self._workspace.find_person(self._record.person.id)
+
+        async def rename() -> None:
+            if name := await ask_new_name(self.app, person.name):
+                self._do(lambda: self._workspace.rename(person, name))
+
+        self.run_worker(rename(), name="rename", exclusive=True)
 
     def action_pronounce(self) -> None:
         """Look at, hear or change how the person's name is said."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from functools import partial
 from time import monotonic
 from typing import ClassVar
 
@@ -11,13 +12,17 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.errors import TangyError
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import CHECKS, SetUp
 from tangy_tui.text import set_up as text
 from tangy_tui.text.program import NOTHING_MOVES
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.tablet import TabletDialog
+from tangy_tui.ui.joining import ask_new_name, ask_who_joins
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import key_line, panel
@@ -30,6 +35,7 @@ LOOK_SECONDS = 0.5
 SETTLES_SECONDS = 4.0
 """In which devices that were just started are given time to be ready."""
 
+ChooseActivity = Callable[[], Awaitable[None]]
 SwitchOn = Callable[[], Awaitable[LiveWorld | None]]
 
 
@@ -40,15 +46,19 @@ class SetUpScreen(TangyScreen[bool]):
     SetUpScreen #setup { height: 1fr; }
     """
     HELP = (
-        "Set a game up from top to bottom. Up and down choose a line. On a person, Enter switches "
-        "between here and away, left and right move them to another seat. On a choice, Enter, left "
-        "and right change it; a number adds a pattern to play for, or takes it away. Enter on "
-        "Robot switches Tangy on: it stands still. Then Enter on Cards lets it read a card that "
-        "you hold in front of it, Enter on Sound lets it speak, and Enter on Tablet shows the "
-        "address. {begin} begins the game: nothing moves before that."
+        "Set a game up from top to bottom. Up and down choose a line, left and right a table. On a "
+        "person Enter says whether they are here; space takes hold of them, the arrows carry them "
+        "to another seat, and space lets them go. {join} adds a person or a guest, {rename} gives "
+        "a person another name. On a choice Enter, left and right change it; a number adds what "
+        "the game is played for, or takes it away. Enter on Robot switches Tangy on: it stands "
+        "still. Then Enter on Cards lets it read a card that you hold before it, Enter on Faces "
+        "lets it look who is there, Enter on Sound lets it speak, and Enter on Tablet shows the "
+        "address. {begin} begins the game: nothing moves before."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bind("begin"),
+        *bind("join"),
+        *bind("rename"),
         *(
             Binding(str(number), f"pattern({number})", text.GAME, id="number", show=False)
             for number in range(1, 10)
@@ -56,11 +66,14 @@ class SetUpScreen(TangyScreen[bool]):
         *bind("back", "leave"),
     ]
 
-    def __init__(self, setup: SetUp, switch_on: SwitchOn) -> None:
-        """Take what is set up, and what switches the robot on."""
+    def __init__(
+        self, setup: SetUp, switch_on: SwitchOn, choose: ChooseActivity | None = None
+    ) -> None:
+        """Take what is set up, what switches the robot on, and what asks for another activity."""
         super().__init__()
         self.setup = setup
         self._switch_on = switch_on
+        self._choose = choose
         self._busy = self._stopped = False
 
     def compose(self) -> ComposeResult:
@@ -70,8 +83,10 @@ class SetUpScreen(TangyScreen[bool]):
         yield key_line(
             "begin",
             ("↵", "change"),
-            ("←→", "seat, or more"),
+            ("␣", "move"),
             ("1-9", "played for"),
+            "join",
+            "rename",
             "back",
             "help",
         )
@@ -108,23 +123,28 @@ class SetUpScreen(TangyScreen[bool]):
                 alarm=bool(setup.not_ready),
             )
         )
-        self.query_one(SetUpList).show([*self._people(), *self._game(), *self._checks()])
+        lines = self.query_one(SetUpList)
+        lines.show([*self._people(), *self._game(), *self._checks()])
+        lines.border_subtitle = text.summary_words(setup.checks())
 
     def _people(self) -> list[SetUpLine]:
         setup, name = self.setup, self.setup.workspace.name
         lines = [SetUpLine("head", "people", text.PEOPLE, text.people_words(setup))]
-        for seat, person in enumerate(setup.seats, 1):
-            away = person in setup.away
-            value = text.AWAY if away else text.HERE
-            label = f"{seat:>2}  {name(person)}"
-            lines.append(
-                SetUpLine("person", person, label, value, "dim" if away else "good"),
-            )
+        several, seat = len(setup.tables) > 1, 0
+        for table, sitting in enumerate(setup.tables):
+            for place, person in enumerate(sitting):
+                seat += 1
+                away = person in setup.away
+                value = (text.AWAY_SHORT if several else text.AWAY) if away else text.HERE
+                label = f"{seat:>2} {name(person)}" if several else f"{seat:>2}  {name(person)}"
+                at, ink = (table, place) if several else None, "dim" if away else "good"
+                lines.append(SetUpLine("person", person, label, value, ink, at))
         return lines
 
     def _game(self) -> list[SetUpLine]:
         setup = self.setup
         rows = [
+            ("activity", text.ACTIVITY, setup.workspace.activity.title),
             ("patterns", "Played for", text.patterns_words(setup)),
             ("several", "Winners", text.winners_words(setup)),
             ("pace", "Pace", text.pace_words(setup.pace)),
@@ -153,12 +173,16 @@ class SetUpScreen(TangyScreen[bool]):
         """Change a line by left and right."""
         event.stop()
         line, by = event.line, event.by
-        if line.kind == "person":
-            if self.setup.world is not None:
-                self.notify(text.SEATED, markup=False)
-            self.setup.move(line.id, by)
-        elif line.kind == "choice":
+        if line.kind == "choice":
             self._turn(line.id, by)
+        self._show()
+
+    def on_set_up_list_carried(self, event: SetUpList.Carried) -> None:
+        """Let a person sit where another sits."""
+        event.stop()
+        if self.setup.world is not None:
+            self.notify(text.SEATED, markup=False)
+        self.setup.change_seats(event.line.id, event.to.id)
         self._show()
 
     def on_set_up_list_entered(self, event: SetUpList.Entered) -> None:
@@ -186,6 +210,10 @@ class SetUpScreen(TangyScreen[bool]):
                 setup.turn_strength(by)
             case "minutes":
                 setup.turn_minutes(by)
+            case "activity" if setup.world is not None:
+                self.notify(text.OTHER_ACTIVITY, markup=False)
+            case "activity" if self._choose is not None and not self._busy:
+                self.run_worker(self._ask(self._choose), name="activity", group="check")
             case "patterns":
                 self.notify(text.pattern_keys(setup), markup=False)
 
@@ -195,6 +223,38 @@ class SetUpScreen(TangyScreen[bool]):
         if number <= len(patterns):
             self.setup.toggle_pattern(patterns[number - 1].name)
             self._show()
+
+    # ------------------------------------------------------------------------- who takes part
+
+    def action_join(self) -> None:
+        """Ask who else is there, and whether for good."""
+        if self.setup.world is not None:
+            self.notify(text.SEATED, markup=False)
+        elif not self._busy:
+            self.run_worker(self._ask(self._join), name="join", group="check")
+
+    def action_rename(self) -> None:
+        """Ask what the person is called that the cursor is on."""
+        line = self.query_one(SetUpList).chosen
+        if line is not None and line.kind == "person" and not self._busy:
+            self.run_worker(self._ask(partial(self._rename, line.id)), name="name", group="check")
+
+    async def _join(self) -> None:
+        if who := await ask_who_joins(self.app):
+            name, guest = who
+            self.setup.add(name, guest=guest)
+
+    async def _rename(self, person: str) -> None:
+        if name := await ask_new_name(self.app, self.setup.workspace.name(person)):
+            self.setup.rename(person, name)
+
+    async def _ask(self, ask: Callable[[], Awaitable[None]]) -> None:
+        """Ask something, and say why it cannot be done if it cannot."""
+        try:
+            await ask()
+        except TangyError as error:
+            self.notify(clean(str(error)), severity="warning", markup=False)
+        self._show()
 
     # ------------------------------------------------------------------------------ the checks
 
@@ -218,14 +278,36 @@ class SetUpScreen(TangyScreen[bool]):
         elif name == "tablet" and setup.world.link.tablet_page:
             self.app.push_screen(TabletDialog(setup.world.link.screen, setup.world.link.code))
         elif name == "cards":
-            self.notify(text.CARD_HOW, markup=False)
-            if not await asyncio.to_thread(setup.look_at_card):
-                self.notify(text.NO_CARD, severity="warning", markup=False)
+            await self._look_at_card()
+        elif name == "faces":
+            seen = ""
+            if setup.world.knows_faces:
+                seen = await asyncio.to_thread(setup.look_at_face)
+            known = text.face_seen_words(setup.workspace.name(seen)) if seen else text.NO_FACE
+            self.notify(known, markup=False)
         elif name == "sound" and setup.said:
             setup.heard = True
         elif name == "sound":
             said = await asyncio.to_thread(setup.speak, text.SOUND)
             self.notify(text.SAID if said else text.NO_SOUND, markup=False)
+
+    async def _look_at_card(self) -> None:
+        """Read a card; whose it is, is here."""
+        setup = self.setup
+        self.notify(text.CARD_HOW, markup=False)
+        card = await asyncio.to_thread(setup.look_at_card)
+        if not card:
+            self.notify(text.NO_CARD, severity="warning", markup=False)
+            return
+        name = setup.workspace.name
+        options = [Option(person, name(person)) for person in setup.seats]
+        holder: str | None = setup.holder(int(card))
+        if not holder:
+            dialog = ChooseDialog(text.WHOSE.format(card), options)
+            holder = await self.app.push_screen_wait(dialog)
+        if holder:
+            setup.comes_with(int(card), holder)
+            self.notify(text.card_seen_words(card, name(holder)), markup=False)
 
     def action_begin(self) -> None:
         """Begin the game, if that is meant; what is not ready is said first."""

@@ -1,4 +1,4 @@
-"""The lines of the page on which a game is set up: people, choices and checks, with a cursor."""
+"""The lines of the page on which a game is set up: people at tables, choices and checks."""
 
 from __future__ import annotations
 
@@ -11,33 +11,43 @@ from textual.message import Message
 
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choosable import Choosable
-from tangy_tui.ui.widgets.rows import Row, fit, shorten
+from tangy_tui.ui.widgets.rows import Row, Span, fit, shorten
 
 LABEL = 22
 """Columns of what a line is about."""
+STATE = 6
+"""Columns of whether a person is here, at one of several tables."""
 
 LineKind = Literal["head", "person", "choice", "check"]
 
 
 @dataclass(frozen=True, slots=True)
 class SetUpLine:
-    """One line: its kind and id, what it is about, how it is, and in which ink that is."""
+    """One line: its kind and id, what it is about, how it is, and in which ink that is.
+
+    People have their `seat` in a room of several tables: which table, and which place at it, both
+    from 0 on. They stand side by side, table by table.
+    """
 
     kind: LineKind
     id: str
     label: str
     value: str
     ink: str = "text"
+    seat: tuple[int, int] | None = None
 
 
 class SetUpList(Choosable):
-    """Everything that is set up; Enter, left and right act on the line that the cursor is on."""
+    """Everything that is set up; Enter, left and right act on the line that the cursor is on.
+
+    Space takes hold of a person, and the arrows carry them to other seats until they are let go.
+    """
 
     ALLOW_MAXIMIZE = False
     BINDINGS = [  # noqa: RUF012 - as Textual has it
-        Binding("left", "turn(-1)", "Less, or a seat to the left", show=False, id="left"),
-        Binding("right", "turn(1)", "More, or a seat to the right", show=False, id="right"),
-        Binding("space", "tell", "Change", show=False),
+        Binding("left", "turn(-1)", "Less, or the table to the left", show=False, id="left"),
+        Binding("right", "turn(1)", "More, or the table to the right", show=False, id="right"),
+        Binding("space", "carry", "Take a person to another seat", show=False, id="still"),
     ]
 
     class Entered(Message):
@@ -54,10 +64,18 @@ class SetUpList(Choosable):
             self.line, self.by = line, by
             super().__init__()
 
+    class Carried(Message):
+        """A person was carried to another's seat."""
+
+        def __init__(self, line: SetUpLine, to: SetUpLine) -> None:
+            self.line, self.to = line, to
+            super().__init__()
+
     def __init__(self) -> None:
         super().__init__(id="setup")
         self._lines: list[SetUpLine] = []
         self._cursor = 0
+        self._carries = False
 
     def show(self, lines: Sequence[SetUpLine]) -> None:
         """Show lines; the cursor stays with what it was on."""
@@ -80,28 +98,109 @@ class SetUpList(Choosable):
         lines = self.choices
         return lines[self._cursor] if self._cursor is not None and lines else None
 
+    def action_choose(self, by: int) -> None:
+        """Move the cursor, or whoever is carried."""
+        if not self._carries:
+            super().action_choose(by)
+        elif 0 <= (to := (self._cursor or 0) + by) < len(self.choices):
+            self._carry_to(self.choices[to])
+
     def action_turn(self, by: int) -> None:
-        """Turn the line that the cursor is on."""
-        if (line := self.chosen) is not None:
+        """Turn the line that the cursor is on; from a person, go to the next table."""
+        line = self.chosen
+        if line is None or (line.kind == "person" and line.seat is None):
+            return
+        if line.kind != "person":
             self.post_message(self.Turned(line, by))
+        elif (to := self._beside(line, by)) is not None and self._carries:
+            self._carry_to(to)
+        elif to is not None:
+            self._cursor = self.choices.index(to)
+            self._mark()
+
+    def action_carry(self) -> None:
+        """Take hold of a person, or let them go; on any other line do what Enter does."""
+        if self.chosen is not None and self.chosen.kind == "person":
+            self._carries = not self._carries
+            self._mark()
+        else:
+            self.action_tell()
+
+    def action_tell(self) -> None:
+        """Tell of the line that the cursor is on, or let go of whoever is carried."""
+        if self._carries:
+            self.action_carry()
+        else:
+            super().action_tell()
+
+    def _carry_to(self, to: SetUpLine) -> None:
+        if self.chosen is not None and to.kind == "person":
+            self.post_message(self.Carried(self.chosen, to))
+
+    def _beside(self, line: SetUpLine, by: int) -> SetUpLine | None:
+        """Return who sits at the next table, at the same place or at the last one."""
+        assert line.seat is not None  # noqa: S101 - asked for at several tables alone
+        table, place = line.seat[0] + by, line.seat[1]
+        there = [one for one in self.choices if one.seat is not None and one.seat[0] == table]
+        return there[min(place, len(there) - 1)] if there else None
 
     def _length(self) -> int:
         return len(self.choices)
 
     def _places(self, index: int) -> range:
-        place = self._lines.index(self.choices[index])
+        line = self.choices[index]
+        place = next(at for at, row in enumerate(self._laid_out()) if line in row)
         return range(place, place + 1)
 
     def _show(self) -> None:
-        self._rows.put([self._row(line) for line in self._lines])
         self._mark()
+
+    def _mark(self) -> None:
+        """Write all lines; a person at one of several tables is marked without the line."""
+        rows, chosen = self._laid_out(), self.chosen
+        marks: dict[int, str] = {}
+        if chosen is not None and chosen.seat is None and self._cursor is not None:
+            over = "now" if self._carries else "cursor"
+            marks = dict.fromkeys(self._places(self._cursor), over)
+        self._rows.put([self._row(row) for row in rows], marks)
+        if self._cursor is not None and chosen is not None:
+            self._reveal(self._cursor)
 
     def _tell(self, index: int) -> None:
         self.post_message(self.Entered(self.choices[index]))
 
-    def _row(self, line: SetUpLine) -> Row:
-        width = self._rows.width
+    def _laid_out(self) -> list[list[SetUpLine]]:
+        """Return what stands on each line of the screen: people side by side, table by table."""
+        rows: list[list[SetUpLine]] = []
+        first = 0
+        for line in self._lines:
+            if line.seat is None:
+                rows.append([line])
+                continue
+            table, place = line.seat
+            first = len(rows) if not table and not place else first
+            while len(rows) <= first + place:
+                rows.append([])
+            rows[first + place].append(line)
+        return rows
+
+    def _row(self, lines: Sequence[SetUpLine]) -> Row:
+        width, line = self._rows.width, lines[0]
         if line.kind == "head":
             return ((f"{line.label}", "strong"), (f"  {line.value}", "dim"))
+        if line.seat is not None:
+            tables = 1 + max(one.seat[0] for one in self.choices if one.seat is not None)
+            return tuple(span for one in lines for span in self._sitting(one, width // tables))
         value = shorten(clean(line.value), max(0, width - LABEL - 3))
         return ((f"  {fit(clean(line.label), LABEL)} ", "text"), (value, line.ink))
+
+    def _sitting(self, line: SetUpLine, width: int) -> tuple[Span, ...]:
+        """Write a person at a table."""
+        there = line == self.chosen
+        over = ("now" if self._carries else "cursor") if there else ""
+        mark = "▸" if there else " "
+        name = fit(clean(line.label), max(4, width - STATE - 2))
+        return (
+            (f"{mark}{name} ", over or "text"),
+            (fit(clean(line.value), STATE), over or line.ink),
+        )

@@ -1,0 +1,31 @@
+"""People who join the group while Tangy runs: they get an id, a name, and a seat."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_tui.app.register import add_person
+
+if TYPE_CHECKING:
+    from tangy_tui.app.workspace import Workspace
+
+
+def let_join(workspace: Workspace, name: str, *, guest: bool = False) -> str:
+    """Let a person take part from now on, as a guest only today; return the id.
+
+    The others keep their seats.
+
+    Raises:
+        TangyError: there is no room for more, or the name cannot be given.
+    """
+    order = [person.id for person in workspace.people]
+    try:
+        with workspace.store.transaction():
+            id = add_person(workspace.store, guest=guest)
+            workspace.register()
+            workspace.rename(workspace.find_person(id), name)
+    finally:
+        workspace.register()  # without the person, where the name could not be given
+        new = [person.id for person in workspace.people if person.id not in order]
+        workspace.seat([*order, *new])
+    return id

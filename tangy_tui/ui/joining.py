@@ -1,0 +1,29 @@
+"""Asking who joins the group, or what a person is called from now on."""
+
+from __future__ import annotations
+
+from textual.app import App
+
+from tangy_tui.text import set_up as text
+from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+from tangy_tui.ui.dialogs.name import NameDialog
+
+
+async def ask_who_joins(app: App[object]) -> tuple[str, bool] | None:
+    """Return the name of who joins, and whether as a guest; None: nobody does."""
+    name = await app.push_screen_wait(NameDialog("", text.ADD, text.NAME_DETAIL))
+    if not name:
+        return None
+    options = [
+        Option("for good", text.FOR_GOOD, text.FOR_GOOD_NOTE),
+        Option("guest", text.TODAY, text.TODAY_NOTE),
+    ]
+    chosen = await app.push_screen_wait(ChooseDialog(text.ADD_GUEST.format(name), options))
+    return None if chosen is None else (name, chosen == "guest")
+
+
+async def ask_new_name(app: App[object], name: str) -> str | None:
+    """Return what a person is to be called; None: as before."""
+    dialog = NameDialog(name, text.RENAME.format(name), text.NAME_DETAIL)
+    wanted = await app.push_screen_wait(dialog)
+    return None if wanted in (None, name) else wanted
