@@ -24,7 +24,7 @@ YES = (
     *("absolutely", "definitely", "certainly", "okay", "all right", "i did", "yes i did"),
     *("that's what i said", "that's the one", "yeah that's it", "go for it", "quite right"),
 )
-"""What is listened for as a yes."""
+"""Utterances recognised as a yes."""
 NO = (
     *("no", "no thank you", "no thanks", "no do not", "no don't", "no that is wrong", "nope"),
     *("no that's wrong", "that's wrong", "that is wrong", "wrong", "not that", "nah", "never mind"),
@@ -32,7 +32,7 @@ NO = (
     *("please don't", "forget it", "not now", "no way", "certainly not", "incorrect", "cancel"),
     *("cancel that", "none of them", "none of these", "i did not say that", "something else"),
 )
-"""What is listened for as a no."""
+"""Utterances recognised as a no."""
 
 _IS = "(?:(?:that|this|it|you)(?:s| is|re| are| was) )?"
 _YES = (
@@ -102,7 +102,7 @@ def choice_in(text: str, choices: Sequence[str]) -> int | None:
 
 
 def choice_phrases(most: int) -> tuple[str, ...]:
-    """Return what is listened for as the number of a choice."""
+    """Return the utterances recognised as the number of a choice."""
     numbers = NUMBERS[1 : most + 1]
     named = (form for n in numbers for form in (n, f"number {n}"))
     return (*named, *(f"the {name} one" for name in (*_ORDINALS[:most], "last")))

@@ -36,9 +36,9 @@ MOST_ALTERNATIVES = 3
 KEYWORDS_AT_BEST = 0.95  # confidence of keywords in a text that is almost a phrase of theirs
 KEYWORDS_AT_LEAST = 0.55  # and in one that is quite unlike
 NEAREST_AT_BEST = 0.79  # confidence of a phrase that is nearly the one that was said
-NEAREST_AT_LEAST = 0.45  # what is less like any phrase is not understood
+NEAREST_AT_LEAST = 0.45  # less similar to every phrase: not understood
 NEARLY_A_PHRASE = 0.9  # confidence that counts also where words are likely other talk
-MENDED = 0.9  # what is left of the confidence when words were mended, besides their likeness
+MENDED = 0.9  # factor on the confidence when words were corrected, besides their similarity
 CLEAR_LEAD = 0.2  # a lead over the next behaviour that takes nothing off the confidence
 ALTERNATIVE_AT_LEAST = 0.25
 UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases weigh up to 1
@@ -68,7 +68,7 @@ class Command:
 
 
 class Phrasebook:
-    """What is meant by a text, out of every phrase and keyword of an activity (see `phrases`).
+    """Finds the meaning of a text among all phrases and keywords of an activity (see `phrases`).
 
     `phrases` has the behaviour of each phrase, with numbers as digits and in words; `people` are
     the ids of those who can be gone to; `table` has each phrase with all that is known of it;
@@ -249,7 +249,7 @@ class Phrasebook:
         return goes and said[-1:] in LINK_ENDS
 
     def _stranger(self, words: Words) -> str | None:
-        """Find a number that is nobody's, or one unknown word in the place of a person."""
+        """Find a number that belongs to nobody, or one unknown word instead of a person."""
         if not self.people:
             return None
         mended, _ = self._mend(words)

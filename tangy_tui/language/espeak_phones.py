@@ -69,7 +69,7 @@ def from_ipa(text: str) -> str:
                 if part[:length] in FROM_IPA:
                     phones += FROM_IPA[part[:length]].split()
                     break
-            part = part[length:]  # what is no phone of English is passed over
+            part = part[length:]  # skip phones that English does not have
     return _by_convention(phones)
 
 

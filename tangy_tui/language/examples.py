@@ -2,7 +2,7 @@
 
 They come from templates of how people ask (`asking.toml`), into which each behaviour's phrases,
 question and name are put, and from talk that asks for nothing, with the same words in it. A person
-or seat stands in them as one token, so what is learnt does not depend on who takes part.
+or seat stands in them as one token, so the model does not depend on who takes part.
 """
 
 from __future__ import annotations

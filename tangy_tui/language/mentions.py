@@ -1,4 +1,4 @@
-"""Whom a sentence mentions: people by name, number or seat, and whoever is called in general."""
+"""Find the people a sentence mentions: by name, number or seat, or in general."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is meant by sentences that are no phrase of an activity, by what was learnt of it.
+"""Understand sentences that are no phrase of an activity, with a model learnt for it.
 
 Three tiers come of it: *sure* (one behaviour is asked about), *unsure* (up to three are offered),
 and nothing. The limits were chosen by hand and looked at on the tuned half of
@@ -18,7 +18,7 @@ SURE = 0.6
 UNSURE = 0.35
 """How likely any command has to be for the likeliest to be offered."""
 TALK = 0.9
-"""How likely other talk has to be for nothing else to count than what is nearly a phrase."""
+"""Probability of other talk above which only near phrases count."""
 WORTH_OFFERING = 0.08
 MOST = 3
 

@@ -20,7 +20,7 @@ from tangy_tui.language.words import Words, bare, clean, spoken, words_of
 
 ARTICLES = frozenset(("a", "an", "the"))
 LINKS = ("to", "for", "with")
-"""Between what is to be done and whom it is for."""
+"""Words between a behaviour and its person."""
 USER = ("user",)
 
 
@@ -28,8 +28,8 @@ USER = ("user",)
 class Phrase:
     """One way to ask for a behaviour, or the keywords of one; numbers stand as digits.
 
-    `bare` are the words without fillers; `rank` orders what is equally good; `user` is the person
-    to go to, if one is meant; `heard` says whether it is listened for, or only typed.
+    `bare` are the words without fillers; `rank` orders equally good matches; `user` is the person
+    to go to, if one is meant; `heard` says whether speech recognition listens for it.
     """
 
     words: Words
@@ -59,7 +59,7 @@ class Phrases:
     """
 
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
-        """Enter the phrases, then what is made of them with people; the first keeps its meaning."""
+        """Enter the phrases, then their forms with people; the first entry keeps its meaning."""
         self._order = tuple(activity.behaviours)
         self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
         """The behaviours as they are asked about, as it is said."""
@@ -122,7 +122,7 @@ class Phrases:
         return Phrase(words, bare(words), behaviour, user, rank, heard)
 
     def _add_people(self, behaviour: Behaviour) -> None:
-        """Put people in the place of the last word of each phrase: "go to [the] user"."""
+        """Replace the last word of each phrase with people: "go to [the] user"."""
         for place, text in enumerate(behaviour.phrases):
             *verb, noun = words_of(text)
             while verb and verb[-1] in ARTICLES:

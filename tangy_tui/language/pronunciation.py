@@ -104,7 +104,7 @@ def _letter(letter: str) -> tuple[int, int]:
 
 @cache
 def dictionary() -> str:
-    """Return the text of the dictionary, a word a line; "" where there is none."""
+    """Return the text of the dictionary, a word a line; "" if it is not installed."""
     spec = find_spec("pocketsphinx")
     if spec is None or spec.origin is None:
         return ""

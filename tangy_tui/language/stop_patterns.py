@@ -33,7 +33,7 @@ NO_ADJECTIVE = (
     "|coffee|tea|washing|sewing|vending|answering|ticket|slot|fax|ice|cash|copy|knitting|bread"
     "|weighing|fruit|time|drinks?|milling|rowing|exercise|x ray|ultrasound|infusion|dialysis"
 )
-"""What is no word that somebody may use of the robot: other machines among them."""
+"""Words that never mean the robot; other machines are among them."""
 BODY = "robots?|bot|machine|machinery|thing|tangy|device|contraption|system"
 LIMBS = "base|wheels?|motors?|engines?|drives?|arms?|hands?|head|movements?|motions?|moving|driving"
 PLAYS = "games?|rounds?|programme|activity|session|exercise|program|playing|play|demo|test|trial"
@@ -267,7 +267,7 @@ def own_words() -> frozenset[str]:
     return frozenset(re.findall("[a-z]+", "|".join((CALL, ASK, _SENTENCE))))
 
 
-# ------------------------------------------------------------- at the end of what is said before it
+# ------------------------------------------------------------- at the end of the preceding words
 
 ASKS_FIRST = re.compile(
     r"(?:where|when|what|who|which|how|why|does|do|did|will|would|is|are|was|has|have|can|could|if)"
@@ -300,7 +300,7 @@ NO_CRY_BEFORE = frozenset(
 )
 """A single word after a verb of stopping that says that nobody cries it."""
 ENDS_A_THOUGHT = frozenset(("this", "that", "and"))
-"""Words before a cry and what is to stop that end another thought, or join it on."""
+"""Words between an exclamation and the thing to stop that end another clause, or join it on."""
 FORBIDS = re.compile(
     r"\b(?:not|never|nobody|(?:do|does|did|wo|would|could|should|need|must)nt)\b|.* to \w+ and$"
 )

@@ -1,10 +1,10 @@
 """Sentences with which people stop the robot or the game, told from those that mention stopping.
 
-A sentence is judged by its aim: who or what is to stop. Nothing ("stop"), the robot, what it does
-with its body, the game, or how quickly ("stop right away") stop it; what somebody does ("stop
-teasing her"), other things ("stop the music") and places ("stop at the table") do not, nor does a
-sentence that says not to ("don't stop") or only tells of it ("the rain has stopped"). Where it may
-be either it stops: a robot that stands has hurt nobody.
+The rules look at the object of the verb. These stop the robot: no object ("stop"), the robot, its
+movements, the game, and how quickly ("stop right away"). These do not: actions of people ("stop
+teasing her"), other things ("stop the music"), places ("stop at the table"), negations ("don't
+stop") and reports ("the rain has stopped"). If in doubt the robot stops: a robot that stands hurts
+nobody.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ STOPS = (
     *("switch it off", "switch the robot off", "turn it off", "turn the robot off"),
     *("do not move", "do not come closer", "emergency stop now", "tangy stand still"),
 )
-"""What is listened for in the first place: as it is said most, with the words that it takes."""
+"""The most usual stop commands, with the words they take; recognition listens for these first."""
 
 TELLING = ("the", "robot", "machine", "game", "emergency", "everything", "immediately")
 """Words that are looked for in what was typed in a hurry."""

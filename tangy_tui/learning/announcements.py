@@ -8,7 +8,7 @@ from tangy_tui.world import Arranging, World
 
 
 class Announcements:
-    """Looks at a world after each step; what is coming is news once."""
+    """Looks at a world after each step, and announces each coming event once."""
 
     def __init__(self) -> None:
         self._coming: Arranged | None = None

@@ -54,7 +54,7 @@ def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, 
     `teacher:` before it says which is meant.
 
     Raises:
-        TangyError: nothing fits; says what is nearest.
+        TangyError: nothing matches; names the nearest one.
     """
     kind, _, name = wanted.partition(":") if ":" in wanted else ("", "", wanted)
     kept = kept_policies(store, activity.name)

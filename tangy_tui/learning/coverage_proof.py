@@ -15,8 +15,8 @@ def prove_coverage(activity: Activity, policy: Policy, players: Sequence[str]) -
     """Search the games that can come about where Tangy does what it is sure of.
 
     Args:
-        activity: what is played.
-        policy: what was learnt.
+        activity: the activity to search.
+        policy: the policy learnt so far.
         players: those who take turns.
 
     Returns:

@@ -65,7 +65,7 @@ def explain(policy: Policy, demonstrations: Sequence[Demonstration], situation: 
 
 
 def foresee(store: Store, activity: Activity, present: Demonstration | None) -> Policy:
-    """Learn what Tangy would do by now: from what is finished, and from what is being shown.
+    """Learn a policy for a preview, from finished demonstrations and the current one.
 
     Nothing of it is kept.
 

@@ -1,7 +1,7 @@
 """What forests answered, kept beside the log, so that a policy that was learnt is not learnt again.
 
 To load scikit-learn and to grow a hundred trees takes seconds; to read what they said takes
-milliseconds. A cache is never believed: whoever loads a policy compares the digest.
+milliseconds. A cache is never trusted: loading a policy compares the digest.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The library of demonstrations: read from the events of the log, never kept beside it.
 
-What teachers show is a chain of step events. What is done to whole demonstrations afterwards
-(deleting, merging, settling a conflict, ...) is one event each, an edit; edits are undone and done
+A demonstration is a chain of step events. Each later change of whole demonstrations (deleting,
+merging, resolving a conflict, ...) is one event, an edit; edits are undone and done
 again like typing, the latest first, by events of their own.
 """
 
@@ -291,7 +291,7 @@ def _step_undone(
         return replace(entry, undone=(), taken_back=entry.taken_back + 1)
     if not steps or number < 1:
         raise OutOfPlace("there is no step to take back")
-    kept = steps[: min(number, len(steps))]  # those beyond were taken back by what is left out
+    kept = steps[: min(number, len(steps))]  # the others' undo events were left out
     return replace(
         entry,
         demonstration=replace(entry.demonstration, steps=kept[:-1], finished=False),
@@ -391,6 +391,6 @@ def _replace_repeated(library: Library) -> None:
 
 
 def _takes_place(entry: LibraryEntry) -> bool:
-    """Say whether a demonstration stands in the place of those that it shows again."""
+    """Say whether a demonstration replaces those that it shows again."""
     made = entry.demonstration
     return made.origin == "again" and made.finished and entry.hidden in STILL_USED

@@ -26,8 +26,8 @@ from tangy_tui.learning.policies import Change, does, keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 
 Unsettled = Literal["", "new", "otherwise"]
-"""What is still to be settled: nothing, an answer that nobody gave before, or one that a teacher
-said otherwise."""
+"""The open question about an answer: none, nobody gave it before, or a teacher gave another
+one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +165,7 @@ def _settle(
 
 
 def _unsettled(learnt: Policy, library: Library, step: Step) -> Unsettled:
-    """Return what is still to be settled in the answered situation."""
+    """Return the open question about the answered situation."""
     if learnt.decide(step.state.situation).contested:
         return "new"
     said = joined(library.resolutions).get(step.state.situation)

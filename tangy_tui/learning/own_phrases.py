@@ -86,7 +86,7 @@ class OwnPhrases:
         self._unclear = ""  # what was said last, and not understood
 
     def phrasebook(self, people: Sequence[Person], learnt: Learnt | None) -> Phrasebook:
-        """Make what is understood among some people, the teacher's phrases too."""
+        """Build the phrasebook for some people, with the teacher's own phrases."""
         own = own_phrases(self._store, self._activity.name, self._teacher)
         return personal_phrasebook(self._activity, people, own, learnt)
 

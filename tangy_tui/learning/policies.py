@@ -158,7 +158,7 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
 
     policy = again(cache.grown)
     if policy.digest != kept.digest:
-        policy = again(cache.afresh)  # what was kept may be wrong; what is learnt again is not
+        policy = again(cache.afresh)  # the cache may be wrong; a policy learnt again is not
     if policy.digest != kept.digest:
         notices += _explain(kept, policy)
     return policy, notices

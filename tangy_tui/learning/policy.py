@@ -106,7 +106,7 @@ class Policy:
     def exact(self, activity: Activity) -> bool:
         """Say whether it agrees with all that is expected of a facilitator of the activity.
 
-        Of an activity that does not say what is expected, nobody can tell: False.
+        False if the activity does not declare the expected behaviours.
         """
         return bool(activity.expected) and not self.errors(activity)
 

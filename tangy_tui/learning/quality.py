@@ -26,10 +26,10 @@ def quality_notes(
     library: Library,
     conflicts: Sequence[Conflict] | None = None,
 ) -> list[str]:
-    """Say what is to be known of a demonstration, a few words each; nothing to say: no notes.
+    """List notes about a demonstration, a few words each; [] if there are none.
 
     Args:
-        activity: what is played.
+        activity: the activity demonstrated.
         entry: the demonstration.
         library: all demonstrations.
         conflicts: those of the library, if they are known already; they cost a look at every step.

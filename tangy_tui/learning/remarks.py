@@ -1,8 +1,8 @@
 """What a teacher may have overlooked, told as soon as it is taught, each once.
 
 A step that differs from what was shown before, a stage that was passed over, a person who did not
-ask, a game that ends too early: the teacher who knows what is right is there now, and may have gone
-when the demonstrations are learnt from.
+ask, a game that ends too early: the teacher who knows the right answer is there now, and may have
+left when Tangy learns from the demonstrations.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class Remarks:
         self._contradictions, self.open = None, None
 
     def notice(self, shown: Shown, *, over: bool) -> None:
-        """Take a new step; what is to be said of it, if that is news, is open from then on.
+        """Take a new step; a remark about it, if it is new, stays open from then on.
 
         Args:
             shown: the step.

@@ -148,7 +148,7 @@ class NewWording:
 
 
 Remark: TypeAlias = Contradicted | Overlooked | WrongPerson | EndedEarly | NewWording
-"""What is said of a step at once, and can be answered or put off."""
+"""A remark about the newest step; the teacher answers it, or puts it off."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,8 +95,8 @@ class TeachingSession:
         """Prepare a session; `begin` it.
 
         Args:
-            activity: what is played.
-            people: who takes part.
+            activity: the activity to teach.
+            people: the ids of those who take part.
             store: the log.
             make_world: makes the world of a demonstration.
             teacher: who demonstrates.
@@ -126,7 +126,7 @@ class TeachingSession:
         self.teacher, self._remarks = teacher, Remarks(self.activity, teacher, self._store)
 
     def phrasebook_for(self, people: Sequence[Person]) -> Phrasebook:
-        """Make what is understood among some people, with the teacher's own phrases."""
+        """Build the phrasebook for some people, with the teacher's own phrases."""
         return self._remarks.phrases.phrasebook(people, self._learnt)
 
     @property
@@ -182,7 +182,7 @@ class TeachingSession:
         return [Begun(kept, resumed=True)]
 
     def check(self) -> list[TeachingEvent]:
-        """Try what is to be shown again, before a screen is opened; raises TangyError if not."""
+        """Check the steps to show again, before a screen opens; raises TangyError if impossible."""
         events = self._begin_again(self._first) if self._first is not None else []
         if events and isinstance(events[0], Refused):
             raise TangyError(events[0].reason)
@@ -313,7 +313,7 @@ class TeachingSession:
     def _carry_out(
         self, behaviour: Behaviour, target: str | None, log: Callable[[Step], Step]
     ) -> list[TeachingEvent]:
-        """Execute a behaviour in the world and log the step; what is not logged did not happen."""
+        """Execute a behaviour and log the step; without its event the step did not happen."""
         self._remarks.read()
         before = self.world.observe()
         action = self.activity.action(behaviour, target, None)

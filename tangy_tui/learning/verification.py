@@ -1,6 +1,6 @@
 """The verification of commands (III-A-1): nothing happens before "Did you say ...?" is answered.
 
-The same door for whoever commands: a teacher who demonstrates, and one whom Tangy asks in a game.
+Teachers use it while they demonstrate, and when Tangy asks them in a game.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ class Verifier:
         """Return a phrase for each behaviour that can be done now, best first.
 
         First come the `usual` ones, then what the activity expects here. Beside a person follows
-        what is done for a person, elsewhere what is done for everybody.
+        the behaviours for a person, elsewhere the behaviours for the group.
         """
         state, activity = self._observe(), self._activity
         expected = activity.expected.get(state.situation)

@@ -54,8 +54,8 @@ class Aftermath:
         """Return evidence without what an earlier fault still explains.
 
         Args:
-            evidence: what is known at this moment.
-            clock: tells the time, in s, of the world in which it is.
+            evidence: the facts known at this moment.
+            clock: returns the world's time, in s.
         """
         explained: set[str] = set()
         for code, cause in list(self._causes.items()):

@@ -53,7 +53,7 @@ class Detector:
         self._in_game: Counter[str] = Counter()
         self._unchanged: Counter[str] = Counter()
         self.doubted: set[str] = set()
-        """Of whom Tangy may misread what they have; that is judged no more in this game."""
+        """People whose cards Tangy may misread; it no longer judges them in this game."""
         self._fruitless = 0
         self._last: ActivityState | None = None
         self._health: Health | None = None
@@ -179,7 +179,7 @@ class Detector:
     def unexpected(
         self, behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
     ) -> list[Mismatch]:
-        """Return what is not as a behaviour should have left it."""
+        """Return the features that differ from the expected effect of a behaviour."""
         if behaviour.name not in self.effects.values:
             return []
         followed = outcome.response is None or outcome.response.followed
@@ -192,7 +192,7 @@ class Detector:
     def contradicts(
         self, action: Action, before: ActivityState, outcome: Outcome, after: ActivityState
     ) -> bool:
-        """Say whether what is seen after an action is to be looked at again.
+        """Say whether an observation after an action needs a second look.
 
         That is what it should not have left so, or what looks as if a person had not done it.
         """

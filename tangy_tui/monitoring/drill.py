@@ -1,7 +1,7 @@
 """Drills: staff rehearse on the table-top what to do when something goes wrong, and get a score.
 
 Drive it by `next` and `answer`: screen, lines and scripts do the same. What was answered is in the
-log before the sheet is told; nothing else of a drill is.
+log before the sheet is shown; nothing else of a drill is logged.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class DrillOption:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What is asked in a round, `kind` being one of WHAT, DO, CLEAR, and the answers there are."""
+    """A question of a round, with its answers; `kind` is one of WHAT, DO, CLEAR."""
 
     kind: str
     text: str
@@ -92,7 +92,7 @@ class Drill:
             seed: the same one draws the same rounds (default: one that no drill has had).
             rounds: how many.
             clock: gives seconds; its beginning does not matter.
-            note: what is to be said before it begins.
+            note: a message to show before it begins.
 
         Raises:
             TangyError: there are too few rounds, or too many.
@@ -111,7 +111,7 @@ class Drill:
         self.round: Round | None = None
         """The round that is shown."""
         self.question: Question | None = None
-        """What is asked; None once the round is answered, and before the first."""
+        """The current question; None before the first round, and once a round is answered."""
         self._store = store
         self._who = who
         self._seed = seed

@@ -34,10 +34,10 @@ class DrillPolicy(NamedTuple):
 def policy_for_drill(store: Store, activity: Activity) -> DrillPolicy:
     """Return the last policy if it knows every situation, or one that is learnt in a moment.
 
-    Nothing is written: what is shown for the drill is not kept.
+    Nothing is written: the demonstrations for the drill are not kept.
 
     Raises:
-        TangyError: neither is there, nor does the activity say what is expected.
+        TangyError: neither exists, and the activity does not declare the expected behaviours.
     """
     why = "Tangy has learnt nothing yet"
     if last_policy(store, activity.name) is not None:

@@ -1,7 +1,7 @@
 """Rounds of a drill: faults that really happen, in simulated games that leave nothing behind.
 
 Each round is a game of its own, with a log of its own in a folder that is thrown away, so that
-nothing of it gets into what is kept of the facility's games and people.
+none of it changes the facility's games or its beliefs about people.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ it late, or asks while somebody else is being helped; or a device measures what 
 
 @dataclass(frozen=True, slots=True)
 class RoundKind:
-    """What a round is about: a name, the diagnosis that is right ("": none), what is brought about.
+    """The case of a round: a name, the correct diagnosis ("": none), the injected fault.
 
     `gap`: nothing is brought about, but Tangy was not shown one of the situations.
     """
@@ -112,7 +112,7 @@ def draw_rounds(book: FaultBook, rounds: int, rng: Random) -> list[RoundKind]:
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """The question whether Tangy may be cleared: what is seen then, and the right answer."""
+    """The question whether to clear Tangy: the view at that moment, and the right answer."""
 
     seen: str
     right: bool
@@ -120,7 +120,7 @@ class Release:
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """One round as it can be shown, and what is right.
+    """One round as a screen shows it, with the right answers.
 
     `noticed` is the evidence in words, `devices` all devices by label with their states, `choices`
     the codes that are offered as names. `fault` and `rule` are None where nothing is wrong; `quiet`
@@ -148,7 +148,7 @@ class Round:
 
     @property
     def recovery(self) -> str:
-        """What is to be done, as the first rung of a fault's ladder."""
+        """Return the right action: the first rung of the fault's ladder."""
         return "continue" if self.rule is None else self.rule.recovery[0]
 
 

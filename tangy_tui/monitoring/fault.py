@@ -158,7 +158,7 @@ FaultEvent: TypeAlias = Diagnosed | Moved
 def fault_documents(faults: Iterable[Fault], stopped: str | None) -> list[dict[str, Any]]:
     """Return what went wrong in a game, as `--json` prints it.
 
-    Where Tangy only did not know what to do, that is told if it ended the game (`stopped` says
+    A question about an unknown situation is included only if it ended the game (`stopped` says
     why it ended).
     """
     told = list(faults)

@@ -1,4 +1,4 @@
-"""What is wrong with a log: its file, its rows, and what makes no sense where it stands."""
+"""Check a log: its file, its rows, and events that are inconsistent with those before."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tangy_tui.learning.policies import MANY, without_strange_steps
 
 
 def log_problems(store: Store) -> list[str]:
-    """Read a whole log and return what is wrong with it, a sentence each ([]: nothing)."""
+    """Read a whole log and return its problems, a sentence each; [] if there are none."""
     wrong = store.check()
     known = set(store.aside)
     strange = list(_strange_people(store))

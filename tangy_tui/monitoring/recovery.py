@@ -1,9 +1,9 @@
-"""Fault recovery (III-C): what is done about each fault, rung by rung, until it is over.
+"""Fault recovery (III-C): climbs the ladder of each fault, rung by rung, until it is over.
 
 A fault's rule has a ladder of recoveries: go on (by a remedy of the robot's own, or without what
 is broken), ask a user, ask a teacher, halt and ask an expert. Every rung is tried a bounded number
 of times; what does not help leads to the next one, and after the last comes the expert. So no
-recovery loops. All of it is in the log before it is told.
+recovery loops. Every event is logged before it is reported.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ TO_TEACH = "Say what to do here, or look at what happened at the table."
 
 
 class Recovery:
-    """The faults of the present game, and what is done about them. `begin` each game."""
+    """The faults of the current game, and their recoveries. Call `begin` for each game."""
 
     def __init__(
         self,
@@ -70,7 +70,7 @@ class Recovery:
         self.seconds = 0.0
         """The time in the present game, in s."""
         self.on_halt: Callable[[Fault], None] = lambda fault: None
-        """Is told what halts the robot."""
+        """Called with the fault that halts the robot."""
         self._game = game
         self._detector = detector
         self._robot = robot
@@ -242,7 +242,7 @@ class Recovery:
         return self.move(fault, RecoveryEvent("escalated", self.seconds, attempt=tried, to=to))
 
     def halt_if_critical(self) -> list[Event]:
-        """Stand still if what is most urgent needs an expert."""
+        """Halt the robot if the most urgent fault needs an expert."""
         fault = next(iter(self.waiting), None)
         if self.halted is not None or fault is None or self.ended:
             return []
@@ -272,7 +272,7 @@ class Recovery:
         return self._game.observation.shows(is_gone)
 
     def remedy(self, fault: Fault, kind: str, move: RecoveryEvent | None = None) -> None:
-        """Let the world do something about a fault; `move` holds what is said with it."""
+        """Let the world carry out a recovery; `move` holds its words."""
         device = self._rules[fault.id].device
         said = ("", "") if move is None else (move.speech, move.image)
         self.seconds += self._game.world.recover(

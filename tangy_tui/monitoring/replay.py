@@ -176,7 +176,7 @@ def read_replays(
     Args:
         store: the log.
         games: which games.
-        activities: those that are known, by name; without its activity a game is told with less.
+        activities: the known activities, by name; a game of another one has fewer details.
         names: of the people, by id, for what Tangy said.
     """
     events: dict[str, list[Event[EventRecord]]] = {game.id: [] for game in games}

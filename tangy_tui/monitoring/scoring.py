@@ -66,7 +66,7 @@ def score_game(
 
     A fault is named right by the code of its kind, or by that which it gives together with others
     that came (no voice and no screen: mute). A diagnosis of another code, while one that could show
-    is not named yet, has seen that one and named it wrong. What is left is a false alarm.
+    is not named yet, has seen that one and named it wrong. The others are false alarms.
     """
     told = [fault for fault in faults if not fault.asks_only]
     right = {id(one): _codes(one, injected, book) for one in injected}

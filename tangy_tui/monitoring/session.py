@@ -102,13 +102,13 @@ class Progress:
 
 
 def result_words(counts: Mapping[str, int]) -> str:
-    """Say what came of requests; what there is none of is left out."""
+    """Say how requests ended; results that did not occur are left out."""
     return ", ".join(f"{counts[what]} {words}" for what, words in RESULTS if counts[what])
 
 
 @dataclass(frozen=True, slots=True)
 class Session:
-    """Everything that is told of a session. `title` is the activity's."""
+    """The contents of a session's report. `title` is the activity's."""
 
     replays: tuple[GameReplay, ...]
     title: str
@@ -153,7 +153,7 @@ class Session:
 
     @property
     def look_after(self) -> tuple[Fault, ...]:
-        """What staff should look after: what is open or borne, and who was left alone."""
+        """Points for staff: open and tolerated faults, and people whom Tangy never visited."""
         return tuple(
             fault
             for replay in self.replays
@@ -223,7 +223,7 @@ def read_session(
     Args:
         store: the log.
         games: which games.
-        activities: those that are known, by name; a game of another one is told with less.
+        activities: the known activities, by name; a game of another one has fewer details.
         names: of the people, by id.
     """
     replays = tuple(read_replays(store, games, activities, names))
@@ -253,7 +253,7 @@ def read_session(
 
 
 def unknown_words(activity: str) -> str:
-    """Say that an activity is not to be had, and what is not told for that."""
+    """Say that an activity is unknown, and which details are missing for that reason."""
     return plain(
         f"There is no activity {activity!r} here any more: what was said is not told, and a "
         "behaviour counts as a success if it could be carried out."

@@ -1,9 +1,9 @@
 """Supervision (III-C): a game that is run with an eye on what goes wrong, and what then.
 
 `Supervision` stands in for the `Facilitation` that it holds: screens, lines and scripts begin,
-step and answer through it. `FaultWatch` says before and after every behaviour what is wrong,
-`Recovery` what is done about it; here are the doors by which people act. While the robot is halted
-nothing is executed until staff clear the fault. All of it is in the log before it is told.
+step and answer through it. `FaultWatch` diagnoses faults before and after every behaviour,
+`Recovery` handles them; people act through the methods here. While the robot is halted, nothing is
+executed until staff clear the fault. Every event is logged before it is reported.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ class Supervision:
 
     @property
     def persuasion(self) -> Persuasion:
-        """What is believed of the people, and how strategies are chosen."""
+        """The beliefs about people, and the choice of strategies."""
         return self.game.persuasion
 
     @property
@@ -205,7 +205,7 @@ class Supervision:
         self._stops += 1
 
     def look(self) -> list[Event]:
-        """Look at the devices, without doing anything: tell what is new there.
+        """Check the devices without acting, and return the new faults.
 
         It may be called as often as one likes, also while the robot is halted or asks.
         """
@@ -359,7 +359,7 @@ class Supervision:
         return told + self.recovery.leave_open() + list(self.game.give_up())
 
     def leave(self) -> list[Event]:
-        """End a game that is going on because whoever watches it leaves."""
+        """End a running game because its operator leaves."""
         if self.over:
             return []
         return self.recovery.leave_open() + list(self.game.leave())

@@ -1,7 +1,7 @@
-"""Watching a game (III-C): what is seen is held against what was to be expected, and explained.
+"""Fault watch of a game (III-C): compares observations with expectations, and explains them.
 
 Detection and diagnosis go together here: after each behaviour, and whenever the devices report
-something else. What is new becomes a fault, with which `Recovery` then deals.
+something else. A new mismatch becomes a fault, which `Recovery` handles.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ NOT_SHOWN: Evidence = {"situation.shown": False}
 """The evidence that nobody has shown what to do in a situation."""
 
 HIDING = frozenset(("mismatch.card", "mismatch.what was asked about"))
-"""What a fault of a device explains if it hides cards: what is unseen then is nobody's refusal."""
+"""Explained by a device fault that hides cards: an unseen response is then no refusal."""
 
 
 class FaultWatch:
@@ -54,7 +54,7 @@ class FaultWatch:
         return self._detector.watch(self._game.world.health())
 
     def look(self) -> list[Event]:
-        """Look at the devices, without doing anything: tell what is new there."""
+        """Check the devices without acting, and return the new faults."""
         if self._game.over:
             return []
         evidence = self.devices
@@ -130,7 +130,7 @@ class FaultWatch:
         return self._take(diagnose(self.book, NOT_SHOWN), None) + self._recovery.leave_open()
 
     def _take_in(self, acted: Acted) -> list[Event]:
-        """Take in what is there after something that staff ordered; only the devices are judged."""
+        """Record the state after an action that staff ordered; only devices are judged."""
         self._recovery.seconds += acted.outcome.seconds
         self._detector.take_in(acted.after)
         return self.look()

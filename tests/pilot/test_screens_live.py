@@ -117,7 +117,7 @@ async def test_staff_are_told_at_once_that_a_command_has_to_wait_and_then_what_c
             await until_shown(pilot, lambda: "One moment" in screen_text(pilot.app))
         finally:
             link.free = True
-        await until_shown(pilot, lambda: "Card 2 is wrong" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "Card 2 does not win" in screen_text(pilot.app))
 
 
 async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(

@@ -125,7 +125,7 @@ async def test_what_waits_for_the_answer_says_so_in_the_panel(
         screen = await asked(pilot)
         await pilot.press("escape", key)
         await pilot.pause()
-        assert "Tangy asks first" in " ".join(pilot.text().split())
+        assert "answer it first" in " ".join(pilot.text().split())
         assert not told(pilot)
         assert screen.games == 1
 
@@ -189,7 +189,7 @@ async def test_help_tells_of_the_panels_and_of_answering(
     async with run(app=playing(workspace, policy)) as pilot:
         help = help_for(pilot.app.screen)
         assert {"1", "2", "3", "4", "5"} <= {key for key, _ in help.here}
-        assert ": leads back to it" in help.paragraphs[0]
+        assert ": goes back to it" in help.paragraphs[0]
 
 
 # --------------------------------------------------------------------------- policies to read

@@ -244,7 +244,7 @@ def test_undo_redo_seen_and_why_work_by_lines(tangy: Tangy, tmp_path: Path) -> N
     assert told.count("Step 1 is undone") == 2
     assert "1 of 11 situations were shown." in told
     assert "Nobody has shown Tangy what to do here" in told
-    assert "redo: do the step again" in told
+    assert "redo: redo the step" in told
 
 
 def test_a_script_for_the_scripted_teacher_is_refused(tangy: Tangy, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""How loud it is, and in words what is wrong with it: nothing comes, too loud, too quiet."""
+"""Measures loudness, and names its problem: no sound, too loud, too quiet."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class Meter:
         return self._clock() - self._sound_at
 
     def words(self, *, speaking: bool = True) -> str:
-        """Say in one line what is wrong, if anything is.
+        """Name the problem in one line, if there is one.
 
         Args:
             speaking: somebody is meant to be speaking; only then is a quiet room worth a word.

@@ -26,14 +26,14 @@ _UNSPEAKABLE = re.compile("[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\
 
 @dataclass(frozen=True, slots=True)
 class SpokenPiece:
-    """A part of what is said; a call is said slowly, with a pause before and after it."""
+    """A part of a text; a call is spoken slowly, with a pause before and after it."""
 
     text: str
     call: bool = False
 
 
 def as_called(text: str, deck: Deck | None) -> tuple[SpokenPiece, ...]:
-    """Split a text into what is said plainly and the calls in it, as a caller says them.
+    """Split a text into plain parts and calls, worded as a caller says them.
 
     A call is a letter of the deck with a number of its column ("X 17", "X-17"). The first time in
     a text it is said as one number, from then on digit by digit; one that stands there only once
@@ -48,12 +48,12 @@ def as_called(text: str, deck: Deck | None) -> tuple[SpokenPiece, ...]:
 
 
 def in_words(pieces: tuple[SpokenPiece, ...]) -> str:
-    """Write what is said as a text."""
+    """Join the pieces into a text."""
     return " ".join(piece.text for piece in pieces)
 
 
 def marked_up(pieces: tuple[SpokenPiece, ...]) -> str:
-    """Write what is said for a synthesiser (SSML)."""
+    """Write the pieces for a synthesiser (SSML)."""
     written: list[str] = []
     for place, piece in enumerate(pieces):
         # Double brackets would be read as sounds, even within the mark-up.

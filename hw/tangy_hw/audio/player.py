@@ -33,7 +33,7 @@ LATE = 10.0  # s that a player may take longer than its WAV: a device that is in
 END_SECONDS = 1.0  # for a player to be gone when it was killed: 2 ms when nothing else runs
 TRY_SECONDS = 5.0  # for a moment of silence to be played
 
-# The player ends with us, however we end: then the pipe that we hold is closed, and whoever reads
+# The player ends with us, however we end: then our end of the pipe closes, and the shell that reads
 # from it kills the player. The shell waits for both, so that no dead process is left behind where
 # nobody else would (in a container).
 GUARDED = (
@@ -69,7 +69,7 @@ class SoundPlayer(Protocol):
         """
 
     def stop(self) -> None:
-        """Cut what is playing, at once."""
+        """Stop playing at once."""
 
 
 class ProgramPlayer:
@@ -105,7 +105,7 @@ class ProgramPlayer:
             del self._commands[0]
 
     def stop(self) -> None:
-        """Cut what is playing: the player is killed within a few milliseconds."""
+        """Stop playing: the player is killed within a few milliseconds."""
         self._stopped = True
         self._let_go()
 
@@ -206,7 +206,7 @@ def examine_output(which: Callable[[str], str | None] = shutil.which) -> tuple[s
     """Try, with a moment of silence, whether anything could be heard here.
 
     Returns:
-        The program that plays, and what is wrong if there is none; one of them is "".
+        The player's program, and the problem if there is none; one of them is "".
     """
     problem = ABSENT
     for program, *options in _installed(which):

@@ -40,7 +40,7 @@ class Place:
             self._lock = _locked(self._beside)
             try:
                 with _address(self.path):
-                    pass  # for whoever connects; it is refused here if it is too long
+                    pass  # for clients; a path that is too long is refused here
                 _clear(self.path)
                 self.socket = _bound(self.path)
                 self._made = self.path.lstat()
@@ -72,7 +72,7 @@ class Place:
 
 
 def connect(path: Path) -> socket.socket | None:
-    """Connect to whoever listens at a path; None if nobody does.
+    """Connect to the listener at a path; None if there is none.
 
     Raises:
         SoundError: it is somebody else's, or no socket.

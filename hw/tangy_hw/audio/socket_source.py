@@ -1,7 +1,7 @@
 """A laptop's microphone, far away: what `tangy mic` hands on, through a unix socket.
 
-Whoever connects is told in a line that it is listened to; the newest connection is the one that is
-heard, for a link that was lost leaves one behind that nobody speaks into. What arrives is raw
+Each client receives a line when its sound is taken. The newest connection counts: a lost link
+leaves an older one open that is silent. What arrives is raw
 samples and nothing else.
 """
 
@@ -17,8 +17,8 @@ from tangy_hw.audio.source import Chunks, Source, WholeSamples
 from tangy_hw.audio.wav import SoundError
 from tangy_profiles.reading import plain
 
-LISTENING = b"listening\n"  # what a connection is told when its sound is taken
-TAKEN = b"taken\n"  # and when another has taken its place
+LISTENING = b"listening\n"  # sent to a client when its sound is taken
+TAKEN = b"taken\n"  # and when another replaces it
 PIECE = 3_200  # bytes, 100 ms
 QUIET = 10  # pieces
 AFTER_ERROR = 1.0  # s until the next try when a connection cannot be accepted
@@ -117,7 +117,7 @@ class LaptopMicrophone(Source):
 
 
 def _dismiss(connection: socket.socket) -> None:
-    """End a stream; whoever reads from it reads on to its end."""
+    """End a stream; its reader reads on to the end."""
     with contextlib.suppress(OSError):
         connection.send(TAKEN)
     with contextlib.suppress(OSError):

@@ -24,7 +24,7 @@ class Source:
     """Chunks of sound, of any even size: `async for chunk in source`. Close it in the end.
 
     It listens from the first chunk that is asked for until it is closed. A recording comes in one
-    chunk; what is live comes as it is spoken, and waits for whoever takes it.
+    chunk; live sound arrives as it is spoken, and is buffered for the consumer.
     """
 
     def __init__(self, name: str, *, live: bool) -> None:
@@ -65,7 +65,7 @@ class Source:
         raise StopAsyncIteration
 
     async def close(self) -> None:
-        """Stop listening for good, and end what records; whoever waits for a chunk gets none."""
+        """Stop listening for good, and end the recorder; a waiting consumer gets no chunk."""
         self._closed = True
         if self._task is not None:
             self._task.cancel()
@@ -91,7 +91,7 @@ class Source:
     def _over(self, task: asyncio.Task[None]) -> None:
         self._error = None if task.cancelled() else task.exception()
         if self._taken.empty():
-            self._taken.put_nowait(b"")  # wakes whoever waits
+            self._taken.put_nowait(b"")  # wakes a waiting consumer
 
 
 class Recording(Source):
@@ -139,7 +139,7 @@ class WholeSamples:
         self._rest = b""
 
     def of(self, chunk: bytes) -> bytes:
-        """Return what is complete with this piece."""
+        """Return the samples that this piece completes."""
         if not self._rest and len(chunk) % 2 == 0:
             return chunk
         chunk = self._rest + chunk

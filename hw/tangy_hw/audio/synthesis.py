@@ -41,7 +41,7 @@ class NoSuchVoice(VoiceError):
 
 
 class Synthesiser:
-    """Makes WAV files of what is to be said, or finds those it made before.
+    """Synthesises texts as WAV files, or finds them in its cache.
 
     Its methods wait for a process, and may be called from several threads at once.
     """
@@ -144,7 +144,7 @@ class Synthesiser:
         path = self.folder / f"{self._key(marked_up, chosen)}.wav"
         if _is_whole(path):
             with contextlib.suppress(OSError):
-                os.utime(path)  # what is used is not the oldest
+                os.utime(path)  # a file in use is not the oldest
             return path
         self.check(chosen)
         if len(marked_up) > LONGEST:
@@ -155,7 +155,7 @@ class Synthesiser:
         return path
 
     def end(self) -> None:
-        """End what is being made now."""
+        """End the current synthesis."""
         with self._lock:
             for process in self._running:
                 _kill(process)
@@ -238,7 +238,7 @@ class Synthesiser:
                 self._bytes = self._trim(path)
 
     def _trim(self, newest: Path) -> int:
-        """Drop the oldest files until a tenth of the room is free; return what is left in bytes."""
+        """Delete the oldest files until a tenth of the space is free; return the rest in bytes."""
         kept = sorted(self._kept(), key=lambda entry: entry[2])
         left = sum(size for _, size, _ in kept)
         for path, size, _ in kept:
@@ -282,8 +282,8 @@ def examine_voice(which: Callable[[str], str | None] = shutil.which) -> tuple[st
     """Try whether a word can be spoken here; nothing is played, and nothing kept.
 
     Returns:
-        The program with its version ("" if it is not installed), and what is wrong with it
-        ("" if nothing is).
+        The program with its version ("" if it is not installed), and its problem
+        ("" if there is none).
     """
     with tempfile.TemporaryDirectory() as folder:
         synthesiser = Synthesiser(Path(folder), which=which)

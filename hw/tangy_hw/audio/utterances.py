@@ -17,7 +17,7 @@ SHORTEST = 0.12  # s of loud frames; less is a click
 AFTER = round(MARGIN * RATE / FRAME)  # frames
 BEFORE = AFTER + 5  # of which the last five tell that it has begun
 
-QUIETEST = 40.0  # of 32,768 (-58 dB); what is below is silence everywhere
+QUIETEST = 40.0  # of 32,768 (-58 dB); anything below is silence in every room
 LOUDER = 2.5  # a loud frame is 8 dB above the floor
 FLOOR_SECONDS = 3.0  # the floor is the tenth percentile of that time
 

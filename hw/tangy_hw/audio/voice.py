@@ -35,8 +35,8 @@ class _Line:
 class SpeechVoice:
     """Speaks lines one after the other; a game that talks through it never sees it fail.
 
-    All of it belongs to one event loop. What goes wrong is told once, in a sentence; when no sound
-    comes out, nothing is tried any more, and the text on the screen has to do.
+    It belongs to one event loop. It reports a problem once, in a sentence. Without sound it
+    stops trying, and people have the text on the screen.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class SpeechVoice:
     def say(
         self, text: str, preference: VoicePreference | None = None, *, interrupt: bool = False
     ) -> asyncio.Future[bool]:
-        """Speak a line after those that wait, or at once in the place of all of them.
+        """Queue a line, or speak it at once instead of the whole queue.
 
         Returns:
             A future that need not be awaited and never fails: whether the line was heard to its
@@ -115,7 +115,7 @@ class SpeechVoice:
         return heard
 
     def hush(self) -> None:
-        """Cut what is being spoken, at once, and forget what waits."""
+        """Cut the current line at once, and clear the queue."""
         while self._queue:
             _settle(self._queue.popleft().heard, False)
         if self._speaking is not None:
@@ -142,7 +142,7 @@ class SpeechVoice:
 
         Returns:
             A task that never fails: what was made, or found made before. It stops at the first
-            text that cannot be made, which is told.
+            text that cannot be synthesised, which is reported.
         """
         wanted = (preference or self._usual).over(self._usual)
         task = asyncio.create_task(self._prerender(tuple(texts), wanted, progress))

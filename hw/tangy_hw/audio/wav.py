@@ -80,8 +80,8 @@ def decode_wav(content: bytes, name: str) -> bytes:
 def seconds_cut_off(path: Path) -> float:
     """Return the s of sound that a WAV file lacks at its end of what it says it holds; 0 if none.
 
-    What is written as it is recorded often says nothing, or as much as can be said: that counts as
-    nothing. So does what is no WAV file.
+    A file written during recording often has length 0, or the largest length; both count as 0, and
+    so does a file that is no WAV.
     """
     name = plain(str(path))
     try:

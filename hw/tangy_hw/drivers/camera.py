@@ -126,7 +126,7 @@ class Camera:
         return self._watch.over
 
     def reading(self) -> Reading:
-        """Return what the diagnosis is told of it."""
+        """Return its reading for the diagnosis."""
         return self.sight.reading(self._device)
 
     async def start(self) -> None:
@@ -136,7 +136,7 @@ class Camera:
         self._tasks = [asyncio.create_task(self._run()), asyncio.create_task(self._tick())]
 
     async def close(self) -> None:
-        """End its process, whatever that is doing; whoever waits for a picture gets none."""
+        """End its process, whatever it is doing; waiting requests for a picture get none."""
         self._closing = True
         for task in self._tasks:
             task.cancel()

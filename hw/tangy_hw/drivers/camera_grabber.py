@@ -19,7 +19,7 @@ READ_SECONDS = 1.5  # for its next picture
 FILE_RATE = 10.0  # pictures a second of a video that does not say
 MOST_PIXELS = 50_000_000  # of a picture in a folder
 LARGEST_FILE = 200_000_000  # bytes
-LOWEST, ALIKE = 8, 12  # rows, and of 255: what is filled in for what did not come
+LOWEST, ALIKE = 8, 12  # rows, and of 255: marks the filling of a picture that came incomplete
 ROS = ("ros://", "ros2://")
 UNUSABLE = "it holds no pictures that can be read"
 

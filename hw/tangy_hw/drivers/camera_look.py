@@ -65,8 +65,8 @@ def measure(image: Image, seq: int, stamp: float) -> Look:
 def _sharpness(grey: Any) -> float | None:
     """Compare fine with coarse differences where they are largest: at the strongest edges.
 
-    A share rather than a strength, so that it depends little on what is in the picture; at strong
-    edges, and without what noise adds there, so that it depends little on noise.
+    A share rather than a strength, so that it depends little on the scene; at strong edges, with
+    the noise subtracted, so that it depends little on noise.
     """
     import cv2
 

@@ -1,4 +1,4 @@
-"""Records a camera's pictures to be labelled: a PNG each, and beside it what is known of it.
+"""Records a camera's pictures to be labelled: a PNG each, with its known labels beside it.
 
     000001.png
     000001.json   {"file": "000001.png", "source", "taken", "stamp", "seq", "state", "why",
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
 
 Reader = Callable[["Image"], Any]
-"""Says of a picture (BGR) what is in it, as JSON."""
+"""Returns the contents of a picture (BGR), as JSON."""
 
 
 async def capture(

@@ -23,7 +23,7 @@ Kind = Literal["device", "stream", "file", "folder"]
 SCHEMES = ("http", "https", "rtsp", "rtsps", "ros", "ros2")
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff", ".pgm", ".ppm")
 FOLDER_RATE = 5.0
-"""Pictures a second that a folder gives, unless it is told otherwise."""
+"""Default frame rate of a folder of pictures, per second."""
 
 WIDTH, HEIGHT = 1280, 720
 """What a camera is asked for: cards need it."""
@@ -53,7 +53,7 @@ class CameraSource:
 
     @property
     def live(self) -> bool:
-        """Whether it shows what is there now, and so is waited for when it has gone."""
+        """Whether it is live, so that a lost source is waited for."""
         return self.kind in ("device", "stream")
 
 

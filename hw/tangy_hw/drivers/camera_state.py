@@ -72,7 +72,7 @@ class Sight:
         return {key: None if one is None else round(one, 3) for key, one in found.items()}
 
     def reading(self, device: str) -> Reading:
-        """Return what the diagnosis is told of this camera."""
+        """Return this camera's reading for the diagnosis."""
         facts: dict[str, Fact] = {}
         if self.brightness is not None and self.contrast is not None:
             facts["brightness"] = self.brightness
@@ -84,7 +84,7 @@ class Sight:
 
 
 class CameraWatch:
-    """Takes what is seen of a camera, and says what state it is in at any time."""
+    """Collects observations of a camera, and derives its state at any time."""
 
     def __init__(
         self, now: float, limits: CameraLimits = USUAL, *, each: bool = False, interval: float = 0.0
@@ -94,7 +94,7 @@ class CameraWatch:
         Args:
             now: of the monotonic clock, in s, as all times here.
             limits: when it is in which state.
-            each: pictures come when they are taken: only what is in them counts, each by itself.
+            each: pictures come on request: only their contents count, each by itself.
             interval: s between two pictures, where it is known.
         """
         self._limits = limits

@@ -28,7 +28,7 @@ _LOG = logging.getLogger(__name__)
 
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.drivers.chest_child")
 PORT = 8765
-SHOW_SECONDS = 1.0  # in which a page draws what it is told; they take 10 to 50 ms
+SHOW_SECONDS = 1.0  # in which a page must draw a picture; they take 10 to 50 ms
 GONE_SECONDS = 3.0  # without an answer: a page that is not there any more
 START_SECONDS = 20.0  # until its process says whether it listens; 0.2 s when nothing else runs
 AGAIN_SECONDS = 1.0  # until a process that ended is started again
@@ -47,8 +47,8 @@ class _Page:
 class WebChestScreen:
     """A page in the network; every paired tablet that opens its address shows the same.
 
-    Whoever comes later is shown the picture that is on at once. It works in the time of the
-    machine, also on a bench in a hurry: its pages do.
+    A page that opens later shows the current picture at once. It works in the machine's time, also
+    on a fast bench, because its pages do.
     """
 
     def __init__(
@@ -113,7 +113,7 @@ class WebChestScreen:
 
     @property
     def why(self) -> str:
-        """What is wrong with it, in one sentence; "" if nothing is."""
+        """Its problem, in one sentence; "" if there is none."""
         if self._error or self._task is None:
             return self._error or f"{self.name} does not run."
         if self._heard == -math.inf:
@@ -138,7 +138,7 @@ class WebChestScreen:
             await asyncio.wait([task])
 
     async def show(self, picture: Picture) -> None:
-        """Show something, until the next; where no page is open, whoever opens one sees it.
+        """Show a picture until the next one; a page that opens later shows it, too.
 
         Raises:
             DeviceError: a page is open, and none has drawn it within a second.
@@ -220,7 +220,7 @@ class WebChestScreen:
                 self.windows.pop(name, None)
 
     def _send_picture(self) -> None:
-        if self._worker is not None:  # else it is told when it runs
+        if self._worker is not None:  # otherwise it is sent when the process runs
             self._worker.tell({"show": self._number, "picture": self._picture._asdict()})
 
 

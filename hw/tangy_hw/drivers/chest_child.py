@@ -34,7 +34,7 @@ NICER = 5  # than what drives the robot
 
 
 class PageChild:
-    """Serves the page as it is told to, and says what comes of it."""
+    """Serves the page on request, and reports its events."""
 
     def __init__(self, say: Callable[[Said], None]) -> None:
         self._say = say

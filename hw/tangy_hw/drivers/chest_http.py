@@ -49,7 +49,7 @@ class Request:
     stays: bool = True
 
     def cookie(self, name: str) -> str:
-        """Return the value of a cookie, "" where there is none."""
+        """Return the value of a cookie; "" if it is not set."""
         for one in self.headers.get("cookie", "").split(";"):
             key, _, value = one.strip().partition("=")
             if key == name:

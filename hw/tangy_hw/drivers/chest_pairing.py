@@ -156,7 +156,7 @@ def keep_pairing(folder: Path) -> Pairing:
 
 
 def _read(path: Path) -> Pairing | None:
-    """Read a pairing that was kept; None where there is none that can be read."""
+    """Read a stored pairing; None if none can be read."""
     try:
         file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:

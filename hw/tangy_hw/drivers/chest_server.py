@@ -2,9 +2,9 @@
 
 It speaks with `chest.js`. A tablet is paired once (`POST /pair` with the code of the console) and
 keeps a token as a cookie. A paired page gets events, `show` (a number and a picture, as JSON) and
-`alive` (the number again), and answers both with `POST /seen?page=P&number=N`. Whoever is not
-paired gets the page that asks for the code, and nothing else. Somebody who says at the pairing that
-they only look on sees the same, but nobody hears of what they see: only the robot's tablets count.
+`alive` (the number again), and answers both with `POST /seen?page=P&number=N`. Other
+browsers get only the page that asks for the code. A browser paired as a viewer shows the same
+pictures, but only the robot's tablets count as a working chest screen.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from tangy_hw.drivers.chest_http import (
 from tangy_hw.drivers.chest_pairing import CodeCheck, Pairing, TooManyCodes
 
 ALIVE_SECONDS = 0.4  # between two events, and so two answers of each page
-SEND_SECONDS = 2.0  # in which a page takes what is sent to it
-ASK_SECONDS = 3.0  # in which a request of a stranger is there, from its connection on
+SEND_SECONDS = 2.0  # in which a page must take a message
+ASK_SECONDS = 3.0  # in which a stranger's request must arrive, from its connection on
 IDLE_SECONDS = 30.0  # for which the connection of a paired tablet is kept between two requests
 GONE_SECONDS = 5.0  # without an answer: a page that makes room for another
 MOST_PAGES = 16
@@ -61,7 +61,7 @@ class _Connection:
     viewer: bool = False
     """Whether it is a viewer's, not that of a tablet of the robot."""
     told: bool = False
-    """Whether it is told events; it asks nothing any more."""
+    """Whether it receives events; it no longer polls."""
 
 
 @dataclass(eq=False, slots=True)
@@ -123,7 +123,7 @@ class ChestServer:
             await asyncio.wait(tasks)
 
     def show(self, number: int, picture: Mapping[str, Any]) -> None:
-        """Show a picture on all pages; whoever comes later is shown it, too."""
+        """Show a picture on all pages, and on those that open later."""
         self._number = number
         self.newest = event("show", json.dumps({"n": number, **picture}))
         for page in self.windows.values():

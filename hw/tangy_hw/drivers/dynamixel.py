@@ -154,7 +154,7 @@ class DynamixelArms:
 
     @property
     def why(self) -> str:
-        """What is wrong with it, in one sentence; "" if nothing is known to be."""
+        """Its problem, in one sentence; "" if none is known."""
         if self._errors:
             number, what = next(iter(self._errors.items()))
             return plain(f"{self.name}: the servo of {self._by_id[number]} reports {what}.")

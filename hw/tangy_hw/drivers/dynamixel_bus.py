@@ -31,7 +31,7 @@ MEANINGS = {
 
 
 class BusError(Exception):
-    """The bus cannot be had, or does not answer: what is wrong, as a sentence."""
+    """The bus cannot be opened, or does not answer; the message is a sentence."""
 
 
 def meaning(bits: int) -> str:

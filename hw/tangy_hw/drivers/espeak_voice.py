@@ -64,7 +64,7 @@ class SpokenVoice:
 
     @property
     def why(self) -> str:
-        """What is wrong with it, in one sentence; "" if nothing is known to be."""
+        """Its problem, in one sentence; "" if none is known."""
         trying = f"{self.name} is being tried." if self._trying is not None else ""
         return self._dead or self._failed or trying
 
@@ -98,7 +98,7 @@ class SpokenVoice:
             self._trying.add_done_callback(self._tried)
 
     async def close(self) -> None:
-        """Cut what is said, and end for good, or until it is started anew."""
+        """Cut the current speech, and stop until it is started again."""
         voice, self._voice = self._voice, None
         self._dead = f"{self.name} does not run."
         self._hushes += 1
@@ -112,7 +112,7 @@ class SpokenVoice:
     async def say(self, text: str) -> None:
         """Say something, and wait until it was said, or was cut by `hush`.
 
-        Whoever gives up waiting cuts it.
+        Cancelling the wait cuts the speech.
 
         Raises:
             DeviceError: it cannot be heard.

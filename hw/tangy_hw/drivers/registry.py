@@ -94,7 +94,7 @@ class DriverSettings:
 
 @dataclass
 class Wiring:
-    """What the drivers of one robot share: its clock, its links, what is told of them."""
+    """Shared by the drivers of one robot: its clock, its connections, their messages."""
 
     robot: Robot
     activity: Activity
@@ -102,7 +102,7 @@ class Wiring:
     links: dict[str, Rosbridge] = field(default_factory=dict)
     diagnosing: dict[str, RosDiagnostics] = field(default_factory=dict)
     pairing: Mapping[str, str] = field(default_factory=dict)
-    """By what tablets are paired (see `chest_pairing`); empty: by what is made for the occasion."""
+    """The file of paired tablets (see `chest_pairing`); empty: a temporary one."""
 
     def link(self, at: str, ros: int, device: str) -> Rosbridge:
         """Return the link to a rosbridge server, one for all devices that ask for it."""
@@ -142,7 +142,7 @@ def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
                 drive=settings.text("drive", "/cmd_vel"),
                 odometry=settings.text("odometry", "/odom"),
                 stamped=settings.flag("stamped", False),
-                # A bench in a hurry is told by its own time; the machine's would make runs differ.
+                # A fast bench uses its own time; the machine's would make runs differ.
                 repeat=0.0 if isinstance(wiring.clock, SteppedClock) else REPEAT_SECONDS,
                 diagnostics=diagnostics,
             )

@@ -114,7 +114,7 @@ class RosArms:
             self._limp = False
         message = trajectory_message(goals, max(seconds, 0.0), self._bridge.ros)
         self._bridge.publish(self._trajectory, message)
-        self._fail_on_error()  # what is not broken goes there all the same: a head can still look
+        self._fail_on_error()  # the other joints move all the same: a head can still look
         try:
             await self._moves.arrive(goals, seconds, self._well)
         except DeviceError:

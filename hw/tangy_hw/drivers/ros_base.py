@@ -42,8 +42,8 @@ class RosBase:
             drive: the topic that takes how fast it is to drive.
             odometry: the topic on which it tells how far it has driven.
             stamped: it takes geometry_msgs/TwistStamped, as some of ROS 2 do.
-            repeat: s between repetitions of a command that still holds; 0: whoever drives repeats.
-            diagnostics: what its server says of its devices, if it does.
+            repeat: s between repetitions of a command that still holds; 0: the caller repeats.
+            diagnostics: the server's reports about its devices, if it sends any.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics
@@ -61,7 +61,7 @@ class RosBase:
         return self._newest.stamped
 
     async def start(self) -> None:
-        """Begin to hear odometry; the base stands still until it is told to drive."""
+        """Subscribe to odometry; the base stands still until a command to drive."""
         await self._bridge.start()
         if self._repeating is None:
             self._newest.restart()

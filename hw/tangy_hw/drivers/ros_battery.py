@@ -56,8 +56,8 @@ class RosBattery:
 def charge_of(message: Message, *, to_hundred: bool = False) -> float:
     """Return how full a battery is, from 0 to 1.
 
-    What is not measured is NaN, which JSON has as null: then it is charge by capacity. Some robots
-    count `percentage` to 100: those of which more than 1 was seen, or known to (`to_hundred`).
+    Values that are not measured are NaN, null in JSON: then it is charge by capacity. Some robots
+    count `percentage` to 100: those that sent more than 1, or are known to (`to_hundred`).
 
     Raises:
         ValueError, KeyError, TypeError: the message does not tell.

@@ -67,7 +67,7 @@ class RosLaser:
         self._bridge.unsubscribe(self._topic, self._hear)
 
     def reading(self) -> Reading:
-        """Return the age of the newest scan, and what is told of what it sees.
+        """Return the age of the newest scan, and the facts about its view.
 
         `near_share` is the share of beams that end within a hand's breadth; `variety` the share
         that changed within a second, told when a second was seen.

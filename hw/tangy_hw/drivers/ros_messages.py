@@ -1,7 +1,7 @@
 """ROS messages as rosbridge sends them, and what they mean here; pure functions.
 
-Times are {"secs", "nsecs"} in ROS 1 and {"sec", "nanosec"} in ROS 2; what is read may be either.
-Whatever is no such message raises KeyError, TypeError or ValueError, which `Rosbridge` tells of.
+Times are {"secs", "nsecs"} in ROS 1 and {"sec", "nanosec"} in ROS 2; parsing accepts both.
+Other messages raise KeyError, TypeError or ValueError, which `Rosbridge` reports.
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ class RosNavigator:
             frame: of the robot's map.
             origin: where in the robot's map the room's frame is.
             place: where the robot says by geometry_msgs/PoseWithCovarianceStamped that it is.
-            initial: where it is told so.
+            initial: the topic for the initial pose.
         """
         self.name = name
         self.state: State = "idle"

@@ -52,7 +52,7 @@ class Newest(Generic[Value]):
     def reading(
         self, device: str, state: DeviceState = OK, facts: Mapping[str, Fact] = NOTHING
     ) -> Reading:
-        """Return what the diagnosis is told: stale before anything came, else the given state."""
+        """Return the reading for the diagnosis: stale before the first message, else `state`."""
         said: DeviceState = STALE if self.stamped is None else state
         return Reading(device, self.age, said, facts, self.rate)
 
@@ -66,8 +66,8 @@ async def awaited(
     """Wait for something until a time of a clock; say whether it was there by then.
 
     Args:
-        future: what is waited for.
-        until: the time on the clock, in s, up to which is waited.
+        future: the future to wait for.
+        until: the latest time on the clock, in s.
         clock: gives the time, in s.
         goes_on: whether there is still a reason to wait.
     """

@@ -16,7 +16,7 @@ WORSE = (OK, WARN, STALE, ERROR)
 
 
 class DeviceStatus(NamedTuple):
-    """What is said of a device: its state, a sentence, values, and when it came."""
+    """The status of a device: its state, a sentence, values, and when it arrived."""
 
     state: DeviceState
     says: str

@@ -46,8 +46,8 @@ class RosVoice:
         Args:
             bridge: the link to the robot.
             name: of the device, as in the profile of the robot.
-            say: the topic that takes what is to be said.
-            said: the topic on which is told what was said.
+            say: the topic that takes the text to speak.
+            said: the topic that reports the end of each text.
             hush: takes std_msgs/Empty, upon which it is quiet.
             with_id: whether sentences are sent with an id.
             patience: s beyond what a sentence takes, until the voice is taken to be dead.
@@ -119,7 +119,7 @@ class RosVoice:
             raise DeviceError(plain(f"{self.name} did not say {text[:60]!r}."))
 
     async def hush(self) -> None:
-        """Be quiet now; what is being said counts as said."""
+        """Be quiet now; the current text counts as spoken."""
         for over in list(self._waiting):
             if not over.done():
                 over.set_result(None)

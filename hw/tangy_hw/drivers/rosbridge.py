@@ -57,7 +57,7 @@ class Rosbridge:
         Args:
             url: where its server is, as ws://HOST:PORT.
             clock: the time by which ages are told.
-            tell: is told in one sentence each what a person may want to know.
+            tell: called with a sentence for each event of interest to people.
             ros: 1 or 2, how types and times are spelled.
 
         Raises:
@@ -110,7 +110,7 @@ class Rosbridge:
             self._task = asyncio.create_task(self._live())
 
     async def close(self) -> None:
-        """Say what is still to be said, and end for good."""
+        """Send the remaining messages, and close for good."""
         task, self._task = self._task, None
         if task is not None:
             with suppress(TimeoutError):
@@ -173,7 +173,7 @@ class Rosbridge:
         Args:
             topic: its name in ROS.
             message: the message, as JSON has it.
-            urgent: goes out ahead of all that waits, and in the place of what waits of this topic.
+            urgent: goes out before all waiting messages, and replaces those of this topic.
 
         Raises:
             DeviceError: there is no connection.
@@ -207,7 +207,7 @@ class Rosbridge:
             self._waiting.forget(key)
 
     def send_goal(self, action: str, kind: str, goal: Message, feeds: Hears | None = None) -> Goal:
-        """Send a goal to an action of ROS 2; how it goes is told by what is returned.
+        """Send a goal to an action of ROS 2; the returned goal reports its progress.
 
         Raises:
             DeviceError: there is no connection.
@@ -332,7 +332,7 @@ class Rosbridge:
             self._stir()
 
     def hear(self, text: str | bytes) -> None:
-        """Take one message of the server as it came; what is none is passed over."""
+        """Take one message of the server; skip anything else."""
         try:
             message = json.loads(text)
             if not isinstance(message, dict):

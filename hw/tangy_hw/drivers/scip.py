@@ -114,7 +114,7 @@ class ScipLaser:
 
     @property
     def why(self) -> str:
-        """What is wrong with it, in one sentence; "" if nothing is known to be."""
+        """Its problem, in one sentence; "" if none is known."""
         return self._why
 
     async def start(self) -> None:
@@ -139,7 +139,7 @@ class ScipLaser:
         return self._scan
 
     def reading(self) -> Reading:
-        """Return its state, the age of its newest scan, and what is told of what it sees.
+        """Return its state, the age of its newest scan, and the facts about its view.
 
         `near_share` is the share of beams that end within `NEAR`; `variety` the share that changed
         within a second, told when a second was seen.
@@ -204,7 +204,7 @@ class ScipLaser:
             # newer ones do not know this command, and say so.
             with contextlib.suppress(DeviceError):
                 await self._ask(b"SCIP2.0")
-        # It may be measuring still for whoever had it before, or hold half a command of theirs.
+        # It may still measure for an earlier client, or hold half of its command.
         await self._ask(b"QT", tries=2)
         self.optics = optics(named((await self._ask(b"PP")).lines))
         self.about = MappingProxyType(dict(named((await self._ask(b"VV")).lines)))

@@ -22,7 +22,7 @@ LONGEST = 1 << 16
 
 
 class ScipError(Exception):
-    """What came is no sound SCIP 2.0; a few words say what is wrong with it."""
+    """The reply is not valid SCIP 2.0; a few words say why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +133,8 @@ def split(buffer: bytes) -> tuple[list[bytes], bytes]:
 def found_again(reply: bytes, echo: bytes) -> bytes:
     """Return a reply from its echo on, without what stands before that.
 
-    It may be noise of a bad cable, or what is left of a reply that lost its end. Where the echo
-    does not stand in it, the reply is returned as it is.
+    Before it may be noise from a bad cable, or the rest of a reply that lost its end. A reply
+    without the echo is returned as it is.
     """
     at = reply.rfind(echo + b"\n")
     return reply[at:] if at > 0 else reply

@@ -29,7 +29,7 @@ def aligned(scans: Sequence[Placed], tell: Callable[[int], None] | None = None) 
 
     Args:
         scans: with the poses that the wheels counted, some 10 cm from one to the next.
-        tell: is told how many are done.
+        tell: called with the number of scans done.
     """
     found: list[Placed] = []
     references: list[Reference] = []

@@ -25,7 +25,7 @@ def free_ahead(points: Floats, curvature: float, half: float | Floats) -> float:
     """Return how many metres a robot's middle can go on an arc until it touches one of the points.
 
     Args:
-        points: what is around (n, 2), in the robot's frame.
+        points: the obstacles (n, 2), in the robot's frame, in m.
         curvature: of the arc, 1/m, positive to the left.
         half: half the width that must be free, in metres; (n,) where it differs from point to
             point.
@@ -51,7 +51,7 @@ def free_ahead(points: Floats, curvature: float, half: float | Floats) -> float:
 def room_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
     """Return how many metres the robot may go on an arc (1/m, positive to the left).
 
-    Points (n, 2) are what is around, in the robot's frame in m.
+    `points` (n, 2) are the obstacles, in the robot's frame, in m.
 
     What it stands near already does not count as long as driving brings it no nearer: it is
     possible to drive away from everything.
@@ -70,12 +70,12 @@ def speed_in(room: float, limits: MotionLimits) -> float:
 def guarded(twist: Twist, points: Floats, around: Around, limits: MotionLimits) -> Twist:
     """Return a twist as it may be driven by hand: on the same arc, or turning.
 
-    It is slower before what is near and stands before what is close; then it still turns. Where a
-    scanner sees little, which is behind, it is slow whatever is seen. A round robot touches nothing
-    more by turning; beside what is close it does so slowly.
+    The robot slows down near obstacles and stands before close ones, but may still turn. Behind,
+    where the scanner sees little, it is always slow. Turning cannot make a round robot touch
+    anything; beside close obstacles it turns slowly.
 
     Args:
-        twist: what it is told.
+        twist: the commanded twist.
         points: the obstacles, in metres (n, 2), in the robot's frame.
         around: what of that may be people.
         limits: how it may drive.

@@ -2,8 +2,8 @@
 
 What that tells the base does not pass through our hands. So a robot that must not drive has its
 goal called off, and goes on with it when it may again; until the robot has confirmed that, it
-counts as driving, and whoever holds this tells the base to stand. It is so for somebody who walks
-into its way as well: how fast it drives cannot be changed here, whether it does can.
+counts as driving, and the owner commands the base to stand. The same happens if a person walks into
+its way: its speed cannot be changed here, but its goal can be cancelled.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class ExternalNavigator:
         self._allowed, self._turned = AGAIN_SECONDS, 0.0
         self._since_blocked = CLEARING_SECONDS
 
-    # ------------------------------------------------------------------ what it is told to do
+    # ------------------------------------------------------------------------------- commands
     def go(self, goal: Pose) -> None:
         """Have a goal handed over, at the next tick; what becomes of it `state` and `why` tell."""
         self.cancel()

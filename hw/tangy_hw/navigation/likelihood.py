@@ -15,7 +15,7 @@ from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
 Field: TypeAlias = NDArray[np.float32]
 
 BEAMS = 60
-NEAREST = 0.15  # metres: what is nearer hangs on the robot
+NEAREST = 0.15  # metres: nearer returns come from the robot itself
 COVERED = 0.4  # share of beams that end that near
 SIGMA = 0.12  # metres by which a beam's end and the wall it hit are apart, map and pose included
 FLOOR = 0.1  # what a beam counts that ends where nothing is on the map: somebody may stand there
@@ -138,7 +138,7 @@ class LikelihoodField:
 
 
 def _room(map_: OccupancyMap) -> Field:
-    """Return how far it is to what is occupied, and large enough to stay where it is."""
+    """Return the distance to occupied cells of parts large enough to be fixed, in m."""
     parts, _ = label(map_.cells == OCCUPIED, np.ones((3, 3)))
     sizes = np.bincount(parts.ravel())
     sizes[0] = 0

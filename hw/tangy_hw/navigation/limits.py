@@ -1,4 +1,4 @@
-"""How a base may drive, whoever drives it."""
+"""Motion limits of a base, for planning and driving by hand."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from tangy_hw.navigation.poses import HERE, Floats, between, compose, wrap
 
 LOST = 0.85  # of the usual fit: below this the robot is probably not where it thinks
 WIDE = 0.5  # metres of spread from which on it thinks more than one place possible
-DOUBT = 0.95  # of the usual fit: below this a scan says little about what is usual
+DOUBT = 0.95  # of the usual fit: below this a scan does not update the usual fit
 MOVED, TURNED = 0.1, 0.1  # metres and radians after which the particles are weighed again
 FAST, SLOW = 0.1, 0.002  # shares of a new value in the averages of the fit
 USUAL, BELIEF = (
@@ -30,7 +30,7 @@ USUAL, BELIEF = (
     10,
 )  # the fit at a right pose before any scan, and how many scans that is worth
 SHARPNESS = 30.0  # the exponent that makes a weight of the fit
-START = (0.1, 0.1, 0.05)  # metres, metres, radians: how exactly a start is told
+START = (0.1, 0.1, 0.05)  # metres, metres, radians: spread of a given start
 FARTHEST = 20.0  # metres beyond which beams are not used
 FEWEST_BEAMS = 10  # that must have met something
 SEEN = 0.2  # share of the beams that something on the map must explain, or contradict
@@ -153,7 +153,7 @@ class Localisation:
         """Take a score into both averages, and see whether the robot has found one place."""
         self._fast += FAST * (score - self._fast)
         self._scans += 1
-        doubtful = self._fast < DOUBT * self._slow  # and so no measure of what is usual
+        doubtful = self._fast < DOUBT * self._slow  # so it must not change the usual fit
         share = SLOW if doubtful else max(SLOW, 1 / self._scans)
         self._slow += share * (score - self._slow)
         if self._fast < LOST * self._slow:
@@ -193,7 +193,7 @@ class Localisation:
         kept = resample(self._particles, self._weights, count - len(renewed), self._rng)
         self._particles = np.vstack((kept, renewed))
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
-        self._spread = self._spread_now()  # of what is thought possible again as well
+        self._spread = self._spread_now()  # includes the particles added again
 
     def _told(self, pose: Pose) -> Estimate:
         where = Pose(pose.x, pose.y, wrap(pose.heading))

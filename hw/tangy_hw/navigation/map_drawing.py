@@ -15,7 +15,7 @@ NOTHING, UNSEEN, KEPT_OUT, WALL = range(4)
 def map_lines(map_: OccupancyMap, columns: int = 100, *, ascii_only: bool = False) -> list[str]:
     """Return lines of at most so many characters, the highest y at the top.
 
-    Walls are full blocks, free floor is blank, what is kept out of and what nobody saw are shaded;
+    Walls are full blocks, free floor is blank, keep-out areas and unknown cells are shaded;
     in ASCII they are `#`, blank, `+` and `.`.
     """
     kinds = _shrunk(_kinds(map_), ceil(map_.shape[1] / columns))[::-1]

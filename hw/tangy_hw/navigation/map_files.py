@@ -2,7 +2,7 @@
 
 The YAML names the picture, the resolution (metres to a pixel), the origin (x, y and yaw of the
 lower left corner) and the shares of darkness from which on a pixel is occupied or free; between
-them it is unknown ("trinary"). What is kept out of is a second such map beside the first.
+them it is unknown ("trinary"). Keep-out areas are a second such map beside the first.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ FREE_BELOW, OCCUPIED_ABOVE = 0.196, 0.65  # grey (205) is darker than .196 by a 
 MOST_PIXELS = 40_000_000
 LARGEST = 100_000  # bytes of a YAML
 LARGEST_PICTURE = 200_000_000  # bytes
-FORMATS = ("PPM", "PNG", "BMP", "TIFF", "JPEG")  # by what is in a file, whatever it is named
+FORMATS = ("PPM", "PNG", "BMP", "TIFF", "JPEG")  # by the contents of a file, whatever its name
 KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
-KEEP_OUT = "-keep-out"  # ends the name of the files that say what is kept out of
+KEEP_OUT = "-keep-out"  # ends the names of the files with keep-out areas
 
 
 class MapFileError(TangyError):
@@ -45,10 +45,10 @@ class _Settings:
 
 
 def read_map(path: Path) -> OccupancyMap:
-    """Read a map, and what is kept out of if there is NAME-keep-out.yaml beside NAME.yaml.
+    """Read a map, with its keep-out areas if NAME-keep-out.yaml is beside NAME.yaml.
 
     Raises:
-        MapFileError: one sentence that says what is wrong where.
+        MapFileError: the problem and its place, in one sentence.
     """
     found = _read_one(path)
     beside = path.with_name(f"{path.stem}{KEEP_OUT}.yaml")
@@ -61,7 +61,7 @@ def read_map(path: Path) -> OccupancyMap:
 
 
 def write_map(map_: OccupancyMap, path: Path) -> list[Path]:
-    """Write NAME.yaml and NAME.pgm, and the same of what is kept out of, if there is anything.
+    """Write NAME.yaml and NAME.pgm, and the same for keep-out areas, if there are any.
 
     Returns:
         The files that were written.

@@ -1,7 +1,7 @@
 """The navigator: where the robot is, where it is to go, and how to drive now.
 
-It has neither wires nor a clock of its own: whoever holds it tells it some ten times a second what
-the wheels and the laser say, and sends the twist that comes back to the base.
+It has no connections and no clock: some ten times a second its owner passes wheel odometry and
+laser scans, and sends the returned twist to the base.
 """
 
 from __future__ import annotations
@@ -70,8 +70,8 @@ class Navigator:
         """Begin at a pose.
 
         Args:
-            map_: what is there.
-            rng: where chance comes from.
+            map_: the map.
+            rng: the random generator.
             start: where the robot is, within some 10 cm; None: it may be anywhere.
             limits: how it may drive.
             laser: where the scanner sits on the robot.
@@ -109,11 +109,11 @@ class Navigator:
     drives = False
     """Nothing drives the base but the commands that `tick` returns."""
 
-    # ------------------------------------------------------------------ what it is told to do
+    # ------------------------------------------------------------------------------- commands
     def go(self, goal: Pose) -> None:
         """Drive to a pose; another goal takes the place of the one before.
 
-        What is wrong with a goal is told by `state` (failed) and `why`.
+        `state` (failed) and `why` report a problem with the goal.
         """
         self.cancel()
         self.goal = goal
@@ -168,7 +168,7 @@ class Navigator:
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """Who and what is around and not on the map, in the robot's frame."""
+        """The tracked people and things that are not on the map, in the robot's frame."""
         return self._around.tracks
 
     @property
@@ -180,7 +180,7 @@ class Navigator:
     def unseen(self) -> Floats:
         """What the map keeps it out of and no laser sees, such as a table's top (n, 2).
 
-        It is told in the robot's frame, as far as the robot knows where it is.
+        It is in the robot's frame, as far as the robot knows its pose.
         """
         estimate = self._estimate
         if estimate is None or not estimate.found:
@@ -294,7 +294,7 @@ class Navigator:
         return plan(self.map, *ends, standing, self._radius, self._keep, walking)
 
     def _take(self, path: Path, goal: Pose, pose: Pose) -> None:
-        """Follow a way; one that leaves the way that was given up is told when it has been gone."""
+        """Follow a path; a detour from an abandoned path is reported once it is driven."""
         if self._way == "none":  # it is free again
             self._way = "clear"
         elif self._given_up is not None and _leaves(path.points, self._given_up):

@@ -1,4 +1,4 @@
-"""What finds a robot's place and its way, whoever does it: our navigator, or the robot's own."""
+"""Protocol of localisation and path following: our navigator, or the robot's own."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tangy_profiles.health import Fact, Reading
 
 
 class NavigatorProtocol(Protocol):
-    """Is told where to go, and then again and again what the wheels and the laser say."""
+    """Takes a goal, then wheel odometry and laser scans again and again."""
 
     @property
     def state(self) -> State:
@@ -45,12 +45,12 @@ class NavigatorProtocol(Protocol):
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """Who and what is around and not on the map, in the robot's frame."""
+        """The tracked people and things that are not on the map, in the robot's frame."""
         ...
 
     @property
     def obstacles(self) -> Floats:
-        """What is seen and not on the map (n, 2)."""
+        """Points seen that are not on the map, (n, 2)."""
         ...
 
     @property

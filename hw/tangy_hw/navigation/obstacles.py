@@ -18,12 +18,12 @@ AWAY, AWAY_SHARE = (
 )  # metres, and of the range, off the map from which a beam is not of it
 RANGE = 6.0  # metres beyond which a beam is too uncertain to plan by
 SURE = 3  # scans in which a cell was hit until it counts
-KEPT = 30.0  # seconds after which what is not seen any more is forgotten
-BEHIND = 0.15  # metres by which a beam goes past a thing until that has gone
+KEPT = 30.0  # seconds after which an obstacle no longer seen is forgotten
+BEHIND = 0.15  # metres by which a beam must pass an obstacle to clear it
 
 
 class Obstacles:
-    """Remembers what is in the way for a while, cell by cell of the map."""
+    """Remembers obstacles for a while, cell by cell of the map."""
 
     def __init__(self, map_: OccupancyMap, laser: Pose = HERE) -> None:
         self._map = map_
@@ -77,7 +77,7 @@ class Obstacles:
         return met & (away > np.where(fidgets, np.maximum(beyond, FIDGETING), beyond))
 
     def _clear(self, pose: Pose, scan: Scan) -> None:
-        """Forget what is old, and what a beam goes through now."""
+        """Forget old obstacles, and those that a beam now passes."""
         rows, columns = np.nonzero(self._hits)
         map_, eye = self._map, compose(pose, self._laser)
         x = map_.origin[0] + (columns + 0.5) * map_.resolution - eye.x

@@ -21,8 +21,8 @@ FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 
 MARGIN = 0.5  # metres of the unknown around a room, so that beams through doors end on the map
 LEG_INSET = 0.1  # metres from the table's edge to the middle of a leg
-CHAIR, FEET = 0.42, 0.3  # metres between the legs of a chair; from its middle to somebody's feet
-SEAT = 0.3  # metres around a seat that are kept out of
+CHAIR, FEET = 0.42, 0.3  # metres between the legs of a chair; from its middle to a person's feet
+SEAT = 0.3  # metres of the keep-out area around a seat
 FIDGET = 0.2  # metres around drawn feet in which those of a person who sits there may be
 
 
@@ -60,7 +60,7 @@ class OccupancyMap:
 
     @cached_property
     def obstacles(self) -> Mask:
-        """What the robot must not touch: walls, what is kept out of, and the unknown."""
+        """Cells that the robot must not touch: walls, keep-out areas, and unknown ones."""
         return np.asarray((self.cells != FREE) | self.keep_out)
 
     @cached_property

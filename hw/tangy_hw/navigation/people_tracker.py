@@ -61,7 +61,7 @@ class Track:
         return hypot(self.vx, self.vy)
 
     def seen_from(self, pose: Pose) -> Track:
-        """Return the same in the frame of a pose that is told in the present frame."""
+        """Transform it into the frame of a pose given in the current frame."""
         there = between(pose, Pose(self.x, self.y, 0.0))
         vx, vy = turned(self.vx, self.vy, -pose.heading)
         return Track(there.x, there.y, vx, vy, self.half, self.age, self.stood, self.person,
@@ -162,7 +162,7 @@ class PeopleTracker:
         dt: float,
         unmapped: NDArray[np.bool_] | None = None,
     ) -> tuple[Track, ...]:
-        """Take in a scan, and return who and what is around, in the frame of the wheels.
+        """Update the tracks with a scan, and return them in the odometry frame.
 
         Args:
             odometry: where the wheels count the robot.
@@ -196,7 +196,7 @@ class PeopleTracker:
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """Who and what is around, in the frame of the wheels, once it was seen often enough."""
+        """The confirmed tracks, in the odometry frame."""
         return tuple(one.track for one in self._followed if one.hits >= SURE)
 
     def _joined(self, found: list[LegSighting]) -> list[LegSighting]:

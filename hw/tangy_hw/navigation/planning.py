@@ -22,7 +22,7 @@ from tangy_hw.navigation.poses import Floats, lengths
 from tangy_profiles.errors import TangyError
 
 FOOTPRINT = 0.25  # metres from the robot's middle to its edge
-RADIUS = FOOTPRINT + 0.07  # metres from its middle within which what is on the map would be touched
+RADIUS = FOOTPRINT + 0.07  # metres from its centre within which it would touch the map's obstacles
 KEEP = FOOTPRINT + 0.37
 """Metres from its middle to what the map does not have, which may be somebody: a torso of .22 m
 stands over the legs that are seen, with .15 m to spare."""
@@ -80,10 +80,10 @@ def inflate(
     """Return what each cell costs, with more obstacles at the points `blocked` (n, 2).
 
     Args:
-        map_: what is there.
-        blocked: what is there as well, and may be somebody.
-        radius: how near the robot's middle may come to what is on the map, in metres.
-        keep: how near it may come to what is blocked, in metres.
+        map_: the map.
+        blocked: further obstacles, which may be people.
+        radius: least distance of the robot's centre from the map's obstacles, in m.
+        keep: least distance from `blocked`, in m.
         ends: where a way begins and ends: beside what stands there it may come nearer.
         walking: where those who walk are and will be (n, 2): ways avoid that where they can.
     """

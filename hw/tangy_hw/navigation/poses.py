@@ -25,7 +25,7 @@ def wrap(angle: Angle) -> Angle:
 
 
 def compose(start: Pose, step: Pose) -> Pose:
-    """Return where one is after a step that is told in the frame of the pose it starts at."""
+    """Return the pose after a step given in the frame of its starting pose."""
     c, s = cos(start.heading), sin(start.heading)
     return Pose(
         start.x + c * step.x - s * step.y,

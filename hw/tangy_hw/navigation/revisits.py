@@ -57,8 +57,8 @@ class Revisits:
     def tears(self) -> bool:
         """Whether the loops as a whole are torn.
 
-        What is new and looks like what was seen before counts as torn until the robot has come
-        back to what it knows; so they must be more than those that close, or come last.
+        New scans that resemble earlier ones count as torn until the robot is back at a known
+        place; so torn ones must outnumber those that close, or come last.
         """
         return self.torn > self.closed or self.last >= SURE
 

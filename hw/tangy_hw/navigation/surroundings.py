@@ -20,9 +20,9 @@ from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
 Held = Literal["", "walking", "standing"]
 """Who is let pass, or stands in the way: nobody, somebody who walks, somebody who stands."""
 
-SURE = 0.3  # metres of spread up to which what is seen is put on the map
+SURE = 0.3  # metres of spread of the pose up to which points go onto the map
 WALKS = 0.25  # m/s from which on somebody walks
-WALKERS = 0.5  # metres around somebody who walks in which what is seen is them
+WALKERS = 0.5  # metres around a walking person within which points belong to them
 AHEAD = (0.0, 0.7, 1.4, 2.1)  # seconds after which ways avoid those who walk
 
 
@@ -63,7 +63,7 @@ class Surroundings:
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """Who and what is followed, in the robot's frame."""
+        """The tracks, in the robot's frame."""
         return self._tracks
 
     @property
