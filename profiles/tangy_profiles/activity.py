@@ -202,7 +202,7 @@ class Activity:
         return ()
 
     def whom_expected(self, situation: Situation) -> str | None:
-        """Return the selector of whom a behaviour is expected to be for, where one is named."""
+        """Return the expected selector of a behaviour's person, if one is named."""
         return None
 
     def leaves_request(self, rule: StageRule) -> bool:

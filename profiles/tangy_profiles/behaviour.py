@@ -45,7 +45,7 @@ class Behaviour:
     phrases: tuple[str, ...]
     keywords: tuple[tuple[str, ...], ...]
     to: tuple[str, ...] = ()
-    """Of an activity that is declared by facts: the selectors of whom it may be for."""
+    """In activities declared by facts: the selectors of its possible persons."""
 
     @property
     def attends(self) -> bool:

@@ -1,4 +1,4 @@
-"""What is believed of a person's compliance: a Beta posterior for each strategy (Eq. 1, 2)."""
+"""Beliefs about a person's compliance: a Beta posterior for each strategy (Eq. 1, 2)."""
 
 from __future__ import annotations
 

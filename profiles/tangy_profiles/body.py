@@ -34,7 +34,7 @@ class Mount:
 
 @dataclass(frozen=True)
 class BodyProfile:
-    """The body of a robot; what is left out is that of Tangy.
+    """The body of a robot; the defaults are Tangy's.
 
     It is round, of `radius` m, or has `corners` (x, y) in m, of which `radius` is the distance of
     the outermost. `turn` is in rad/s, `acceleration` and `braking` are in m/s^2: how it may speed
@@ -55,7 +55,7 @@ def read_body(top: Table, cameras: Iterable[str]) -> BodyProfile:
     """Read the table `body` of a robot's file, if there is one; `cameras` are those that it has.
 
     Raises:
-        ProfileError: naming the key and what is wrong with it.
+        ProfileError: names the key and its problem.
     """
     if "body" not in top:
         return BodyProfile()

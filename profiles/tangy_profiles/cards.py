@@ -149,7 +149,7 @@ class CardState:
 
 
 def winning_state(states: Sequence[CardState]) -> str:
-    """Return the user activity state of a card that wins, "" where there is none."""
+    """Return the user activity state of a winning card; "" if there is none."""
     return next((state.name for state in states if state.checker == "complete line"), "")
 
 

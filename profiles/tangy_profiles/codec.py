@@ -237,7 +237,7 @@ def _typed(kinds: type | UnionType, but: type | tuple[()], wrong: str) -> Reader
 
 
 def _within_measure(value: Any) -> Any:
-    if not abs(value) <= LARGEST:  # what is not a number neither
+    if not abs(value) <= LARGEST:  # NaN fails, too
         raise Unreadable("is beyond all measure")
     return value
 

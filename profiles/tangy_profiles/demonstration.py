@@ -45,8 +45,8 @@ def not_the_same(before: ActivityState, after: ActivityState | None) -> str:
 class Resolution:
     """What a teacher said of a conflict: the right answers, and the steps that are wrong by it.
 
-    Only the steps that were looked at are set aside: whoever shows another answer later makes a
-    conflict again. An answer in `right` that nobody demonstrated is learnt all the same.
+    Only the steps that were reviewed are set aside: a different answer shown later is a new
+    conflict. An answer in `right` that nobody demonstrated is learnt all the same.
     """
 
     situation: Situation

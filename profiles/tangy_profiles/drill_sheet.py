@@ -90,7 +90,7 @@ class Sheet:
     }
 
     def by(self, who: str) -> bool:
-        """Say whether it is somebody's, however the name is written."""
+        """Say whether it belongs to a person, ignoring the case of the name."""
         return self.who.casefold() == who.casefold()
 
     @property

@@ -75,7 +75,7 @@ class NameEraser:
 
         Args:
             names: what the person is called, every name that is to go, as it is written.
-            stand_in: what is put in its place.
+            stand_in: the replacement.
             said: how the names stand where they were said.
             but: phrases and other people's names that stay as they are where they hold the name.
             commands: the words of commands, in small letters. In a command for the person every
@@ -198,7 +198,7 @@ class NameEraser:
     ) -> re.Pattern[str] | None:
         """Compile what finds the name: `forms` in any letters, and those `written` just so.
 
-        What is to stay stands before it, as far as it holds the name among other words.
+        Words to keep come before it, as far as they contain the name among others.
         """
         sought = [_one(form, "i") for form in sorted(forms, key=_longest)]
         sought += [_one(form, "") for form in sorted(written, key=_longest)]

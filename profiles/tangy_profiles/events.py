@@ -1,7 +1,7 @@
 """The kinds of event in the log: a closed set, with a record for each.
 
-A body is checked where it is written and where it is read, so that whoever reads events has only
-those that are as Tangy writes them. Keys that are not those of its record may stand in any body.
+A body is checked when it is written and when it is read, so that readers get only valid events.
+A body may have keys that its record does not define.
 """
 
 from __future__ import annotations

@@ -85,7 +85,7 @@ def problems(
 
     Args:
         own: the names that are ours, which nobody else can take.
-        check: says of an extension of a group what is wrong with it, "" if nothing is.
+        check: returns the problem of an extension of a group; "" if there is none.
     """
     for group in GROUPS:
         for name, extension in extensions(group).items():

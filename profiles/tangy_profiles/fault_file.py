@@ -41,7 +41,7 @@ def load_faults(robot: Robot, path: Path | None = None) -> FaultBook:
 
 
 def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | None, list[str]]:
-    """Read fault rules as `load_faults` does, and return what is wrong, a line for each entry.
+    """Read fault rules as `load_faults` does, and return the problems, a line for each entry.
 
     Without mistakes there is a book; with any there is none.
     """

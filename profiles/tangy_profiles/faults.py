@@ -1,4 +1,4 @@
-"""The fault rules (III-C, the diagnosis module): what is wrong, by which evidence, and what then.
+"""The fault rules (III-C, diagnosis module): faults, their evidence, and their recoveries.
 
 They are data: an ordered list in TOML. Each says by which evidence a fault is recognised, whether
 it is critical, how to recover from it, and what console and robot say. `monitoring.diagnosis`
@@ -120,7 +120,7 @@ class Condition(NamedTuple):
 
     @property
     def limit(self) -> str:
-        """The limit that a number passed, in words; "" where there is none."""
+        """The limit that a number passed, in words; "" if there is none."""
         if self.test not in ("above", "below", "at_least"):
             return ""
         return f"limit {self.value:g}" if not isinstance(self.value, str) else ""
@@ -137,7 +137,7 @@ class FaultRule:
     `also` are the symptoms that follow from the fault as well: a rule further down has nothing to
     say about them. `recovery` is a ladder: what does not help leads to its next rung, and after
     the last one an expert is asked. `tries` bounds each rung. A `bearable` fault may stay: Tangy
-    goes on without what is broken. `advice` are the staff's steps, in their words. While one of
+    goes on without the broken part. `advice` are the staff's steps, in their words. While one of
     the faults that it `continues` (codes) is there, it is that one, of which more is known now.
     """
 

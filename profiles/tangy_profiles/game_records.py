@@ -297,7 +297,7 @@ class AcceptanceTakenBack(EventRecord):
 
 @kind("staff action")
 class StaffAction(EventRecord):
-    """Staff did what is neither a behaviour nor a move: stopped the robot, brought a fault about.
+    """An action of staff other than behaviours and recoveries: a stop, an injected fault.
 
     `seconds` is the time in the game, `taken_back` the number of a call that counts no more.
     """

@@ -47,11 +47,11 @@ class Strength:
 
 @dataclass(frozen=True)
 class CallsFirst:
-    """What leaves time for calls where many people ask: who asks waits for some calls now and then.
+    """Leaves time for calls when many people ask: now and then they wait for some calls.
 
     After `visits` in a row an overdue call comes first, and further calls until they have had a
     `share` of the time since the last call, but no more than `calls`. In a group of up to
-    `small_group` people whoever asks never waits for a call.
+    `small_group` people nobody who asks waits for a call.
     """
 
     visits: int
@@ -149,7 +149,7 @@ class Patterns:
         return self.deck if self.present is None else self.present.on(self.deck)
 
     def follow_with(self, names: Sequence[str]) -> None:
-        """Choose what is played for after the present pattern."""
+        """Choose the patterns after the current one."""
         self.left = [self.rules.pattern(name) for name in names]
 
     def advance(self) -> bool:

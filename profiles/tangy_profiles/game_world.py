@@ -1,7 +1,7 @@
 """Where a game is played: in simulation, on the bench of simulated devices, or with a robot.
 
-What is believed of people is kept for each of them apart, so that a simulated person teaches
-Tangy nothing about a real one.
+Beliefs about people are kept apart for each world, so that simulated people teach Tangy
+nothing about real ones.
 """
 
 from __future__ import annotations

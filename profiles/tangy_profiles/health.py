@@ -27,7 +27,7 @@ Fact = float | bool | str
 
 
 class Reading(NamedTuple):
-    """What is known of one device.
+    """The health of one device.
 
     `age` is how long ago, in s, its newest data came; `state` is what the device says of itself;
     `facts` are what it measures (which ones there are, the robot's profile says). `rate` is how

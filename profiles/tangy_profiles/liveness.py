@@ -1,4 +1,4 @@
-"""How late data of a robot may be: what is a pause, what staff are told of, and what is a fault."""
+"""Limits on late data of a robot: for a pause, for calling staff, and for a fault."""
 
 from __future__ import annotations
 

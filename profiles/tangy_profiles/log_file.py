@@ -40,7 +40,7 @@ MIGRATIONS: tuple[str, ...] = (
 )
 """MIGRATIONS[n] takes a log from version n to n + 1; version 0 is an empty file."""
 INSTEAD = {1: f"CREATE TEMP {_SPEECH}"}
-"""What a reader that may not take step n has in its place, for itself alone: what is empty."""
+"""Empty steps in place of those that a reader may not take."""
 NAMING = ("name", "speech")
 """The tables that tell of people by name."""
 
@@ -210,7 +210,7 @@ class LogFile:
             raise StoreError(f"{plain(str(self.folder))}: {reason}.") from None
 
     def wrong(self, problem: str) -> StoreError:
-        """Say what is wrong with this log, in one sentence that names it."""
+        """Build an error that names this log and its problem, in one sentence."""
         return StoreError(plain(f"{self.path}: {problem}."))
 
     def _connect(self) -> sqlite3.Connection:
@@ -221,7 +221,7 @@ class LogFile:
         return sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
 
     def _size(self, end: str = "") -> int:
-        """Return the bytes of the log, or of its tail ("-wal"); 0 where there is none."""
+        """Return the size of the log, or of its tail ("-wal"), in bytes; 0 if it does not exist."""
         with suppress(FileNotFoundError):
             return (self.folder / (FILE + end)).stat().st_size
         return 0
@@ -278,8 +278,8 @@ class LogFile:
     def _migrate(self, db: sqlite3.Connection) -> None:
         """Bring the log to this version, all steps or none, after copying it as it was.
 
-        The copy stays, so nobody is named in it: whoever goes back to it has every event, and
-        gives the people their names anew.
+        The copy stays, so nobody is named in it: anyone who goes back to it has every event, and
+        gives the people their names again.
         """
         old, new = self._version(db), len(MIGRATIONS)
         if old == new:

@@ -1,7 +1,7 @@
 """Events that a log once had and has no more: noticed when it is opened, told until accepted.
 
 The newest are missed by the count beside the log (`seal`), others after damage (`salvage`). What is
-noticed becomes an event itself, so that it is told at each opening until staff accept it.
+noticed becomes an event, so that it is reported at each opening until staff accept it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ SEALED = "INSERT OR IGNORE INTO meta VALUES ('sealed', '1')"
 
 
 def newest(rows: Rows) -> int:
-    """Return the number of the newest event, 0 where there is none."""
+    """Return the number of the newest event; 0 if there is none."""
     found = rows("SELECT coalesce(max(seq), 0) FROM event")
     return int(found[0][0]) if found else 0
 

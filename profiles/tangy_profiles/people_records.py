@@ -46,7 +46,7 @@ class PersonAdded(EventRecord):
 
 @kind("person archived", about="person")
 class PersonArchived(EventRecord):
-    """A person takes part no more (`on`), or again; what is known of them stays."""
+    """A person is archived (`on`), or brought back; their data stays."""
 
     on: bool = True
 

@@ -64,7 +64,7 @@ PAPER = PersuasionConfig()
 
 
 def read_persuading(table: Table) -> PersuasionConfig:
-    """Read an activity's [persuasion]; what is left out is as in the paper.
+    """Read an activity's [persuasion]; the defaults are the paper's.
 
     Raises:
         ProfileError: one line that says file, key, value and the nearest valid word.

@@ -23,7 +23,7 @@ MEANT = {
     **{"OI": "OY", "UR": "ER", "AR": "AA R", "OR": "AO R", "UU": "UW", "II": "IY", "EW": "Y UW"},
     **{"AXR": "ER", "UX": "UW", "DX": "D", "C": "K", "H": "HH", "J": "JH", "Q": "K", "X": "K S"},
 }
-"""What is mostly meant by letters and phones that are none of the 39."""
+"""The most likely phones for letters and phones that are none of the 39."""
 
 
 def read_phones(text: str) -> str:

@@ -33,7 +33,7 @@ class PlannedGame:
     """A world's game by the plan that staff made; `choose` one before it begins."""
 
     activity: Activity
-    """What is played, with the deck of the present pattern."""
+    """The activity, with the deck of the current pattern."""
     own_deck: Deck
     """The deck as the activity has it."""
     people: tuple[str, ...]
@@ -122,7 +122,7 @@ class PlannedGame:
 
     @property
     def due(self) -> Due | None:
-        """Return what is to change before the next behaviour, and for whom; None: nothing is."""
+        """Return the next change before a behaviour, and its person; None if there is none."""
         tracker = self.tracker
         if tracker.place != FRONT:
             self._visited[tracker.place] = len(self.called_now)

@@ -38,7 +38,7 @@ _command: ContextVar[str] = ContextVar("command", default=NO_COMMAND)
 
 
 def command_id() -> str:
-    """Return the id of the command that is being carried out, "-" where there is none."""
+    """Return the id of the current command; "-" if there is none."""
     return _command.get()
 
 

@@ -13,7 +13,7 @@ ADD = """INSERT INTO event (uuid, robot, at, kind, person, strategy, complied, b
 # The responses that do not hold are few: they are looked up and subtracted, so that the index
 # alone still counts what may be half a million (an `answer` that was materialized would not).
 # One query with the counts, as below.
-# What is no answer (neither 0 nor 1, nobody's) or no JSON is left out, as `rows` has it.
+# Invalid answers (neither 0 nor 1, without a person) and invalid JSON are left out, as in `rows`.
 OF = "CASE WHEN json_valid(body) THEN json_extract(body, '$.of') END"
 _RESPONSES = f"""WITH
     back AS (SELECT {OF} AS uuid, person, strategy FROM event

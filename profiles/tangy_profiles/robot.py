@@ -80,12 +80,12 @@ class Measure:
 class DeviceProfile:
     """A device of the robot: its data is stale after so many s; `facts` are what it measures.
 
-    Data that is older than `fault_after` s is a fault; what is younger makes the robot wait.
+    Data older than `fault_after` s is a fault; younger data makes the robot wait.
 
     Of each fact the profile says in words of the staff what it is, and which values it can have.
     `source` is where the pictures of a camera come from, "" where that is said elsewhere or it is
     no camera: 0 or /dev/video0, http://..., rtsp://..., or a file or folder, which may be relative
-    to the robot's file. `looks_at` is what is to be read in them, one of `LOOKS_AT` or "".
+    to the robot's file. `looks_at` is the subject of the pictures, one of `LOOKS_AT` or "".
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Reading rows of the log as events: a row that is not as Tangy writes it is told from one that is.
+"""Reading rows of the log as events: separates rows as Tangy writes them from invalid ones.
 
 What SQLite's check of a file does not see (a changed byte in a text, a row that another program
 wrote) is met here, row by row, so that it costs that row and no other.

@@ -30,7 +30,7 @@ Range = tuple[int, int]
 _EVENTS = """SELECT seq, uuid, robot, at, kind, person, strategy, complied, body FROM event
     WHERE seq > ? AND seq <= ?"""
 _TEXT = "CAST(? AS TEXT)"
-# As text, whatever bytes they are: a reader tells what is none.
+# As text, whatever the bytes: a reader detects invalid text.
 _ADD = f"""INSERT INTO event (seq, uuid, robot, at, kind, person, strategy, complied, body)
     VALUES (?, {", ".join([_TEXT] * 6)}, ?, {_TEXT})"""  # noqa: S608
 _NEWEST = (

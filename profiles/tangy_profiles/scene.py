@@ -1,4 +1,4 @@
-"""What there is to see in the room at one moment: what a world shows, and a screen draws."""
+"""The scene of the room at one moment: worlds provide it, and screens draw it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The append-only event log of one data folder, and what is counted out of it.
+"""The append-only event log of one data folder, and the counts derived from it.
 
 One process writes a folder at a time; any number may read beside it (see `log_file`). Names of
 people stand in a table of their own, and how they are pronounced and spoken to in another, so that
@@ -315,7 +315,7 @@ class Store:
             return count_left(self.file.db, eraser) if self.file.db else 0
 
     def check(self) -> list[str]:
-        """Read the whole log and return what is wrong with it, a sentence each ([]: nothing)."""
+        """Read the whole log and return its problems, a sentence each; [] if there are none."""
         wrong = []
         try:
             found = [" ".join(row.split()) for (row,) in self._rows("PRAGMA quick_check")]
@@ -341,13 +341,13 @@ class Store:
         self.close()
 
     def accept_losses(self) -> list[EventsLost]:
-        """Note that staff know of what is lost, so that it is not told again; return that."""
+        """Record that staff know about the losses, which are not reported again; return them."""
         if losses := self._unaccepted():
             self.append(LossAccepted())
         return losses
 
     def _unaccepted(self) -> list[EventsLost]:
-        """Return what is lost of this log and was not accepted yet."""
+        """Return the losses of this log that nobody has accepted yet."""
         sealed = self._seal.read()  # before the events: so it never leads
         noted = self._noted()
         return [*noted, *unnoticed(self._rows, sealed, noted)]
@@ -357,7 +357,7 @@ class Store:
         return [e.record for e in self.events(EventsLost, after=accepted.seq if accepted else 0)]
 
     def _begin(self) -> None:
-        """Become the writer, learn which robot's folder this is, and note what is lost of it."""
+        """Become the writer, read the robot's id, and record the losses."""
         db = self.file.begin()
         sealed = self._seal.read()  # of a log whose very beginning is gone
         robot = sealed[0] if sealed else str(uuid.uuid4())

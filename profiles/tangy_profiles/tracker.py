@@ -173,10 +173,10 @@ class Tracker:
         return False
 
     def _see(self, behaviour: Behaviour, after: ActivityState, *, succeeded: bool) -> None:
-        """Count a behaviour, and see what there is after it: who asks, and the card there."""
+        """Count a behaviour, and observe the state after it: who asks, and the card there."""
         self.arrive(after.place)
         self.executed(behaviour, succeeded=succeeded)
-        if self.calls_first:  # whoever asks is not told of meanwhile, and asks nevertheless
+        if self.calls_first:  # requests are hidden meanwhile, but stay open
             return
         asking = [user.id for user in after.users if user.request == "AR"]
         self.queue = [person for person in self.queue if person in asking]

@@ -44,8 +44,8 @@ def requests(refuse: Callable[[str], object], pipe: BinaryIO | None = None) -> I
     """Read requests until the pipe closes.
 
     Args:
-        refuse: is told in one sentence why a line is no request.
-        pipe: standard input where none is given.
+        refuse: called with a sentence that says why a line is no request.
+        pipe: the input; by default standard input.
     """
     pipe = sys.stdin.buffer if pipe is None else pipe
     while line := pipe.readline(LONGEST_LINE):
@@ -108,7 +108,7 @@ async def coming(
 
 
 class AnswerWriter:
-    """What a child says, from whichever thread; it ends with whoever reads it."""
+    """The output of a child, from any thread; it ends with its reader."""
 
     def __init__(self) -> None:
         """Take standard output: what libraries print there goes to standard error from now on."""

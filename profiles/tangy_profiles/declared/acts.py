@@ -24,7 +24,7 @@ def acts(game: DeclaredGame, *, drawn: Callable[[], float] | None = None) -> Ite
     """Yield what people may do now.
 
     Args:
-        game: the game; what is yielded may be observed in it before the next is asked for.
+        game: the game; it may observe each yielded act before the next is drawn.
         drawn: draws from 0 to 1, so that each act comes with its chance, one value each
             (default: every act that has a chance, with every value that has a weight).
     """
@@ -62,7 +62,7 @@ def raw(game: DeclaredGame, fact: Fact, value: str) -> str:
 
 def _chosen(habit: Habit, share: float) -> str:
     rest = share * sum(weight for _, weight in habit.weights)
-    for value, weight in habit.weights:  # noqa: B007 - the last one takes what is left
+    for value, weight in habit.weights:  # noqa: B007 - the last one takes the rest
         rest -= weight
         if rest < 0:
             break

@@ -1,4 +1,4 @@
-"""The behaviours of an activity's file: what they do, for whom, what is said, the phrases."""
+"""Reads the behaviours of an activity's file: effects, persons, texts, phrases."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ class ActivityFlaw:
 
 
 def findings(activity: DeclaredActivity) -> Iterator[ActivityFlaw]:
-    """Yield what is wrong with an activity that can be read, the worst first."""
+    """Yield the problems of an activity that can be read, the worst first."""
     slots: dict[tuple[str, str], bool] = {}
     found = _tried(activity, slots)
     stuck = found.stuck

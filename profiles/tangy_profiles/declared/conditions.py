@@ -36,7 +36,7 @@ class Phrasing:
         return tuple(one for one in found if one is not None)
 
     def condition(self, section: Section, key: str, text: str) -> FactCondition | None:
-        """Read one condition, or note what is wrong with it."""
+        """Read one condition, or record its problem."""
         match = _CONDITION.fullmatch(text)
         if match is None:
             section.wrong(key, f"{text!r} is no condition; write FACT is VALUE", text)
@@ -77,7 +77,7 @@ class Phrasing:
         return tuple(one for one in found if one is not None)
 
     def effect(self, section: Section, key: str, text: str) -> Effect | None:
-        """Read one effect, or note what is wrong with it."""
+        """Read one effect, or record its problem."""
         words, _, tail = " ".join(text.split()).partition(" if ")
         parts = tail.split(" and ") if tail else []
         conditions = self.all_of(section, key, parts)

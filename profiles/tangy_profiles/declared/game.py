@@ -78,7 +78,7 @@ class DeclaredGame:
         other.executed = dict(self.executed)
         return other
 
-    # ------------------------------------------------------------------------ what is so now
+    # --------------------------------------------------------------------------- current facts
 
     @property
     def row(self) -> int:

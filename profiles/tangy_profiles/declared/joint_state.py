@@ -33,7 +33,7 @@ def joint_state(game: DeclaredGame) -> ActivityState:
 
 
 def _doing(game: DeclaredGame, facts: list[Fact], player: str) -> str:
-    """Return what is not as it begins of a player, in words of the file."""
+    """Return a player's facts that differ from their first values, in words of the file."""
     values = [(fact, game.value(fact.name, player)) for fact in facts]
     return (
         FACTS.join(f"{fact.name}{IS}{value}" for fact, value in values if value != fact.values[0])

@@ -80,7 +80,7 @@ class Stage:
 
 @dataclass(frozen=True, slots=True)
 class DeclaredBehaviour:
-    """A behaviour as it is declared: what it does, for whom, and what is said."""
+    """A declared behaviour: its effects, its persons, and its texts."""
 
     name: str
     effects: tuple[Effect, ...]
@@ -156,7 +156,7 @@ class Declaration:
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def bounds_of(self, fact: Fact) -> tuple[int, ...]:
-        """Return the numbers between which a count or a timer (in s) is told apart, rising."""
+        """Return the ascending limits that divide a count or a timer (in s) into bands."""
         numbers = {
             one.number
             for one in self.conditions

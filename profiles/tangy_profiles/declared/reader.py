@@ -1,4 +1,4 @@
-"""A declared activity, read from its file: every mistake is told, each with line and column."""
+"""Reads a declared activity from its file, and reports every mistake with line and column."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Searching the games that can come about: what is next to be shown, and what can be at all.
+"""Search through all possible games: the next situation to show, and the reachable ones.
 
 A search follows the interpreter from state to state: a behaviour, then one thing that happens.
 States that differ in nothing that any condition, selector or stage looks at count as one.
@@ -27,7 +27,7 @@ SOON = 1.0
 """So many s pass where nothing in particular is to happen."""
 MOST_STATES = 60_000
 MOST_AHEAD = 5_000
-"""States that are looked at for what is to happen next."""
+"""Most states visited in the search for the next event."""
 MOST_ASKING = 2
 """More do not ask at once in a search."""
 FEWEST_ROUNDS = 2
@@ -217,7 +217,7 @@ def explore(
         able = moves(one)
         if not able or able[0][0] == UNDECIDED:
             found.open[here] = able[0][0] if able else ""
-            ends.append(node)  # whoever is asked decides how it goes on
+            ends.append(node)  # the answer decides how it goes on
             continue
         for move in able:
             found.played[move[0]] = found.played.get(move[0], 0) + 1

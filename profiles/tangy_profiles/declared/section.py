@@ -12,7 +12,7 @@ from tangy_profiles.reading import nearest
 
 
 class Section:
-    """A table of the file. What is wrong in it is noted, and something harmless read instead."""
+    """A table of the file. Mistakes are collected, and a harmless value is read instead."""
 
     def __init__(self, source: SourceText, values: Any, path: Path = ()) -> None:
         """Take a value that should be a table, and the keys that led to it."""

@@ -73,7 +73,7 @@ def told(condition: FactCondition, facts: Mapping[str, str]) -> bool | None:
 def _rules_out(
     declaration: Declaration, earlier: Stage, stage: Stage, facts: Mapping[str, str]
 ) -> bool:
-    """Say whether an earlier stage would be the present one by what is known."""
+    """Say whether the known facts select an earlier stage."""
     same = earlier.about == stage.about
     own = {
         name: value

@@ -39,8 +39,8 @@ class SourceText:
 
         Args:
             path: the keys that lead to it; a number is a place in a list, from 0.
-            problem: what is wrong, without a full stop.
-            quoted: the text that is wrong, where it is only a part of the value.
+            problem: the problem, without a full stop.
+            quoted: the wrong text, if it is only a part of the value.
         """
         offset = self._offset(path, quoted)
         line = self._text.count("\n", 0, offset) + 1

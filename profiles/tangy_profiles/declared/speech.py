@@ -1,4 +1,4 @@
-"""What is said and shown in a game of a declared activity: its texts with their slots filled in."""
+"""Texts for voice and screen in a declared activity, with their slots filled in."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ BETWEEN = ("is", "has", "gives")
 
 
 class Telling(NamedTuple):
-    """What was told: the fact, whose (None: the group's), and what is to be observed of it."""
+    """A typed observation: the fact, its player (None: the group), and its value."""
 
     fact: str
     who: str | None
@@ -45,7 +45,7 @@ def meant(game: DeclaredGame, who: str | None, words: str) -> Telling | None:
         words: what was typed or heard.
 
     Returns:
-        What is to be observed; None where the words say nothing of any fact.
+        The observation; None if the words mention no fact.
     """
     said = plain_words(words)
     if not said:

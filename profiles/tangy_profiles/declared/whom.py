@@ -1,4 +1,4 @@
-"""Whom a behaviour is for, learnt with what is done: the selectors that named the person shown.
+"""The person of a behaviour, learnt with it: selectors that named the demonstrated person.
 
 For each stage and behaviour those selectors are kept that named that person every time. If the
 ones that are left name different people now, Tangy asks.

@@ -30,7 +30,7 @@ _LOG = logging.getLogger("tangy_sim.device_simulator")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the bench until its stdin is closed or it is told to stop."""
+    """Run the bench until its stdin closes, or a command stops it."""
     told = _parser().parse_args(arguments)
     log_to_stderr()
     try:
@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 2
     faces = {person.id: number for number, person in enumerate(people, 1)}
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it closes its stdin
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # its parent closes its stdin
     asyncio.run(_serve(DeviceServers(world, stepped=told.stepped, faces=faces, seed=told.seed)))
     return 0
 
@@ -96,7 +96,7 @@ async def _serve(bench: DeviceServers) -> None:
 def _answer(bench: DeviceServers, told: Asked) -> dict[str, Any]:
     try:
         answer = {"done": "stop"} if told["do"] == "stop" else bench.do(told)
-    except Exception as error:  # whoever asked must not wait for ever
+    except Exception as error:  # the parent must not wait for ever
         answer = {"failed": f"The bench does not understand {told!r:.200} ({error!r:.200})."}
     _LOG.info("asked for %s: %s", told.get("do"), ", ".join(answer))
     return {**answer, "id": told["id"]} if "id" in told else answer

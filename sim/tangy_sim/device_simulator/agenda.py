@@ -1,4 +1,4 @@
-"""What is going to happen on the bench, and when."""
+"""The events scheduled on the bench."""
 
 from __future__ import annotations
 

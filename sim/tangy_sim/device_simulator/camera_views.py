@@ -115,7 +115,7 @@ class HeadCamera:
             return [picture]
         mat, corners = self._mat(scene, who, now)
         x, y = int(now.integers(0, SIZE[0] - MAT)), int(now.integers(0, SIZE[1] - MAT))
-        if scene.hides == "edge":  # what is above the grid is all that can be seen
+        if scene.hides == "edge":  # only the part above the grid is visible
             y = SIZE[1] + 12 - int(corners[:, 1].min())
         elif scene.hides == "sheet":
             middle = corners.mean(0)
@@ -150,7 +150,7 @@ class HeadCamera:
         return self._tables[key]
 
     def prepare(self, game: int, who: int, card: int) -> None:
-        """Draw ahead what takes longest: the face of somebody's card, and the table under it."""
+        """Draw the slowest parts in advance: the face of a card, and the table under it."""
         random = np.random.default_rng([self._seed, who])
         self._table(game, who)
         self._camera.take(card, {}, _view(random), random)
@@ -178,7 +178,7 @@ class HeadCamera:
         return [np.full((SIZE[1], SIZE[0], 3), 6, np.uint8)]
 
     def _window(self, heading: int) -> Picture:
-        """Cut what is seen that way (degrees) out of the picture of the room all around."""
+        """Cut the view in a direction (degrees) out of the room's panorama."""
         left = (-heading * DEGREE) % (360 * DEGREE)
         seen = self._around[:, left : left + SIZE[0]]
         more = SIZE[0] - seen.shape[1]

@@ -2,7 +2,7 @@
 
 They follow the game by what the robot says, with the same interpreter, and do things some seconds
 after it has spoken, by the chances of the activity's file. The wish for help is a sign; what else
-they do is told to whoever is with them (`acts`).
+they do is passed to `acts`.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ class DeclaredPeople(People):
                 self._after(ACTS, partial(self._acts, act))
 
     def ask(self, person: str) -> None:
-        """Let somebody raise the sign now, who is told to."""
+        """Let a person raise their sign now."""
         self._acts(Act(ASKING, person, YES))
 
     def _invited(self, act: Act, strategy: str) -> None:

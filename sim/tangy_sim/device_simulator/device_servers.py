@@ -1,9 +1,10 @@
 """The bench's wires: a rosbridge server, a laser scanner on the network, two video streams.
 
 In its own (stepped) time the service `/bench/advance` {"seconds": dt} lets time pass: `/clock` is
-published, then what is due on all wires is sent, then the answer {"time": t, "sent": {...}} goes
-out, with how many scans and pictures were sent so far. That service and the clock answer even when
-the robot's link is lost, since time goes on then, too. Otherwise time is the machine's.
+published, then all due messages are sent on all connections, then the answer
+{"time": t, "sent": {...}} goes out, with the numbers of scans and pictures sent so far. The service
+and the clock also work while the robot's link is lost, because time goes on. Otherwise time is the
+machine's.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ class DeviceServers:
             self._pass(TICK)
 
     def do(self, told: Mapping[str, Any]) -> dict[str, Any]:
-        """Carry out a command of whoever runs the bench, and return the answer to it.
+        """Carry out a command of the bench's owner, and return the answer.
 
         Raises:
             KeyError: there is no such command or kind, or something is missing.

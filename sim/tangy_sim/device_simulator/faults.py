@@ -1,7 +1,7 @@
-"""What is wrong on the bench: the kinds of `tangy_sim.worlds.injection`, brought about in devices.
+"""Faults on the bench: the kinds of `tangy_sim.worlds.injection`, injected into devices.
 
-Here it is only kept what is wrong, with whom and since when; each room of the bench asks for its
-own kinds and does what follows. What cannot be brought about here is kept all the same and told.
+This module only records each fault, its device and its start; each part of the bench queries its
+own kinds and simulates them. Kinds that cannot be injected here are recorded and reported, too.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from tangy_sim.worlds.injection import KINDS, Kind
 
 MUTE = ("voice-dead", "screen-dead")
-"""What is put right together when a robot is neither heard nor seen."""
+"""The faults that end together when a lost connection returns."""
 COMES_BACK = 0.5
 """P(a device comes back when it is started again)."""
 

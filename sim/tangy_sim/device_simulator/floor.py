@@ -86,7 +86,7 @@ class Floor:
         self.changed()
 
     def _placed(self, seat: Point, side: int) -> Circle:
-        """Put somebody's foot down before the chair, a little elsewhere each time."""
+        """Put a person's foot down before the chair, a little elsewhere each time."""
         dx, dy = self._random.uniform(-0.06, 0.06), self._random.uniform(-0.12, 0.08)
         return Circle(seat.x + 0.13 * side + dx, seat.y - 0.3 + dy, LEG)
 

@@ -64,5 +64,5 @@ class Joints:
                 self.speeds[name] = speed if goal > here else -speed
 
     def angle(self, name: str) -> float:
-        """Return where a joint is, in degrees; 0 where there is none of that name."""
+        """Return the position of a joint, in degrees; 0 if there is no joint of that name."""
         return degrees(self.positions.get(name, 0.0))

@@ -3,7 +3,7 @@
 They play as those of `tangy_sim.worlds.world` do, by the same rates, but in continuous time: what
 they do, they do some seconds after they had reason to. Rates are per call; how long a robot takes
 for a call is its own business, so people's time goes on with what they hear: by one call for each
-behaviour before the group, by `away_calls` for each at somebody's seat. Random streams are apart.
+behaviour before the group, by `away_calls` for each at a seat. Random streams are apart.
 """
 
 from __future__ import annotations
@@ -255,7 +255,7 @@ class People:
                     self._ask_soon(sitter)
 
     def ask(self, person: str) -> None:
-        """Let somebody raise the sign now, who is told to."""
+        """Let a person raise their sign now."""
         self._ask(self.sitters[person])
 
     def _ask_soon(self, sitter: Sitter) -> None:

@@ -23,7 +23,7 @@ class Tablet:
     def __init__(self, url: str, code: str, shown: Callable[[str], object] = str) -> None:
         """Open the page at an address, and pair by a code.
 
-        `shown` is told what is written there, once it is drawn.
+        `shown` is called with the text of each picture, once it is drawn.
         """
         self._shown = shown
         self._code = code

@@ -97,7 +97,7 @@ class BenchWorld:
             self.people = People(activity, people, self.faults, seed=seed, users=users)
             self._hearing = SpeechReception(activity, robot, people)
         self._speech: deque[str] = deque()
-        self._silent_from = 0.0  # when what is being said has been said
+        self._silent_from = 0.0  # time at which the current speech ends
         self.said: list[str] = []
         """What was said to its end since somebody last looked; who acts on it empties it."""
         self._stands = {
@@ -158,7 +158,7 @@ class BenchWorld:
             self._understood(text)
 
     def hush(self) -> None:
-        """Break off what is being said; nobody understands half a sentence."""
+        """Cut the current speech; people do not understand half a sentence."""
         self._speech.clear()
 
     def _speak(self) -> None:
@@ -206,7 +206,7 @@ class BenchWorld:
             if fault is not None and fault.shown:
                 self.faults.lift(kind)
 
-    # ------------------------------------------------------------------------- what is seen
+    # --------------------------------------------------------------------------- sensor views
 
     def ranges(self) -> NDArray[np.float64]:
         """Return what the laser measures now, (beams,) m."""
@@ -316,7 +316,7 @@ class BenchWorld:
     # ------------------------------------------------------------------------------ truth
 
     def truth(self) -> dict[str, Any]:
-        """Return what is true, as JSON has it; see `serving.py` for what it means."""
+        """Return the ground truth for JSON; see `serving.py` for its keys."""
         people, pose = self.people, self.wheels.pose
         return {
             "time": round(self.now, 3),

@@ -1,4 +1,4 @@
-"""What is behind the simulated table's cards: wood, cloth, photographs, things of all colours."""
+"""Backgrounds of simulated cards: wood, cloth, photographs, things of all colours."""
 
 from __future__ import annotations
 

@@ -249,7 +249,7 @@ def _disc(
     washed: bool = False,
     shape: Outline = DISC,
 ) -> None:
-    """Lay a disc or so on the table: `clear` of what is beneath shines through, in its tone."""
+    """Draw a chip such as a disc; a share `clear` of the background shows through, in its tone."""
     import numpy as np
 
     px, py, reach = (x + around) * scale, (y + around) * scale, radius * scale + 3 * soft + 2

@@ -35,7 +35,7 @@ MASTER = 8.0  # pixels to the mm of the face that all smaller ones are made from
 
 @dataclass(frozen=True)
 class View:
-    """What a frame is like: all of it may be given, and what is not is drawn by `some_view`.
+    """The parameters of a frame; `some_view` draws at random those that are not given.
 
     `pixels` is how large a cell would be seen straight on; angles are degrees; `blur` and
     `motion` are pixels, `noise` grey levels, `quality` JPEG's.
@@ -64,7 +64,7 @@ class View:
 
 @dataclass(frozen=True)
 class RenderedFrame:
-    """A picture of a card, and what is true of it.
+    """A picture of a card, and its ground truth.
 
     `marked` are the cells with a chip, as a mask; `covered` is how much of each cell a hand hides,
     0 to 1; `corners` are the corners of the grid in the picture; `between` are the cells at a line
@@ -86,7 +86,7 @@ class RenderedFrame:
 
 
 def some_view(random: np.random.Generator, **given: Any) -> View:
-    """Draw a view as rooms have them; what is given stays."""
+    """Sample a view as it occurs in rooms; given parameters stay."""
     uniform, chance = random.uniform, random.random
     drawn = View(
         pixels=float(18 * (44 / 18) ** chance()),
@@ -275,7 +275,7 @@ def _master(face: CardLayout, card: int, seed: int, title: str) -> Picture:
 
 
 def _bent(paper: Real, most: float, random: np.random.Generator) -> Real:
-    """Bend the paper a little: shift what is on it by long waves, `most` pixels at most."""
+    """Bend the paper a little: displace the picture by long waves, by at most `most` pixels."""
     import cv2
     import numpy as np
 

@@ -78,7 +78,7 @@ def odd_chip(random: np.random.Generator) -> Chip:
 
 
 def sheer_chip(random: np.random.Generator) -> Chip:
-    """Draw a film or a very clear chip: what is printed shows through it, dyed or paler."""
+    """Draw a film or a very clear chip: the print shows through it, dyed or paler."""
     uniform = random.uniform
     hue = float(random.choice([*HUES.values(), 180])) + random.normal(0, 10)
     dyed = random.random() < 0.75

@@ -1,4 +1,4 @@
-"""One client of a rosbridge server: what it subscribed to, and what is still to be said to it."""
+"""One client of a rosbridge server: its subscriptions, and its queue of messages."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def full_name(name: str) -> str:
 
 
 def encoded(message: object) -> str:
-    """Return a message as JSON; arrays become lists, and what is not finite null."""
+    """Return a message as JSON; arrays become lists, NaN and infinity null."""
     try:
         return _ENCODER.encode(message)
     except ValueError:  # infinity and not-a-number are none of JSON's
@@ -77,7 +77,7 @@ class Client:
         """Queue a text, in fragments where it is larger than it may be.
 
         Args:
-            text: what is to be sent.
+            text: the message.
             loses: whether it may be lost when the client reads too slowly.
             largest: bytes of a piece at most.
         """
@@ -91,7 +91,7 @@ class Client:
             self._put(loses, text)
 
     async def write(self) -> None:
-        """Send what is queued, for as long as the connection stands."""
+        """Send the queue, as long as the connection is open."""
         with suppress(ConnectionClosed):
             while True:
                 while self._queue:

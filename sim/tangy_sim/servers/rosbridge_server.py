@@ -1,8 +1,8 @@
 """A rosbridge v2 server: topics, services and actions as JSON over WebSocket.
 
-It knows nothing of robots: who simulates one publishes, hears, and provides. What is said to one
-client goes out in the order in which it was said, so whatever was published before the answer of a
-service arrives before it. A client that does not read delays nobody: its oldest messages are lost.
+It knows nothing of robots: the simulation publishes, subscribes, and provides services. Messages
+to one client go out in their order, so messages published before the answer of a service
+arrive before it. A client that does not read delays nobody: its oldest messages are lost.
 """
 
 from __future__ import annotations
@@ -97,8 +97,8 @@ class RosbridgeServer:
     def pause(self, still: Collection[str] = ()) -> None:
         """Freeze: connections stand and are taken, but nothing is said or done until `resume`.
 
-        What is published meanwhile is lost; what clients say is heard afterwards, as when a stopped
-        process goes on. `still` names topics and services that go on nevertheless.
+        Messages published meanwhile are lost; clients' messages are read afterwards, as if a
+        stopped process goes on. `still` names topics and services that go on nevertheless.
         """
         self._paused, self._still = True, frozenset(map(full_name, still))
 
@@ -119,7 +119,7 @@ class RosbridgeServer:
         Args:
             topic: its name.
             kind: its type, for the reader; rosbridge does not send it.
-            message: may hold numpy arrays; what is not finite is sent as null, as rosbridge does.
+            message: may hold numpy arrays; NaN and infinity are sent as null, as by rosbridge.
         """
         del kind
         topic = full_name(topic)

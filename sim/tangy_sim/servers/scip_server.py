@@ -30,7 +30,7 @@ class _Wire(Protocol):
 class ScipServer:
     """Answers as a SCIP 2.0 scanner does, and gives each scan to every client that measures.
 
-    Faults: while `silent` nothing is said, and what is asked is lost; while `closed` connections
+    Faults: while `silent` it sends nothing, and requests are lost; while `closed` connections
     are cut and new ones are cut at once; `fault` is the status of a scanner that is broken
     ("0L", or "70" when its motor stalls), given instead of scans.
     """

@@ -75,7 +75,7 @@ def measurement(distances: NDArray[np.int64], signs: int) -> bytes:
 
 @dataclass(slots=True)
 class _Wanted:
-    """What is measured for a client: which beams, and how many scans more."""
+    """A client's measurement: its beams, and the number of scans left."""
 
     echo: bytes
     first: int
@@ -114,7 +114,7 @@ class ScipSession:
         return self._stream is not None or bool(self._single)
 
     def feed(self, came: bytes) -> None:
-        """Take what the client says, and answer what is whole."""
+        """Take bytes of the client, and answer the complete commands."""
         *commands, self._heard = re.split(rb"\r?\n|\r", self._heard + came)
         if len(self._heard) > LONGEST_COMMAND:
             self._heard = b""
@@ -142,7 +142,7 @@ class ScipSession:
         wanted.passed = 0
         if wanted.left is not None:
             wanted.left -= 1
-            # What is still to come is written where the client wrote how many it wanted.
+            # The remaining scans are written where the client wrote the number it wanted.
             head, semicolon, tail = wanted.echo.partition(b";")
             wanted.echo = head[:-2] + b"%02d" % wanted.left + semicolon + tail
             if not wanted.left:

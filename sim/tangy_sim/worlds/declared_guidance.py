@@ -1,7 +1,7 @@
 """A guided game of any declared activity: what happens is what nobody has shown yet.
 
 Left to chance, some situations come about in one game of many. Here a search in the interpreter
-finds what is to happen so that the nearest situation comes about that was not shown.
+finds the events that lead to the nearest situation that was not shown.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
         return super().begin()
 
     def execute(self, action: Action) -> Outcome:
-        """Let the robot carry out an action, and what is needed next happen."""
+        """Carry out an action of the robot, then the next event of the plan."""
         if not self.over:
             target = None if action.target == EVERYBODY else action.target
             self.taught.show(self.observe(), action.behaviour.name, target)

@@ -115,11 +115,11 @@ class DeclaredWorld:
         return Outcome(done.completed, seconds + PAUSE, (), response, speech, image)
 
     def who(self, place: str) -> str:
-        """Return who sits at somebody's place, which here is always theirs."""
+        """Return who sits at a person's place; here always that person."""
         return place
 
     def scene(self) -> Scene:
-        """Return what there is to see in the room."""
+        """Return the scene for a screen to draw."""
         game = self.game
         doing = {
             one: self._did.get(one, "asks for help" if one in game.queue else "watches")

@@ -183,7 +183,7 @@ class FaultyWorld(SimulatedWorld):
             if kind.name not in self.present:
                 self._set_in(kind, self.seconds)
 
-    # ----------------------------------------------------------------- what is done meanwhile
+    # --------------------------------------------------------------------- remedies meanwhile
 
     def execute(self, action: Action) -> Outcome:
         """Let the robot try to carry out an action."""

@@ -28,9 +28,9 @@ Some = TypeVar("Some")
 class GuidedWorld(SimulatedWorld):
     """A simulated world that sees to it that one game shows all that its activity can bring about.
 
-    It does so for a teacher who does what is expected, and goes on offering what lacks to one who
-    does not. Nobody wins before, as long as a number is left that fills no line on somebody's
-    card. People err and ask when they get a cue, one at a time, and not by the user model's rates.
+    This holds for a teacher who does the expected; for others it goes on offering the missing
+    situations. Nobody wins before that, as long as a number is left that completes no line. People
+    err and ask on a cue, one at a time, not at the user model's rates.
 
     Where an `after` stage can come with and without a request, one game shows one of the two, and
     the game of the next seed the other. The same seed and the same actions give the same states
@@ -66,7 +66,7 @@ class GuidedWorld(SimulatedWorld):
 
     @property
     def coming(self) -> Arranged | None:
-        """What is about to come about, until somebody has asked."""
+        """The coming situation, until a person has asked."""
         cue = self.cue
         if cue is None or cue.asked:
             return None
@@ -81,7 +81,7 @@ class GuidedWorld(SimulatedWorld):
     # ------------------------------------------------------------------------ which number comes
 
     def _prepare_line(self) -> SimulatedUser:
-        """Put all but one number of somebody's line among the first: a win can come in time."""
+        """Draw all but one number of a person's line early, so that a win can come in time."""
         deck, uniform = self.activity.deck, self._guide
         player = self._pick(tuple(self.players.values()))
         numbers = list(player.cells(self._pick(deck.lines) & ~deck.free))
@@ -176,7 +176,7 @@ class GuidedWorld(SimulatedWorld):
     def _let_people_ask(self) -> None:
         """After every behaviour: let those act, and then ask, whose cue it is."""
         if not self.plan.drawing and self.tracker.place == FRONT:
-            self._beats += 1  # where nothing is called, what is done at the front is counted
+            self._beats += 1  # without calls, count the behaviours at the front
             self._give_cue()
         if self.plan.ended(self.tracker):
             self._ask_at_the_end()
@@ -211,7 +211,7 @@ class GuidedWorld(SimulatedWorld):
                 self._mark_as(player, player.called)
 
     def _mark_as(self, player: SimulatedUser, cells: int) -> None:
-        """Let a person notice by themselves what is wrong, and mend it."""
+        """Let a person notice their mistakes by themselves, and correct them."""
         if player.marked != cells:
             verb = "clears marks" if player.marked & ~cells else "marks"
             player.marked = cells

@@ -43,7 +43,7 @@ class Cue:
 
 
 class GuidedPlan:
-    """What was shown of an activity in one game, what lacks, and what is to be shown next."""
+    """The situations of an activity shown in one game, the missing ones, and the next one."""
 
     def __init__(self, activity: Activity, uniform: Callable[[], float]) -> None:
         self.activity = activity
@@ -94,7 +94,7 @@ class GuidedPlan:
         return sorted(found, key=lambda state: (state.checker == LINE, self.tried[state.name]))
 
     def wanted(self, spent: bool) -> CardState | None:
-        """Return what somebody's card is to show next, or None while only calls are lacking.
+        """Return the next situation for a person's card; None while only calls are missing.
 
         Args:
             spent: nothing but an end can come about any more (no numbers are left to show it).
@@ -125,7 +125,7 @@ class GuidedPlan:
         return self.lacks_hidden and (len(others) < 2 or share < chance)
 
     def gap(self, calls: int, share: float) -> int:
-        """Return how many calls to let pass: visits are spread evenly over what is left.
+        """Return how many calls to let pass: visits are spread evenly over the rest of the game.
 
         Args:
             calls: how many there were in this game.

@@ -121,7 +121,7 @@ def read_injection(text: str) -> Injection:
     """Read `KIND`, `KIND@step`, `KIND~probability` or `KIND@recovery`.
 
     Raises:
-        TangyError: one sentence that says what is wrong, and the nearest kind.
+        TangyError: the problem in one sentence, and the nearest kind.
     """
     for sign in "@~":
         name, found, when = text.partition(sign)

@@ -8,7 +8,7 @@ from tangy_sim.worlds.injection import Injection, Kind
 
 
 class ToCome:
-    """What is to be brought about in one game and has not been yet."""
+    """Injections of one game that are still pending."""
 
     def __init__(self, injections: Sequence[Injection], chance: Callable[[], float]) -> None:
         """Begin a game; `chance` draws a number from 0 to 1 for those that come by chance."""

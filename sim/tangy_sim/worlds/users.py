@@ -61,7 +61,7 @@ def load_users(path: Path | None = None) -> UserModel:
 
 
 class SimulatedUser:
-    """One simulated person at the table: a card, what is marked on it, what comes next."""
+    """One simulated person at the table: a card, its marks, and the next actions."""
 
     __slots__ = ("asks_at", "called", "cell", "deck", "did", "id", "marked", "numbers", "slips_at")
 

@@ -133,7 +133,7 @@ class SimulatedWorld(PlannedGame):
         return self._now * self.users.call_seconds - self._sooner
 
     def who(self, place: str) -> str:
-        """Return who sits at somebody's place, which here is always theirs."""
+        """Return who sits at a person's place; here always that person."""
         return place
 
     def scene(self) -> Scene:
@@ -279,7 +279,7 @@ class SimulatedWorld(PlannedGame):
         return self._correct(lambda player: player.called & ~player.marked, "marks")
 
     def _correct(self, errors: Callable[[SimulatedUser], int], verb: str) -> tuple[int, ...] | None:
-        """Let the person beside the robot mend what is seen on the card, if anything."""
+        """Let the person beside the robot correct the mistakes seen on the card, if any."""
         if self.tracker.seen is None:
             return None
         player = self.players[self.tracker.place]
@@ -327,7 +327,7 @@ class SimulatedWorld(PlannedGame):
         return self.players[holder].numbers if holder else None
 
     def holder(self, card: int) -> str:
-        """Return who has a card, "" where there is none of that number."""
+        """Return who has a card; "" if there is no card of that number."""
         return self.people[card - 1] if 1 <= card <= len(self.people) else ""
 
     def _play_pattern(self) -> None:
