@@ -201,7 +201,7 @@ class Activity:
         """The teams that take turns, where people do not play each for themselves."""
         return ()
 
-    def whom_expected(self, situation: Situation) -> str | None:
+    def expected_selector(self, situation: Situation) -> str | None:
         """Return the expected selector of a behaviour's person, if one is named."""
         return None
 

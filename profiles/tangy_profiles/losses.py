@@ -46,7 +46,7 @@ def unnoticed(
     return [] if loss in noted else [loss]
 
 
-def wrong_counts(rows: Rows, losses: Iterable[EventsLost]) -> Iterator[str]:
+def count_mismatches(rows: Rows, losses: Iterable[EventsLost]) -> Iterator[str]:
     """Yield a sentence for each count of the log that does not fit the others."""
     for events, last, different, answers, indexed, guards in rows(COUNTS):
         if not events == different == last - _missing(rows, losses):

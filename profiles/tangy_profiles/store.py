@@ -24,7 +24,7 @@ from tangy_profiles.erased_log import count_left, erase_from_log
 from tangy_profiles.errors import ProfileError, StoreError
 from tangy_profiles.events import EventRecord, read_record
 from tangy_profiles.log_file import FILE, NAMING, LogFile
-from tangy_profiles.losses import SEALED, loss_words, newest, unnoticed, wrong_counts
+from tangy_profiles.losses import SEALED, count_mismatches, loss_words, newest, unnoticed
 from tangy_profiles.people_records import EventsLost, LossAccepted, PersonForgotten, Renamed
 from tangy_profiles.people_records import SpeechNoted as SpeechNoted
 from tangy_profiles.person import read_name
@@ -320,7 +320,7 @@ class Store:
         try:
             found = [" ".join(row.split()) for (row,) in self._rows("PRAGMA quick_check")]
             wrong += [f"{FILE}: {words}." for words in found if words != "ok"]
-            wrong += wrong_counts(self._rows, (e.record for e in self.events(EventsLost)))
+            wrong += count_mismatches(self._rows, (e.record for e in self.events(EventsLost)))
             wrong += map(loss_words, self._unaccepted())
             deque(self.events(), maxlen=0)
         except StoreError as error:

@@ -29,7 +29,7 @@ class DemonstrationBegun(EventRecord):
     kept: Sparse[Count | None] = None
 
     @classmethod
-    def of_shown(cls, shown: Demonstration, kept: int | None = None) -> Self:
+    def from_demonstration(cls, shown: Demonstration, kept: int | None = None) -> Self:
         """Return what the log keeps of a demonstration that begins, with so many steps `kept`."""
         own = ("activity", "teacher", "seed", "people", "guided", "origin", "of")
         about: dict[str, Any] = {name: getattr(shown, name) for name in own}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
 from tangy_profiles.behaviour import Action
-from tangy_profiles.declared.told import Telling
+from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.state import ActivityState
 from tangy_sim.worlds import injection
 from tangy_sim.worlds.injection import Kind
@@ -32,5 +32,5 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         """Hear what people of the bench have done since."""
         acts = self.truth()["acts"]
         for fact, who, raw in acts[self._passed_on :]:
-            self.take(Observed(Telling(fact, who or None, raw), 1.0, "staff"))
+            self.take(Observed(TypedObservation(fact, who or None, raw), 1.0, "staff"))
         self._passed_on = len(acts)

@@ -88,7 +88,7 @@ class LiveGames:
         self.seconds += world.link.time - since
         self.faults += fault_documents(game.faults, stopped)
         if isinstance(world, BenchedWorld):
-            self.tally.add_injections(world.came, world.still_to_come)
+            self.tally.add_injections(world.came, world.pending_injections)
             came = world.injection_log.all
             self.scores.append(score_game(self.tally.games, came, game.faults, game.book))
 

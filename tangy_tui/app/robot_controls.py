@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tangy_hw.robot_process.stop_latch import STAFF
-from tangy_profiles.declared.told import sayable
+from tangy_profiles.declared.typed_observations import sayable
 from tangy_tui.app.game_commands import (
     LONGEST_DRIVE,
     TWISTS,

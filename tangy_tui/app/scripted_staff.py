@@ -58,7 +58,7 @@ def _answer(control: GameController) -> list[Result]:
     if expected is None:
         return list(control.give_up())
     behaviour = activity.behaviour(expected)
-    selector = activity.whom_expected(question.state.situation)
+    selector = activity.expected_selector(question.state.situation)
     target = question.state.attended if behaviour.attends else None
     if behaviour.to:
         whom = dict(question.state.whom).get(selector or "")

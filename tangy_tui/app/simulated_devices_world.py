@@ -118,7 +118,7 @@ class BenchedWorld(LiveWorld):
         return state
 
     @property
-    def still_to_come(self) -> list[str]:
+    def pending_injections(self) -> list[str]:
         """The injections that have not come about in this game, but for those by chance."""
         return self._to_come.words
 

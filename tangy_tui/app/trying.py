@@ -47,7 +47,7 @@ def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]
         if expected is None:
             raise TangyError(f"{activity.source}: nothing is expected here: {situation}.")
         behaviour = activity.behaviours[expected]
-        selector = activity.whom_expected(state.situation)
+        selector = activity.expected_selector(state.situation)
         whom = dict(state.whom).get(selector or "") or (
             None if selector else first_addressee(behaviour, state)
         )

@@ -105,7 +105,7 @@ def supervised(course: Course) -> Iterator[Supervised]:
 
 def keep(store: Store, shown: Demonstration) -> None:
     """Write a demonstration into a log, as if it had been given in the program."""
-    store.append(DemonstrationBegun.of_shown(shown))
+    store.append(DemonstrationBegun.from_demonstration(shown))
     for step in shown.steps:
         store.append(DemonstrationStep(demonstration=shown.id, step=step))
     store.append(DemonstrationFinished(demonstration=shown.id))

@@ -13,7 +13,7 @@ from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import shown_steps
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policies import kept_policies, load_policy, place_of
+from tangy_tui.learning.policies import load_policy, place_of, stored_policies
 from tangy_tui.learning.policy import Decision, Policy, learn_policy
 
 
@@ -40,7 +40,7 @@ def compare(activity: Activity, a: Policy, b: Policy) -> list[SituationCompariso
 
 def choices(store: Store, activity: Activity) -> list[str]:
     """Return what can be compared: names of policies, the latest first, and of teachers."""
-    names = [kept.name for kept in reversed(kept_policies(store, activity.name))]
+    names = [kept.name for kept in reversed(stored_policies(store, activity.name))]
     teachers = _teachers(read_library(store, activity.name).finished)
     return list(dict.fromkeys([*names, *teachers]))
 
@@ -57,7 +57,7 @@ def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, 
         TangyError: nothing matches; names the nearest one.
     """
     kind, _, name = wanted.partition(":") if ":" in wanted else ("", "", wanted)
-    kept = kept_policies(store, activity.name)
+    kept = stored_policies(store, activity.name)
     known = {one.name for one in kept}
     if kind != "teacher" and (
         place_of(name) is not None

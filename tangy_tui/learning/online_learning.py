@@ -128,7 +128,7 @@ class OnlineLearning:
         made = Demonstration(
             new_id(), self._activity.name, teacher, seed, people, finished=True, origin="asked"
         )
-        self._store.append(DemonstrationBegun.of_shown(made))
+        self._store.append(DemonstrationBegun.from_demonstration(made))
         id = self._store.append(DemonstrationStep(demonstration=made.id, step=step))
         self._store.append(DemonstrationFinished(demonstration=made.id))
         return replace(made, steps=(replace(step, id=id),))

@@ -50,7 +50,7 @@ def keep_policy(store: Store, policy: Policy) -> None:
     store.append(policy.record())
 
 
-def kept_policies(store: Store, activity: str) -> list[PolicyLearnt]:
+def stored_policies(store: Store, activity: str) -> list[PolicyLearnt]:
     """Return what was kept of every policy of an activity, oldest first."""
     return [
         replace(event.record, at=event.at)
@@ -61,7 +61,7 @@ def kept_policies(store: Store, activity: str) -> list[PolicyLearnt]:
 
 def last_policy(store: Store, activity: str) -> PolicyLearnt | None:
     """Return what was kept of the last policy of an activity, or None."""
-    kept = kept_policies(store, activity)
+    kept = stored_policies(store, activity)
     return kept[-1] if kept else None
 
 
@@ -74,7 +74,7 @@ def need_policy(store: Store, activity: Activity, wanted: str = "") -> PolicyLea
     Raises:
         NoPolicy: none has been learnt, says how to; or there is none of that name.
     """
-    kept = kept_policies(store, activity.name)
+    kept = stored_policies(store, activity.name)
     if not kept:
         raise NoPolicy(
             f"Tangy has not learnt {activity.title} yet: "
@@ -115,7 +115,7 @@ def check_name(name: str) -> None:
 
 def unused_name(store: Store, policy: Policy) -> Policy:
     """Give a policy that is only named by count a name that no other one has."""
-    taken = {kept.name: kept.digest for kept in kept_policies(store, policy.activity)}
+    taken = {kept.name: kept.digest for kept in stored_policies(store, policy.activity)}
     name, count = policy.name, 1
     while policy.named_by_count and taken.get(name, policy.digest) != policy.digest:
         count += 1

@@ -47,7 +47,7 @@ class ScriptedTeacher:
         """Return for whom, in words, where that is not whom the behaviour is for by itself."""
         teaching, activity = self._teaching, self._teaching.activity
         state = teaching.world.observe()
-        selector = activity.whom_expected(state.situation)
+        selector = activity.expected_selector(state.situation)
         if selector is None:
             return ""
         person = EVERYBODY if selector == "group" else dict(state.whom).get(selector, EVERYBODY)

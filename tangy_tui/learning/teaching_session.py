@@ -352,7 +352,7 @@ class TeachingSession:
         """Log the demonstration with its first step, so that looking in leaves no empty one."""
         if not self._logged:
             kept = len(self.demonstration.steps)
-            self._store.append(DemonstrationBegun.of_shown(self.demonstration, kept=kept))
+            self._store.append(DemonstrationBegun.from_demonstration(self.demonstration, kept=kept))
 
     def _undo(self) -> list[TeachingEvent]:
         if not self.demonstration.steps:

@@ -188,7 +188,7 @@ def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
 def _near(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
     """Tell of phrases that are easily taken for others, because just one phone is different."""
     if can_look_up():
-        for alike in Lexicon(phrasebook).nearly_alike():
+        for alike in Lexicon(phrasebook).confusable_phrases():
             if alike.phrase.bare != alike.other.bare:
                 yield _collision(activity, phrasebook, alike, "one sound alone tells it from")
 

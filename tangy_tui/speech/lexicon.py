@@ -86,7 +86,7 @@ class Lexicon:
             dict.fromkeys(p.said for p in self.phrases if self._known(p) and p.said not in out)
         )
 
-    def nearly_alike(self) -> tuple[Alike, ...]:
+    def confusable_phrases(self) -> tuple[Alike, ...]:
         """Return the phrases of one behaviour that one phone tells from those of another.
 
         They can be heard, and are easily mistaken; it looks at every way to say each.

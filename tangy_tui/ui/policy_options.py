@@ -5,7 +5,7 @@ from __future__ import annotations
 from tangy_profiles.activity import Activity
 from tangy_profiles.store import Store
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policies import kept_policies
+from tangy_tui.learning.policies import stored_policies
 from tangy_tui.text.numbers import counted
 from tangy_tui.ui.dialogs.choose import Option
 
@@ -16,7 +16,7 @@ DIGEST_SHOWN = 8
 def policy_options(store: Store, activity: Activity) -> list[Option]:
     """Return every kept policy once, the latest first."""
     found: dict[str, Option] = {}
-    for kept in reversed(kept_policies(store, activity.name)):
+    for kept in reversed(stored_policies(store, activity.name)):
         digest = kept.digest
         shown = counted(len(kept.demonstrations), "demonstration")
         when = kept.at[:16].replace("T", " ")

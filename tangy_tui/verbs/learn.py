@@ -198,10 +198,10 @@ def _show(workspace: Workspace, name: str, as_json: bool) -> None:
 
 
 def _list_policies(workspace: Workspace, as_json: bool) -> None:
-    from tangy_tui.learning.policies import kept_policies
+    from tangy_tui.learning.policies import stored_policies
     from tangy_tui.ui import reports
 
-    kept = kept_policies(workspace.store, workspace.activity.name)
+    kept = stored_policies(workspace.store, workspace.activity.name)
     if as_json:
         told = ("name", "at", "digest", "demonstrations", "versions")
         print_json([{key: getattr(one, key) for key in told} for one in kept])

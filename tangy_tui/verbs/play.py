@@ -232,7 +232,7 @@ def _play_headless(
                 lessons += [event.lesson for event in events if isinstance(event, Taught)]
         world = supervision.world
         if isinstance(world, FaultyWorld):
-            tally.add_injections(world.came, world.still_to_come)
+            tally.add_injections(world.came, world.pending_injections)
             came = world.injection_log.all
             scores.append(score_game(tally.games, came, supervision.faults, supervision.book))
         faults += fault_documents(supervision.faults, stopped)

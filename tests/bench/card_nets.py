@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_hw.perception.cards.classifier import TURNS, Net, as_parts, turned
+from tangy_hw.perception.cards.classifier import TURNS, Net, softmax, turned
 
 Real: TypeAlias = NDArray[Any]
 Layers: TypeAlias = "list[list[Real]]"
@@ -94,7 +94,7 @@ def _slopes(layers: Layers, x: Real, wanted: Real, known: Real | None) -> Layers
         if place < len(layers) - 1:
             x = np.maximum(x, 0)
         inside.append(x)
-    back = (as_parts(x if known is None else x + known) - wanted) / len(x)
+    back = (softmax(x if known is None else x + known) - wanted) / len(x)
     slopes: Layers = []
     for place in range(len(layers) - 1, -1, -1):
         slopes.insert(0, [inside[place].T @ back, back.sum(0)])

@@ -12,7 +12,7 @@ from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.declared_live_world import PAUSE_SECONDS, DeclaredLiveWorld, Observed
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.told import Telling
+from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import Outcome
@@ -175,7 +175,7 @@ def test_the_same_observations_give_the_same_facts_as_in_the_simulated_room(
             act: Act = data.draw(st.sampled_from(could), "act")
             said = raw(game, game.declaration.facts[act.fact], act.value)
             game.observe(act.fact, act.who, said)
-            world.take(Observed(Telling(act.fact, act.who, said), 1.0, "staff"))
+            world.take(Observed(TypedObservation(act.fact, act.who, said), 1.0, "staff"))
         world.observe()
         assert (world.game.values, world.game.seen()) == (game.values, game.seen())
         assert world.game.queue == game.queue

@@ -47,7 +47,7 @@ def test_selectors_that_disagree_are_asked_about_once(tmp_path: Path) -> None:
     assert policy.whom["repeat", REPEAT] == ("first asking", "whose turn")
     with Store.open(tmp_path, write=True) as store:
         with store.transaction():
-            store.append(DemonstrationBegun.of_shown(replace(shown, steps=()), kept=0))
+            store.append(DemonstrationBegun.from_demonstration(replace(shown, steps=()), kept=0))
             for step in shown.steps:
                 shown_step = DemonstrationStep(
                     demonstration=shown.id, step=step, heard="", confidence=1.0

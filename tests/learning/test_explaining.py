@@ -26,7 +26,7 @@ from tangy_tui.learning.conflicts import find_conflicts
 from tangy_tui.learning.coverage import coverage, missing_words
 from tangy_tui.learning.explanation import explain, foresee
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policies import keep_policy, kept_policies
+from tangy_tui.learning.policies import keep_policy, stored_policies
 from tangy_tui.learning.policy import ForestSettings, NothingToLearnFrom, learn_policy
 from tangy_tui.text.decisions import shown_words, why_words
 from tests.support.append_body import append_body
@@ -230,7 +230,7 @@ def test_a_house_opens_all_of_it_by_name(taught: Path) -> None:
     workspace = Workspace(taught, write=False)
     try:
         store, activity = workspace.store, workspace.activity
-        (kept,) = kept_policies(store, activity.name)
+        (kept,) = stored_policies(store, activity.name)
         assert choices(store, activity) == [kept.name, "scripted"]
         found = {name: find_policy(store, activity, name) for name in choices(store, activity)}
         assert [notices for _, notices in found.values()] == [[], []]

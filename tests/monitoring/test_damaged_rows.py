@@ -26,7 +26,7 @@ from tangy_tui.doctor import examine
 from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.learning.demonstration_rows import heard_words, list_rows
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policies import changes, kept_policies, load_policy
+from tangy_tui.learning.policies import changes, load_policy, stored_policies
 from tangy_tui.monitoring.accepted import expected_effects, read_accepted
 from tangy_tui.monitoring.drill_log import last_sheet, read_sheets
 from tangy_tui.monitoring.games import read_games, uncleared
@@ -112,7 +112,7 @@ def read_all(folder: Path) -> None:
         last_sheet(store)
         try:
             policy, _ = load_policy(store, workspace.activity)
-            [changes(kept, policy) for kept in kept_policies(store, name)]
+            [changes(kept, policy) for kept in stored_policies(store, name)]
             expected_effects(store, workspace.activity, policy)
         except TangyError as error:
             assert str(error).endswith(".")  # a sentence

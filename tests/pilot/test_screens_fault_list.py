@@ -227,7 +227,7 @@ async def test_what_is_still_to_come_can_be_lifted(
         assert "to come: enter lifts it" in pilot.text()
         await pilot.press("enter")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
-        assert not world.still_to_come
+        assert not world.pending_injections
 
 
 async def test_all_kinds_can_be_chosen(run: Run) -> None:

@@ -27,7 +27,7 @@ def test_people_understand_every_sentence_and_which_item_it_is_about(name: str, 
     while not world.over:
         state = world.observe()
         behaviour = activity.behaviours[activity.expected[state.situation]]
-        selector = activity.whom_expected(state.situation)
+        selector = activity.expected_selector(state.situation)
         whom = dict(state.whom).get(selector or "", first_addressee(behaviour, state))
         outcome = world.execute(activity.action(behaviour, whom, None))
         found = ears.hear(with_names(outcome.speech, lambda id: NAMES[id]))

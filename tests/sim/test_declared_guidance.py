@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tangy_profiles.activity import load_activity
-from tangy_profiles.declared.activity import DeclaredActivity, made_activity
+from tangy_profiles.declared.activity import DeclaredActivity, build_activity
 from tangy_profiles.declared.search import reach
 from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
 from tangy_profiles.declared.vocabulary import Selector
@@ -20,7 +20,7 @@ MOST_STEPS = 400
 
 
 def whom(activity: DeclaredActivity, state: ActivityState, behaviour: str) -> str | None:
-    selector: Selector | None = activity.whom_expected(state.situation)
+    selector: Selector | None = activity.expected_selector(state.situation)
     if selector is None:
         return first_addressee(activity.behaviours[behaviour], state)
     return dict(state.whom).get(selector)
@@ -91,7 +91,7 @@ def test_a_search_names_what_was_not_shown() -> None:
 def test_other_words_for_everything_change_nothing(name: str, *, guided: bool) -> None:
     activity = declared(name)
     declaration, old = renamed(activity.declaration)
-    other = made_activity(declaration)
+    other = build_activity(declaration)
     players = activity.teams or ("user1", "user2", "user3")
 
     def told(one: DeclaredActivity) -> list[tuple[str, str, str | None, str]]:

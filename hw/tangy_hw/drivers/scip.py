@@ -20,11 +20,11 @@ from tangy_hw.drivers.scip_codec import (
     ScipReply,
     decode,
     decode_all,
-    found_again,
     joined,
     named,
     optics,
     parse,
+    reply_from_echo,
     split,
     trouble,
 )
@@ -249,7 +249,7 @@ class ScipLaser:
                 whole, self._rest = split(self._rest + came)
                 self._replies.extend(whole)
             came = self._replies.popleft()
-            reply = found_again(came, echo)
+            reply = reply_from_echo(came, echo)
             if reply is not came:
                 self._damaged()
             try:

@@ -130,7 +130,7 @@ def split(buffer: bytes) -> tuple[list[bytes], bytes]:
     return [one.lstrip(b"\n") for one in whole if one.strip(b"\n")], rest
 
 
-def found_again(reply: bytes, echo: bytes) -> bytes:
+def reply_from_echo(reply: bytes, echo: bytes) -> bytes:
     """Return a reply from its echo on, without what stands before that.
 
     Before it may be noise from a bad cable, or the rest of a reply that lost its end. A reply

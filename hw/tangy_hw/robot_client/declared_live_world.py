@@ -20,7 +20,7 @@ from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.speech import with_names, words
-from tangy_profiles.declared.told import Telling, meant
+from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.past_game import NotResumable, PastGame
 from tangy_profiles.scene import Scene
@@ -38,7 +38,7 @@ PATIENCES = 2.0  # windows of patience after which it is taken that a person doe
 class Observed(NamedTuple):
     """Something that was observed of a person: what was told, how sure that is, and by what."""
 
-    told: Telling
+    told: TypedObservation
     certainty: float
     source: str
 

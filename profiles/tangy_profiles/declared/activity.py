@@ -86,7 +86,7 @@ class DeclaredActivity(Activity):
                 return one
         return None
 
-    def whom_expected(self, situation: Situation) -> Selector | None:
+    def expected_selector(self, situation: Situation) -> Selector | None:
         """Return whom a test expects the behaviour to be for, None where it is not said."""
         found = self.expectation(situation)
         return found.to if found is not None else None
@@ -98,10 +98,10 @@ def read_declared(path: Path) -> DeclaredActivity:
     Raises:
         ProfileError: the file has mistakes; says the first, and how many more there are.
     """
-    return made_activity(read_declaration(path))
+    return build_activity(read_declaration(path))
 
 
-def made_activity(declaration: Declaration) -> DeclaredActivity:
+def build_activity(declaration: Declaration) -> DeclaredActivity:
     """Make what the program plays of what a file declares.
 
     Raises:

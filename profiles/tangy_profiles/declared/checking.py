@@ -113,7 +113,7 @@ def expected_moves(activity: DeclaredActivity) -> ShownMoves:
     for situation, behaviour in activity.expected.items():
         shown.shown[situation] = behaviour
         to = activity.behaviours[behaviour].to
-        selector = activity.whom_expected(situation) or (to[0] if to else None)
+        selector = activity.expected_selector(situation) or (to[0] if to else None)
         if selector is not None:
             named = EVERYBODY if selector == "group" else selector
             shown.whom[situation.stage, behaviour] = (named,)

@@ -82,7 +82,7 @@ class FaultyWorld(SimulatedWorld):
         return state
 
     @property
-    def still_to_come(self) -> list[str]:
+    def pending_injections(self) -> list[str]:
         """The injections that have not come about in this game, but for those by chance."""
         return self._to_come.words
 

@@ -19,7 +19,7 @@ from textual.screen import Screen
 
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_profiles.declared.told import about, sayable
+from tangy_profiles.declared.typed_observations import about, sayable
 from tangy_profiles.errors import TangyError
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import FRONT

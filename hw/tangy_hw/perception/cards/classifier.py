@@ -94,7 +94,7 @@ def outputs(net: Net, values: Real) -> Real:
     return values
 
 
-def as_parts(values: Real) -> Real:
+def softmax(values: Real) -> Real:
     """Make probabilities of what a net gives."""
     import numpy as np
 
@@ -129,7 +129,7 @@ def seen_alone(nets: tuple[Net, ...], scaled: Real) -> Real:
     for turn in range(TURNS):
         values = scaled[:, turned(turn)]
         for net in nets:
-            total += as_parts(outputs(net, values))
+            total += softmax(outputs(net, values))
     return total / (len(nets) * TURNS)
 
 
@@ -150,7 +150,7 @@ def seen_among(nets: tuple[Net, ...], scaled: Real, known: Real, temperature: fl
     """Return the probabilities whose logarithms by the cell alone are `known`, corrected."""
     import numpy as np
 
-    parts = [as_parts((outputs(net, scaled) + known) / temperature) for net in nets]
+    parts = [softmax((outputs(net, scaled) + known) / temperature) for net in nets]
     told: Real = np.mean(parts, 0)
     return told
 

@@ -1,6 +1,6 @@
-"""What somebody tells of a person in a game: which fact it is about, and what it says of it.
+"""Observations that staff type or say during a game: a fact, its player and its value.
 
-Staff type or say it, in words of the activity's file: an answer ("B", "honey"), a value ("match"),
+They use the words of the activity's file: an answer ("B", "honey"), a value ("match"),
 a fact ("tired", "not tired"), or a fact with its value ("mood sad").
 """
 
@@ -20,7 +20,7 @@ BETWEEN = ("is", "has", "gives")
 """Words that may stand before a fact or a value, and add nothing."""
 
 
-class Telling(NamedTuple):
+class TypedObservation(NamedTuple):
     """A typed observation: the fact, its player (None: the group), and its value."""
 
     fact: str
@@ -33,7 +33,7 @@ def can_be_told(game: DeclaredGame) -> tuple[Fact, ...]:
     return tuple(one for one in game.declaration.facts.values() if one.sources)
 
 
-def meant(game: DeclaredGame, who: str | None, words: str) -> Telling | None:
+def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation | None:
     """Return what words say of a player, or of the group (None).
 
     An option of the present item goes before a value, a value before a fact, and all of them before
@@ -51,14 +51,14 @@ def meant(game: DeclaredGame, who: str | None, words: str) -> Telling | None:
     if not said:
         return None
     if said in ASKS and who is not None:
-        return Telling(ASKING, who, YES)
+        return TypedObservation(ASKING, who, YES)
     facts = can_be_told(game)
     for fact, raw in (*_answers(game, facts, words), *_values(facts, said)):
         whose = who if fact.per_player else None
         if fact.per_player and whose is None:
             whose = about(game)
         if whose is not None or not fact.per_player:
-            return Telling(fact.name, whose, raw)
+            return TypedObservation(fact.name, whose, raw)
     return None
 
 

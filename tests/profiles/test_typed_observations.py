@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.told import Telling, meant, sayable
+from tangy_profiles.declared.typed_observations import TypedObservation, meant, sayable
 from tests.support.declared import declared
 
 PLAYERS = ("user1", "user2", "user3")
@@ -29,7 +29,7 @@ def test_an_answer_is_a_letter_or_the_words(said: str) -> None:
 
 def test_words_that_name_nobody_are_about_whose_turn_it_is() -> None:
     game = _game("trivia", "welcome everyone", "ask question")
-    assert meant(game, None, "mars") == Telling("answer", "user1", "mars")
+    assert meant(game, None, "mars") == TypedObservation("answer", "user1", "mars")
 
 
 @pytest.mark.parametrize("said", ["jupiter", "", "?", "none of them"])
@@ -57,7 +57,7 @@ def test_a_fact_or_a_value_is_enough(activity: str, said: str, fact: str, raw: s
 
 
 def test_a_fact_of_the_group_is_nobodys() -> None:
-    assert meant(_game("memory"), "user2", "miss") == Telling("cards", None, "miss")
+    assert meant(_game("memory"), "user2", "miss") == TypedObservation("cards", None, "miss")
 
 
 def test_what_can_be_said_are_the_options_and_the_facts() -> None:
