@@ -239,7 +239,7 @@ class Activity:
     def words_of(
         self, action: Action, outcome: Outcome, name: Callable[[str], str]
     ) -> tuple[str, str]:
-        """Return what was said and shown by an action, "" where it lacks its numbers."""
+        """Return what was said and shown by an action, "" if it lacks its numbers."""
         called = name(action.target) if action.target is not None else ""
         return (
             self.fill(action.speech, called, outcome.numbers),
@@ -247,7 +247,7 @@ class Activity:
         )
 
     def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
-        """Put name and numbers into a text; "" where it needs numbers and there are none."""
+        """Put name and numbers into a text; "" if it needs numbers and there are none."""
         if not numbers and ("{numbers}" in template or "{call}" in template):
             return ""
         labels = [self.deck.label(number) for number in numbers]

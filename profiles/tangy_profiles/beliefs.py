@@ -23,7 +23,7 @@ class Beta:
     """A Beta(alpha, beta) belief about the probability that a person complies with a strategy.
 
     `counts` are the responses it rests on, (complied, did not), where alpha and beta hold more
-    or less than these: what earlier people lent it, or what was forgotten since. None where they
+    or less than these: what earlier people lent it, or what was forgotten since. None if they
     are alpha - 1 and beta - 1, as in the paper.
     """
 
@@ -115,7 +115,7 @@ def probability_best(beliefs: Mapping[str, Beta]) -> dict[str, float]:
 
 
 def leading(best: Mapping[str, float]) -> str | None:
-    """Return the strategy of the highest probability of being best; None where no single one is."""
+    """Return the strategy of the highest probability of being best; None if no single one is."""
     top = max(best.values(), default=0.0)
     leaders = [strategy for strategy, share in best.items() if share > top - 1e-9]
     return leaders[0] if len(leaders) == 1 else None

@@ -35,7 +35,7 @@ class Contact:
 
 
 def read_contact(top: Table, key: Role) -> Contact | None:
-    """Read whom the robot's file names for a role, None where it names nobody.
+    """Read whom the robot's file names for a role, None if it names nobody.
 
     Raises:
         ProfileError: a value of it is none, or there are both a command and a URL.

@@ -9,7 +9,7 @@ from tangy_profiles.codec import Sparse, Unlogged
 from tangy_profiles.state import ActivityState, Situation
 
 Origin = Literal["shown", "again", "asked", "merged", "split"]
-"""How a demonstration came about: shown in a game, shown again from a step of an earlier one,
+"""Origin of a demonstration: shown in a game, shown again from a step of an earlier one,
 answered when Tangy asked in a game, or made of others."""
 
 

@@ -55,7 +55,7 @@ class AnsweredRound:
 
     @property
     def cleared_right(self) -> bool | None:
-        """Whether it was known if Tangy may be cleared; None where that was not asked."""
+        """Whether it was known if Tangy may be cleared; None if that was not asked."""
         return None if self.may_clear is None else self.cleared == self.may_clear
 
     @property
@@ -110,7 +110,7 @@ class Sheet:
 
     @property
     def median(self) -> float | None:
-        """The median time that a round took, in s; None where none was answered."""
+        """The median time that a round took, in s; None if none was answered."""
         from statistics import median  # not needed for the first screen, which looks at the points
 
         return median(one.seconds for one in self.answered) if self.answered else None

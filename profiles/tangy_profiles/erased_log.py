@@ -81,7 +81,7 @@ def _without(kind: str, text: str, eraser: NameEraser) -> str:
 
 
 def _table(text: str) -> dict[str, Any] | None:
-    """Read the text of a body; None where it is no JSON, or no table."""
+    """Read the text of a body; None if it is no JSON, or no table."""
     try:
         body = json.loads(text)
     except (ValueError, RecursionError):

@@ -69,7 +69,7 @@ class CallsFirst:
 
 @dataclass(frozen=True)
 class GameRules:
-    """What an activity offers staff to choose for a game; "" and 0 where it has no such rule.
+    """What an activity offers staff to choose for a game; "" and 0 if it has no such rule.
 
     `claim` is the word before the number of a card that is said to win; `claim_right`,
     `claim_wrong`, `taken_back` and `play_on` are said to the group. Somebody who was not visited

@@ -23,7 +23,7 @@ PLAYED_WORLDS: tuple[GameWorld, ...] = tuple(w for w in GAME_WORLDS if w != UNKN
 
 
 def game_world(value: Any) -> GameWorld | None:
-    """Return the world that a log or a file names; None where it names none that there is."""
+    """Return the world that a log or a file names; None if it names none that there is."""
     return next((world for world in GAME_WORLDS if world == value), None)
 
 

@@ -31,7 +31,7 @@ class Reading(NamedTuple):
 
     `age` is how long ago, in s, its newest data came; `state` is what the device says of itself;
     `facts` are what it measures (which ones there are, the robot's profile says). `rate` is how
-    often a second data comes; None where nobody counts, or not for long enough.
+    often a second data comes; None if nobody counts, or not for long enough.
     """
 
     device: str

@@ -32,7 +32,7 @@ def unnoticed(
 
     Args:
         rows: queries the log.
-        sealed: whose log the count is of, and its newest event; None where it cannot be read.
+        sealed: whose log the count is of, and its newest event; None if it cannot be read.
         noted: the losses that are.
     """
     meta = dict(rows("SELECT key, value FROM meta WHERE key IN ('robot', 'sealed')"))

@@ -158,7 +158,7 @@ class PastGame:
         """Return the numbers that were called and count, in their order."""
         draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
         called = [n for step in self.steps if step.behaviour in draws for n in step.numbers]
-        for number in self.taken_back:  # one that came again later stands there once more
+        for number in self.taken_back:  # one that came again later stands there again
             if number in called:
                 called.remove(number)
         return called

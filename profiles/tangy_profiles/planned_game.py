@@ -49,7 +49,7 @@ class PlannedGame:
     away: frozenset[str] = frozenset()
     """Who has left, or has not come yet."""
     visiting = ""
-    """Who gets a visit without having asked, "" where nobody does."""
+    """Who gets a visit without having asked, "" if nobody does."""
     _visited: dict[str, int]
     _row_began: float
     """When the visits since the last call began, in s of `seconds`."""
@@ -101,11 +101,11 @@ class PlannedGame:
         raise NotImplementedError
 
     def numbers_on(self, card: int) -> tuple[int, ...] | None:
-        """Return the numbers of a card row by row, None where there is no such card."""
+        """Return the numbers of a card row by row, None if there is no such card."""
         raise NotImplementedError
 
     def holder(self, card: int) -> str:
-        """Return who has a card, "" where nobody is known to."""
+        """Return who has a card, "" if nobody is known to."""
         raise NotImplementedError
 
     def wins(self, card: int) -> bool | None:
@@ -243,5 +243,5 @@ class PlannedGame:
 
 
 def as_planned(world: object) -> PlannedGame | None:
-    """Return a world as staff plan its games, None where it has no cards to plan by."""
+    """Return a world as staff plan its games, None if it has no cards to plan by."""
     return world if isinstance(world, PlannedGame) and world.activity.deck.columns else None

@@ -83,7 +83,7 @@ class DeviceProfile:
     Data older than `fault_after` s is a fault; younger data makes the robot wait.
 
     Of each fact the profile says in words of the staff what it is, and which values it can have.
-    `source` is where the pictures of a camera come from, "" where that is said elsewhere or it is
+    `source` is where the pictures of a camera come from, "" if that is said elsewhere or it is
     no camera: 0 or /dev/video0, http://..., rtsp://..., or a file or folder, which may be relative
     to the robot's file. `looks_at` is the subject of the pictures, one of `LOOKS_AT` or "".
     """

@@ -200,7 +200,7 @@ def room_for(people: int) -> Room:
 
 
 def _words(table: Table, key: str) -> str:
-    """Take lower-case words, as they are spoken; "" where there are none."""
+    """Take lower-case words, as they are spoken; "" if there are none."""
     words = table.text(key, "")
     if words and not re.fullmatch(r"[a-z']+( [a-z']+)*", words):
         raise table.wrong(key, "must be lower-case words, as they are spoken.")

@@ -43,7 +43,7 @@ class Event(NamedTuple, Generic[R]):
 class BadRow(Exception):
     """A row that is not as Tangy writes it; the text says why.
 
-    `event` is the event with an empty body where all but the body can be read, and None where
+    `event` is the event with an empty body where all but the body can be read, and None if
     the row says nothing that can be relied on.
     """
 

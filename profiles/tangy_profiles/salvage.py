@@ -22,7 +22,7 @@ SALVAGE = "salvage-"
 WINDOW = 4096  # events that are tried at once
 MOST_HALVED = 50_000  # some seconds; after that the rest is read as far as it is in order
 LEAST_BYTES = 60  # of an event
-MOST_RANGES = 50  # that are told apart; more are told as one
+MOST_RANGES = 50  # that are distinguished; more are told as one
 
 Range = tuple[int, int]
 """The first and the last of some events."""
@@ -111,7 +111,7 @@ def _events(old: sqlite3.Connection, newest: int) -> Iterator[tuple[Any, ...]]:
 
 
 def _rows_in_order(old: sqlite3.Connection, low: int, high: int) -> list[tuple[Any, ...]]:
-    """Return the rows of a range, up to one that is out of order; none where it is refused."""
+    """Return the rows of a range, up to one that is out of order; none if it is refused."""
     try:
         rows = old.execute(_EVENTS, (low, high)).fetchall()
     except sqlite3.Error:

@@ -85,7 +85,7 @@ def _files(folder: Path) -> Iterator[Path]:
 def _erasing(
     folder: Path, path: Path, content: bytes, eraser: NameEraser
 ) -> Callable[[bytes], bytes] | None:
-    """Return what erases the name from a file that Tangy wrote; None where others wrote it."""
+    """Return what erases the name from a file that Tangy wrote; None if others wrote it."""
     is_copy = path.parent == folder and _COPY.match(path.name)
     if is_copy or (path.parent.parent == folder and path.parent.name.startswith(SALVAGE)):
         return eraser.overwrite

@@ -28,7 +28,7 @@ class Seal:
     def read(self) -> tuple[str, int] | None:
         """Return whose log it counts (its robot), and the seq of the newest event that was kept.
 
-        None where nobody can tell: there is no count, or it is damaged.
+        None if nobody can tell: there is no count, or it is damaged.
         """
         try:
             robot, seq, sum = self.path.read_bytes().decode("ascii").split()

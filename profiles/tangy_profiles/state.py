@@ -72,7 +72,7 @@ class ActivityState(NamedTuple):
     users: tuple[UserState, ...]
     closed: str | None = None
     facts: Sparse[tuple[tuple[str, str], ...]] = ()
-    """Of an activity that is declared by facts: each fact with its value."""
+    """Of an activity declared by facts: each fact with its value."""
     whom: Sparse[tuple[tuple[str, str], ...]] = ()
     """Of such an activity: each selector that names a person now, with the person."""
 
@@ -105,7 +105,7 @@ class ActivityState(NamedTuple):
         """Read a state that is plainly as it should be: most of a log are states.
 
         Returns:
-            The state, or None where the codec must look closely.
+            The state, or None if the codec must look closely.
         """
         try:
             if "facts" in value or "whom" in value:

@@ -369,7 +369,7 @@ class Store:
         self._seal.write(self.robot, newest(self._rows))
 
     def _rows(self, sql: str, *values: object) -> list[Any]:
-        """Return all rows of a query; none where there is no log yet."""
+        """Return all rows of a query; none if there is no log yet."""
         with self._lock, self.file.in_words():
             if self._closed:
                 raise self.file.wrong("is closed")

@@ -76,7 +76,7 @@ class Tracker:
 
     @property
     def finished(self) -> bool:
-        """Whether what the game is played for has come about: only its `after` stage is left."""
+        """Whether what the game is played for has occurred: only its `after` stage is left."""
         return any(self._counts[name] for name in self._closers)
 
     def set_aside(self, person: str) -> None:

@@ -57,7 +57,7 @@ class Command:
 
     `arguments` is empty or names the person to go to ({"user": id}); `confidence` runs from 0 to
     1; `heard` is the text it was understood from; `alternatives` are up to three other
-    behaviours, likeliest first, none where the text is a phrase as it stands.
+    behaviours, likeliest first, none if the text is a phrase as it stands.
     """
 
     behaviour: str

@@ -57,7 +57,7 @@ class Paraphrases:
         return 1.0 if forbids(mentioned.words) else self._likely(mentioned.words).get("", 0.0)
 
     def meanings(self, words: Words) -> tuple[Meaning, ...]:
-        """Return up to three meanings, the likeliest first; none where words ask for nothing."""
+        """Return up to three meanings, the likeliest first; none if words ask for nothing."""
         mentioned = self._mentions.find(words)
         if not bare(mentioned.words) or forbids(mentioned.words):
             return ()

@@ -22,7 +22,7 @@ to_espeak = espeak_phones.to_espeak
 def pronounce(word: str) -> tuple[str, ...]:
     """Return the pronunciations that the dictionary has of a word, the usual one first.
 
-    There are none where it does not have the word, or is not installed. The first call reads the
+    There are none if it does not have the word, or is not installed. The first call reads the
     dictionary, 3 MB, in 20 ms; each takes some 0.1 ms.
     """
     text, key = dictionary(), word.casefold()
@@ -45,7 +45,7 @@ def can_look_up() -> bool:
 def suggest(word: str, which: Callable[[str], str | None] = shutil.which) -> str:
     """Guess how a word is pronounced: as espeak-ng would say it, else from its spelling.
 
-    "" where neither knows (a word in another script). Some 10 ms with
+    "" if neither knows (a word in another script). Some 10 ms with
     espeak-ng, 50 ms without.
     """
     latin = all(letter == "'" or "LATIN" in unicodedata.name(letter, "") for letter in word)

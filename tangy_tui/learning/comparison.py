@@ -34,7 +34,7 @@ class SituationComparison:
 
 
 def compare(activity: Activity, a: Policy, b: Policy) -> list[SituationComparison]:
-    """Return what two policies decide in every situation that can come about."""
+    """Return what two policies decide in every situation that can occur."""
     return [SituationComparison(s, a.decide(s), b.decide(s)) for s in activity.situations]
 
 

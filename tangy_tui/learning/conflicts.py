@@ -72,7 +72,7 @@ def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[Shown]:
 def find_conflicts(
     demonstrations: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
 ) -> list[Conflict]:
-    """Return the conflicts that no resolution settles, in the order in which they came about.
+    """Return the conflicts that no resolution settles, in the order in which they occurred.
 
     Two answers that were both called right are no conflict; a step with another answer, made
     since, is one.

@@ -39,7 +39,7 @@ class Contradictions:
     def found(self, now: Shown) -> Shown | None:
         """Take a new step; return the last one that was shown differently, if it is news.
 
-        None where nothing else was shown, where a teacher has said that this answer is right, or
+        None if nothing else was shown, where a teacher has said that this answer is right, or
         where these two answers were found to differ before.
         """
         situation, behaviour = now.step.state.situation, now.step.behaviour

@@ -35,7 +35,7 @@ class Coverage:
 
 
 def coverage(activity: Activity, demonstrations: Iterable[Demonstration]) -> Coverage:
-    """Count the steps shown in each situation that can come about."""
+    """Count the steps shown in each situation that can occur."""
     counts = Counter(shown.step.state.situation for shown in shown_steps(demonstrations))
     return Coverage({situation: counts[situation] for situation in activity.situations})
 

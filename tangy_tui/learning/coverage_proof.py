@@ -12,7 +12,7 @@ from tangy_tui.learning.policy import Policy
 
 
 def prove_coverage(activity: Activity, policy: Policy, players: Sequence[str]) -> Reach | None:
-    """Search the games that can come about where Tangy does what it is sure of.
+    """Search the games that can occur where Tangy does what it is sure of.
 
     Args:
         activity: the activity to search.
@@ -20,7 +20,7 @@ def prove_coverage(activity: Activity, policy: Policy, players: Sequence[str]) -
         players: those who take turns.
 
     Returns:
-        What can come about, and in which of it Tangy would ask; None for an activity with cards,
+        What can occur, and in which of it Tangy would ask; None for an activity with cards,
         whose situations its stage rules tell.
     """
     if not isinstance(activity, DeclaredActivity):

@@ -18,7 +18,7 @@ from tangy_tui.learning.quality import quality_notes
 class ListRow:
     """One demonstration: `number` in the list (from 1), who showed it, when (UTC, ISO 8601).
 
-    `seen` of the `situations` of the activity come about in it; `state` says whether it is learnt
+    `seen` of the `situations` of the activity occur in it; `state` says whether it is learnt
     from ("in use"), and if not, why; `notes` are what else is to be known of it.
     """
 

@@ -268,7 +268,7 @@ def grown(
 def encoder(situations: Sequence[Situation]) -> Callable[[Situation], list[float]]:
     """Return the one-hot encoding of a situation (stage, request, user state) among all of them.
 
-    Of an activity that is declared by facts, each fact of the user state is encoded by itself.
+    Of an activity declared by facts, each fact of the user state is encoded by itself.
     """
     features = {
         situation: [

@@ -46,7 +46,7 @@ def quality_notes(
 
 
 def _origin(shown: Demonstration, library: Library) -> Iterator[str]:
-    """Say how it came about, unless it was shown in a game from the beginning."""
+    """Name its origin, unless it was shown in a game from the beginning."""
     sources = [library.number(id) for id in shown.of if id in library.entries]
     match shown.origin:
         case "asked":

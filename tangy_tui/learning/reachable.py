@@ -16,7 +16,7 @@ def joint_states(activity: Activity, people: Sequence[str]) -> Iterator[Activity
     In words: one for each stage without requests; every set of requests with the robot at the
     front or beside somebody who does not ask; the robot beside somebody who asks, for every user
     state and every set of other requests; and the same after the win. With Bingo's stages that
-    is 242 for four people. Of an activity that is declared by facts there are none here: its
+    is 242 for four people. Of an activity declared by facts there are none here: its
     states are searched (`coverage_proof`).
     """
     for rule in () if isinstance(activity, DeclaredActivity) else activity.stage_rules:

@@ -106,7 +106,7 @@ class Remarks:
         """Note what a teacher says of the open remark, as when its conflict is settled later.
 
         Returns:
-            What was settled; None where there is no remark that could be.
+            What was settled; None if there is no remark that could be.
         """
         remark, self.open = self.open, None
         if remark is None:

@@ -117,7 +117,7 @@ class Overlooked:
     number: int
     step: Step
     due: str | None
-    """None where the rules of the activity name no behaviour."""
+    """None if the rules of the activity name no behaviour."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,7 +81,7 @@ def _shown_effects(store: Store, activity: Activity, policy: Policy) -> Effects:
     """Learn the effects from a policy's demonstrations, and from answers only what none shows.
 
     Who answers in a game says what to do there, and not that whatever followed is all right: it
-    may be the fault itself that was seen once more.
+    may be the fault itself that was seen again.
     """
     entries = read_library(store, activity.name).entries
     used = [entries[id].demonstration for id in policy.demonstrations if id in entries]

@@ -76,7 +76,7 @@ class Calls:
             wait: for how many s the first news is waited for.
 
         Returns:
-            How it stands, None where the robot's file names nobody who can be called.
+            How it stands, None if the robot's file names nobody who can be called.
         """
         contact = self._contacts[role]
         if contact is None or not contact.reachable:

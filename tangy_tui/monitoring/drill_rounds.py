@@ -123,7 +123,7 @@ class Round:
     """One round as a screen shows it, with the right answers.
 
     `noticed` is the evidence in words, `devices` all devices by label with their states, `choices`
-    the codes that are offered as names. `fault` and `rule` are None where nothing is wrong; `quiet`
+    the codes that are offered as names. `fault` and `rule` are None if nothing is wrong; `quiet`
     then says what caught the eye.
     """
 
@@ -143,7 +143,7 @@ class Round:
 
     @property
     def code(self) -> str:
-        """The diagnosis that is right; "" where nothing is wrong."""
+        """The diagnosis that is right; "" if nothing is wrong."""
         return "" if self.rule is None else self.rule.code
 
     @property
@@ -188,7 +188,7 @@ class Tabletop:
     def play(self, number: int, kind: RoundKind, rng: Random) -> Round:
         """Play games until what was drawn can be seen, and nothing else.
 
-        What cannot come about in this activity is replaced by something of the same class.
+        What cannot occur in this activity is replaced by something of the same class.
 
         Raises:
             TangyError: nothing at all can be rehearsed.
@@ -278,7 +278,7 @@ class Tabletop:
         acted: Acted | None,
         rng: Random,
     ) -> Round:
-        """Make a round of a fault that has come about in a game."""
+        """Make a round of a fault that has occurred in a game."""
         rule, world = self.book.rule(fault.code), game.world
         shown = Round(
             number,

@@ -23,7 +23,7 @@ def fault_rows(faults: Iterable[Fault]) -> list[dict[str, Any]]:
     All of the paper's rows are there. `instances` counts every given fault; leave out those that
     only ask (`Fault.asks_only`) where a question is no fault. `success` is the share, from 0 to 1,
     that is over, or that Tangy goes on with as planned, by the first recovery itself: a fault that
-    was handed on to another one is no success. It is None where there was no instance.
+    was handed on to another one is no success. It is None if there was no instance.
     """
     done: dict[tuple[str, str], list[bool]] = {row: [] for row in ROWS}
     for fault in faults:

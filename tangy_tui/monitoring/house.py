@@ -159,7 +159,7 @@ def people_over_time(
     """Put together what each person got, in the order of their names.
 
     Who was given the same name in the logs of several robots is taken for the same person. Who has
-    none is told apart by robot.
+    none is distinguished by robot.
     """
     found: dict[tuple[str, str], PersonOverTime] = {}
     for log, replay in games:

@@ -280,7 +280,7 @@ class Recovery:
         )
 
     def leave_to_staff(self, person: str) -> None:
-        """Close a person's request once more for whom an earlier fault was left to staff."""
+        """Close a person's request again for whom an earlier fault was left to staff."""
         for fault in self.faults:
             rule = self._rules[fault.id]
             if fault.person == person and rule.remedy == LEAVE_TO_STAFF:

@@ -64,7 +64,7 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class AnsweredRequest:
-    """What a person did about a request; None where that was not known in the game."""
+    """What a person did about a request; None if that was not known in the game."""
 
     uuid: str
     person: str

@@ -33,12 +33,12 @@ class ScoredInjection:
     seen: int | None
     named: int | None
     called: str
-    """The code of the fault that it was taken for first, "" where it was not seen."""
+    """The code of the fault that it was taken for first, "" if it was not seen."""
     recovered: float | None
     """The s from its diagnosis until it was over, or Tangy went on with it."""
 
     def to_json(self) -> dict[str, Any]:
-        """Return it as `--json` lists it; `step` is when it came about."""
+        """Return it as `--json` lists it; `step` is when it occurred."""
         return {
             "game": self.game,
             "fault": self.kind,

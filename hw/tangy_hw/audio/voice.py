@@ -58,7 +58,7 @@ class SpeechVoice:
             deck: whose calls are said as a caller says them.
             usual: rate and voice where a line has no preference.
             on_begin: is called before sound comes out (a microphone is shut).
-            on_end: is called when no more comes, however that came about (it is opened).
+            on_end: is called when no more comes, for any reason (it is opened).
             tell: is called with a sentence about what went wrong, once for each.
         """
         self._synthesiser = synthesiser

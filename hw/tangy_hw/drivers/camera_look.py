@@ -25,7 +25,7 @@ class Look(NamedTuple):
     """One picture as it was measured.
 
     `stamp` is of the monotonic clock, in s; `fingerprint` is the same for the very same picture.
-    `sharpness` is None where nothing in the picture could be sharp.
+    `sharpness` is None if nothing in the picture could be sharp.
     """
 
     seq: int

@@ -94,7 +94,7 @@ class RosPictures:
 
 
 def decoded(text: str | bytes, topic: str) -> Image | None:
-    """Return the picture (BGR) in a message of rosbridge; None where it has none of that topic."""
+    """Return the picture (BGR) in a message of rosbridge; None if it has none of that topic."""
     import cv2
     import numpy as np
 

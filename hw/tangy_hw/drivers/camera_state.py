@@ -47,7 +47,7 @@ class Sight:
 
     `age` is of the newest picture and `unchanged` since it first came, in s; `seconds` is for how
     long the state has lasted. The measures are None before there was a picture. `rate` is how
-    many pictures come in a second, None where that cannot be told.
+    many pictures come in a second, None if that cannot be told.
     """
 
     state: State

@@ -56,7 +56,7 @@ class DriverSettings:
             raise self.wrong(f"{key}: {error}") from None
 
     def pose(self, key: str) -> Pose:
-        """Take a pose as "X, Y, HEADING" in metres and radians; all are 0 where it is left out."""
+        """Take a pose as "X, Y, HEADING" in metres and radians; all are 0 if it is left out."""
         try:
             x, y, heading = map(float, self.text(key, "0, 0, 0").split(","))
         except ValueError:

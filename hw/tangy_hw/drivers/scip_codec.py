@@ -117,7 +117,7 @@ def checked(line: bytes) -> bytes:
 def split(buffer: bytes) -> tuple[list[bytes], bytes]:
     """Cut what came into whole replies, and the beginning of the next.
 
-    Replies that came together are told apart, and one that came in pieces is put together by
+    Replies that came together are distinguished, and one that came in pieces is put together by
     giving the rest back with what comes after it.
 
     Raises:

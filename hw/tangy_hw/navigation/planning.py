@@ -36,7 +36,7 @@ YIELD, YIELD_WITHIN = 6.0, 0.45
 """How much dearer a metre is where somebody walks, and in how many metres that falls to a third."""
 STEP = 0.05  # metres between the points of a path
 OUT = 0.5  # metres by which a robot that stands too near to something may get away from it
-SLACK = 0.1  # metres: two cells, within which an end and its surroundings are told apart
+SLACK = 0.1  # metres: two cells, within which an end and its surroundings are distinguished
 
 
 class PlanError(TangyError):
@@ -45,7 +45,7 @@ class PlanError(TangyError):
 
 @dataclass(frozen=True, eq=False)
 class Costs:
-    """What a metre costs in each cell (rows, columns); inf where the robot would touch something.
+    """What a metre costs in each cell (rows, columns); inf if the robot would touch something.
 
     `distance` is how far the nearest obstacle is, in metres.
     """

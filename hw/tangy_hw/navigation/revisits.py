@@ -104,7 +104,7 @@ def _off(
     later: int,
     chosen: Sequence[int],
 ) -> float | None:
-    """Return how far a scan's pose is from where older ones put it; None where none does."""
+    """Return how far a scan's pose is from where older ones put it; None if none does."""
     best: tuple[float, float] | None = None
     one = scans[later]
     driven = way[later] - way[chosen]

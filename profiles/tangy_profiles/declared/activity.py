@@ -74,7 +74,7 @@ class DeclaredActivity(Activity):
         return with_names(outcome.speech, name), with_names(outcome.image, name)
 
     def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
-        """Put a name into a text; "" where it needs what only a game knows."""
+        """Put a name into a text; "" if it needs what only a game knows."""
         text = template.replace("{name}", name)
         return "" if SLOT.search(text) else text
 
@@ -87,7 +87,7 @@ class DeclaredActivity(Activity):
         return None
 
     def expected_selector(self, situation: Situation) -> Selector | None:
-        """Return whom a test expects the behaviour to be for, None where it is not said."""
+        """Return whom a test expects the behaviour to be for, None if it is not said."""
         found = self.expectation(situation)
         return found.to if found is not None else None
 

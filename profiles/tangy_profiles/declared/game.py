@@ -154,7 +154,7 @@ class DeclaredGame:
         return enough if condition.comparison == ">=" else not enough
 
     def whom(self, selector: Selector) -> str | None:
-        """Return whom a selector names now, None where that is nobody, or the group."""
+        """Return whom a selector names now, None if that is nobody, or the group."""
         match selector:
             case "group":
                 return None
@@ -204,7 +204,7 @@ class DeclaredGame:
 
         Args:
             name: the fact that it is about.
-            who: the player, None where it is of the group.
+            who: the player, None if it is of the group.
             raw: a value, or the answer that a person gave.
             certainty: how sure it is, as a probability.
 

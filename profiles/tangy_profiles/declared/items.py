@@ -27,7 +27,7 @@ def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[
         path: the CSV file.
 
     Returns:
-        The rows as they are, the header first; none where it cannot be read.
+        The rows as they are, the header first; none if it cannot be read.
     """
     try:
         content = read_given(path, LARGEST_TABLE, ProfileError, called=plain(path.name))

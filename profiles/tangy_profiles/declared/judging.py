@@ -39,7 +39,7 @@ def judged(fact: Fact, items: Items, row: int, raw: str, certainty: float) -> st
         certainty: how sure the observation is, as a probability.
 
     Returns:
-        The value, or None where the observation is not sure, or says nothing of the fact.
+        The value, or None if the observation is not sure, or says nothing of the fact.
     """
     if certainty < CERTAIN:
         return None

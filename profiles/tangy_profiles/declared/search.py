@@ -124,7 +124,7 @@ class Reach:
 
 
 def nearest_event(game: DeclaredGame, taught: ShownMoves, most: int = MOST_AHEAD) -> Event | None:
-    """Return what should happen now so that the nearest situation not shown comes about.
+    """Return what should happen now so that the nearest situation not shown occurs.
 
     What ends a game comes last. None: nothing can be reached that was not shown.
     """
@@ -180,7 +180,7 @@ def explore(
 
     Args:
         game: where the search begins.
-        moves: the behaviours that may be done in a state; none where nothing was shown.
+        moves: the behaviours that may be done in a state; none if nothing was shown.
         situation: gives the situation of a state.
         most: the states that are looked at.
     """
@@ -264,7 +264,7 @@ def _until_next_band(game: DeclaredGame) -> float | None:
 
 
 def reach(declaration: Declaration, players: Sequence[str], taught: ShownMoves) -> Reach:
-    """Search every game that can come about by what was taught.
+    """Search every game that can occur by what was taught.
 
     Args:
         declaration: the activity.

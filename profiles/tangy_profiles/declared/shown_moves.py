@@ -55,7 +55,7 @@ class ShownMoves:
         return self._situations[seen]
 
     def move(self, game: DeclaredGame) -> Move | None:
-        """Return what follows from what was shown, None where nobody has shown it.
+        """Return what follows from what was shown, None if nobody has shown it.
 
         A behaviour whose selectors name different people is (UNDECIDED, None).
         """

@@ -61,7 +61,7 @@ def situations(declaration: Declaration) -> Iterator[Situation]:
 
 
 def told(condition: FactCondition, facts: Mapping[str, str]) -> bool | None:
-    """Say whether a condition holds by the facts that are known, None where they do not tell."""
+    """Say whether a condition holds by the facts that are known, None if they do not tell."""
     if condition.quantifier or condition.comparison in (">=", "<"):
         return None
     value = facts.get(condition.fact)

@@ -22,7 +22,7 @@ def filled(game: DeclaredGame, template: str, whom: str | None) -> str:
         whom: the player who is spoken to, None for the group.
 
     Returns:
-        The text, in which people stand by their ids (see `with_names`); "" where a slot that it
+        The text, in which people stand by their ids (see `with_names`); "" if a slot that it
         needs is empty.
     """
     empty = False

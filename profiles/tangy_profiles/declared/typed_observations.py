@@ -41,7 +41,7 @@ def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation |
 
     Args:
         game: the game, with its present item.
-        who: the player they are about, None where nobody is named.
+        who: the player they are about, None if nobody is named.
         words: what was typed or heard.
 
     Returns:

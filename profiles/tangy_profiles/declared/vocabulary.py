@@ -63,9 +63,9 @@ BUILT_IN: dict[str, tuple[str, ...]] = {
 NO, YES = "no", "yes"
 
 MARKS = ("facts", "flags", "items", "people")
-"""Keys by which the file of an activity that is declared by facts is known."""
+"""Keys by which the file of an activity declared by facts is known."""
 
 
 def declares(keys: Iterable[str]) -> bool:
-    """Say whether a file's keys are those of an activity that is declared by facts."""
+    """Say whether a file's keys are those of an activity declared by facts."""
     return any(key in MARKS for key in keys)

@@ -1,4 +1,4 @@
-"""The bench's people in an activity that is declared by facts.
+"""The bench's people in an activity declared by facts.
 
 They follow the game by what the robot says, with the same interpreter, and do things some seconds
 after it has spoken, by the chances of the activity's file. The wish for help is a sign; what else

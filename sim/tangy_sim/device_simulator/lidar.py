@@ -60,7 +60,7 @@ def cast(x: float, y: float, angles: Real, segments: Real, circles: Real) -> Rea
         circles: (c, 3) x, y and radius of round things.
 
     Returns:
-        (n,) metres; inf where nothing is hit. Of a circle around the place the inside is seen.
+        (n,) metres; inf if nothing is hit. Of a circle around the place the inside is seen.
     """
     dx, dy = np.cos(angles)[:, None], np.sin(angles)[:, None]
     ax, ay = segments[:, 0] - x, segments[:, 1] - y

@@ -24,7 +24,7 @@ BEGINS, EACH = 1.0, 0.06  # s before the first word, and for each letter
 class Heard:
     """A sentence that was understood.
 
-    Of a behaviour: how it was put (`strategy`), to whom (an id, or "" where nobody is named), with
+    Of a behaviour: how it was put (`strategy`), to whom (an id, or "" if nobody is named), with
     which numbers. Of a call for help: the code of the `fault`, and whom it is about.
     """
 

@@ -88,6 +88,6 @@ class Tablet:
         head = {"Cookie": self._cookie}
         answers.request("POST", f"/seen?page=bench&number={number}", headers=head)
         answers.getresponse().read()
-        if kind == "show" and int(number) > self._number:  # and not the same once more
+        if kind == "show" and int(number) > self._number:  # and not the same again
             self._number = int(number)
             self._shown(str(self.picture["text"]))

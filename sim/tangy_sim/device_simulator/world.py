@@ -179,7 +179,7 @@ class BenchWorld:
     # ------------------------------------------------------------------------ where it is
 
     def nearest(self) -> str:
-        """Return the place at which the robot stands; "" where it is at none."""
+        """Return the place at which the robot stands; "" if it is at none."""
         pose = self.wheels.pose
         for place, point in self._stands.items():
             if hypot(point.x - pose.x, point.y - pose.y) <= ARRIVES:

@@ -60,7 +60,7 @@ class Client:
             self.topics.pop(topic, None)
 
     def is_due(self, topic: str, now: float) -> bool:
-        """Whether a message of a topic is to be sent now (s); it counts as sent then."""
+        """Whether a message of a topic should be sent now (s); it counts as sent then."""
         if topic not in self.topics:
             return False
         throttle = min(seconds for seconds, _ in self.topics[topic].values())

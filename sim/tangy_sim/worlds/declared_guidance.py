@@ -1,6 +1,6 @@
 """A guided game of any declared activity: what happens is what nobody has shown yet.
 
-Left to chance, some situations come about in one game of many. Here a search in the interpreter
+Left to chance, some situations occur in one game of many. Here a search in the interpreter
 finds the events that lead to the nearest situation that was not shown.
 """
 

@@ -83,7 +83,7 @@ class FaultyWorld(SimulatedWorld):
 
     @property
     def pending_injections(self) -> list[str]:
-        """The injections that have not come about in this game, but for those by chance."""
+        """The injections that have not occurred in this game, but for those by chance."""
         return self._to_come.words
 
     # ------------------------------------------------------------------- faults come and go

@@ -97,7 +97,7 @@ class GuidedPlan:
         """Return the next situation for a person's card; None while only calls are missing.
 
         Args:
-            spent: nothing but an end can come about any more (no numbers are left to show it).
+            spent: nothing but an end can occur any more (no numbers are left to show it).
         """
         visits = self.visits()
         final = [s for s in self._kinds if s.name in self._final]

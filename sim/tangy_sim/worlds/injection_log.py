@@ -10,7 +10,7 @@ from tangy_sim.worlds.injection import AT_ONCE, Kind
 
 @dataclass
 class Injected:
-    """A fault that came about: its kind, at which step, and after how many s of the world's time.
+    """A fault that occurred: its kind, at which step, and after how many s of the world's time.
 
     `could_show` is the first step from which it could be noticed, None as long as it could not.
     """

@@ -18,7 +18,7 @@ class ToCome:
 
     @property
     def words(self) -> list[str]:
-        """The injections that have not come about, but for those by chance."""
+        """The injections that have not occurred, but for those by chance."""
         return [str(one) for one in self._left if one.chance is None]
 
     def add(self, kind: Kind) -> None:
