@@ -1,4 +1,4 @@
-"""What Tangy knows: activities, robots, rooms and people, and the store of what happened."""
+"""Tangy's data: activities, robots, rooms and people, and the log of events."""
 
 import logging
 

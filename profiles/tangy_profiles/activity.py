@@ -79,7 +79,7 @@ class Activity:
     source: str
     persuasion: PersuasionConfig = PAPER
     object: str = "card"
-    """What people handle, as they call it."""
+    """The object people handle, in their words."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """How words of the phrases are pronounced, in place of what the dictionary says of them."""
     listening: str = LISTENING[0]
@@ -161,7 +161,7 @@ class Activity:
 
     @cached_property
     def situations(self) -> tuple[Situation, ...]:
-        """All triples the stage rules can bring about, from the opening to the end.
+        """All triples that the stage rules can reach, from the opening to the end.
 
         Before the first `before` rule is passed nobody can have asked; beside a requester every
         user state can be seen; a `requested or away` stage comes with and without a request; so

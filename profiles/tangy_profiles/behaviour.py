@@ -19,7 +19,7 @@ from tangy_profiles.reading import Table, nearest
 CLOSINGS = ("never", "always", "when correct")
 PLACES = ("front", "attended", "here")
 SLOTS = ("name", "call", "numbers")
-"""What a speech or a screen may have filled in: {name}, {call}, {numbers}."""
+"""Slots in texts for voice and screen: {name}, {call}, {numbers}."""
 
 
 @dataclass(frozen=True)

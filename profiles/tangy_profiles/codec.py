@@ -44,7 +44,7 @@ class Unreadable(ValueError):
 
 
 class By(NamedTuple):
-    """What reads a value in place of its type."""
+    """Reads a value instead of its type."""
 
     reader: Reader
 

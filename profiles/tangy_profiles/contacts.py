@@ -1,4 +1,4 @@
-"""Who is called about a robot: the expert for what staff cannot mend, and staff themselves."""
+"""Contacts for a robot: the expert for faults that staff cannot clear, and staff."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What holds where nobody says otherwise: the activity, and the strategies that press people."""
+"""Defaults: the activity, and the strategies that press people."""
 
 from __future__ import annotations
 

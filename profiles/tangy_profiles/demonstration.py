@@ -43,7 +43,7 @@ def not_the_same(before: ActivityState, after: ActivityState | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """What a teacher said of a conflict: the right answers, and the steps that are wrong by it.
+    """A teacher's resolution of a conflict: the right answers, and the steps it makes wrong.
 
     Only the steps that were reviewed are set aside: a different answer shown later is a new
     conflict. An answer in `right` that nobody demonstrated is learnt all the same.
@@ -66,7 +66,7 @@ class Resolution:
 
 @dataclass(frozen=True, slots=True)
 class Demonstration:
-    """What a teacher showed in one game: who, which activity and world, and the ordered steps.
+    """A teacher's demonstration in one game: teacher, activity, world, and the ordered steps.
 
     `seed`, `people` and `guided` make the simulated world again, so that a demonstration can be
     resumed; `of` names the demonstrations that it was made from.

@@ -45,7 +45,7 @@ class AnsweredRound:
 
     @property
     def named_right(self) -> bool:
-        """Whether it was called what it was."""
+        """Whether the fault was named correctly."""
         return self.named == self.code
 
     @property
@@ -100,7 +100,7 @@ class Sheet:
 
     @property
     def points(self) -> int:
-        """All points."""
+        """The sum of the points."""
         return sum(one.points for one in self.answered)
 
     @property
@@ -127,7 +127,7 @@ class Sheet:
 
     @property
     def again(self) -> tuple[AnsweredRound, ...]:
-        """What to rehearse again: each fault once in which something was wrong."""
+        """Faults to rehearse again: each with a mistake, once."""
         wrong = {one.code: one for one in self.answered if one.points < one.most}
         return tuple(wrong.values())
 

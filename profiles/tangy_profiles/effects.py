@@ -1,4 +1,4 @@
-"""What behaviours do to the world: a closed set, among which an activity chooses.
+"""Effects of behaviours on the world: a closed set, from which an activity chooses.
 
 Each world matches every one of them, so that mypy names the places where a new one is forgotten.
 """

@@ -53,7 +53,7 @@ _HTML = re.compile(
 _HEARD = (
     rb'("target":"%b"(?:(?!"heard":|\dT\d\d:).){0,4000}"heard":")((?:[^"\\\x00-\x1f]|\\.)*)(?=")'
 )
-"""What was heard for a person, in the bytes of a log, before the time of another event."""
+"""Words heard for a person, in the bytes of a log, before the time of another event."""
 _SHOWN = re.compile(
     r"""(?i)\b(title|alt|aria-label|content|value|label)(\s*=\s*)("[^"]*"|'[^']*')"""
 )

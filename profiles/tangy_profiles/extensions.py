@@ -1,4 +1,4 @@
-"""What other packages add to Tangy by entry points: drivers, activities, methods of persuasion.
+"""Extensions by other packages through entry points: drivers, activities, methods of persuasion.
 
 A package is never imported before what it adds is asked for by its name. What has the name of
 something of our own is not used, and `problems` tells it.

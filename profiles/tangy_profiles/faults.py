@@ -60,14 +60,14 @@ SYMPTOMS: Mapping[str, str] = MappingProxyType(
 """Symptoms that no device reports: they come from the world state and the execution."""
 
 SLOTS = ("name", "object", "why")
-"""What the texts of a rule may have filled in: the person, what people handle, the evidence."""
+"""Slots in the texts of a rule: the person, the object people handle, the evidence."""
 
 Evidence = Mapping[str, Fact]
 """Everything known at one moment, by dotted key: `laser.age`, `mismatch.card`, ..."""
 
 
 class Remedy(NamedTuple):
-    """What a world is to do about a fault.
+    """A remedy for a world to carry out against a fault.
 
     `kind` is one of OWN_REMEDIES, or: `halt` and `resume` moving, `ask` people for help (say the
     speech, show the image), `call expert`, or `look again` whether it is gone, when staff say so.
@@ -162,7 +162,7 @@ class FaultRule:
 
     @property
     def critical(self) -> bool:
-        """Whether the robot must stand still until an expert has seen to it."""
+        """Whether the robot must stand still until an expert has cleared it."""
         return self.criticality == CRITICAL
 
     @property

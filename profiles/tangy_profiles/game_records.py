@@ -39,11 +39,11 @@ class GameBeginning(EventRecord):
     strength: Sparse[str] = ""
     absent: Sparse[tuple[str, ...]] = ()
     pace: Sparse[float] = 0.0
-    """What staff chose for it, as `GamePlan` has it; empty where nothing was chosen."""
+    """Staff's options for it, as in `GamePlan`; empty if they chose none."""
 
     @property
     def plan(self) -> GamePlan:
-        """What staff chose for it."""
+        """Staff's options for it."""
         return GamePlan(
             self.patterns, self.several, self.visits, self.strength, self.absent, self.pace
         )
@@ -96,7 +96,7 @@ ChangeKind = Literal[
     "visits off",
     "pace",
 ]
-"""What can change in a game beside its behaviours."""
+"""Kinds of changes in a game beside its behaviours."""
 
 
 @kind("game change")
@@ -219,7 +219,7 @@ MoveKind = Literal[
     "given up",
     "left open",
 ]
-"""What can be done about a fault."""
+"""Kinds of moves against a fault."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,7 +241,7 @@ class RecoveryEvent:
 
 
 NAME = "{name}"
-"""What stands for a person's name in the log, from which names can be forgotten."""
+"""Replaces a person's name in the log, so that names can be forgotten."""
 
 
 def named(text: str, name: str) -> str:
@@ -259,7 +259,7 @@ class FaultMove(EventRecord):
 
 
 CallStage = Literal["tried", "sent", "answered", "failed"]
-"""What became of a call; a person is reached only when they have answered."""
+"""Outcome of a call; a person is reached only when they have answered."""
 
 
 @kind("call")

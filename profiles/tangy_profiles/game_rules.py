@@ -69,7 +69,7 @@ class CallsFirst:
 
 @dataclass(frozen=True)
 class GameRules:
-    """What an activity offers staff to choose for a game; "" and 0 if it has no such rule.
+    """Options that an activity offers staff for a game; "" and 0 if it has no such rule.
 
     `claim` is the word before the number of a card that is said to win; `claim_right`,
     `claim_wrong`, `taken_back` and `play_on` are said to the group. Somebody who was not visited
@@ -111,7 +111,7 @@ NO_RULES = GameRules()
 
 @dataclass(frozen=True)
 class GamePlan:
-    """What staff chose for a game: nothing of it changes the game that the activity has.
+    """Staff's options for a game; the defaults leave the activity's own game unchanged.
 
     `patterns` are played for one after another; "" as a strength leaves all strategies.
     """

@@ -1,4 +1,4 @@
-"""What a robot's devices say of themselves: one reading each, newest data only.
+"""Readings of a robot's devices: one each, newest data only.
 
 A world hands these out (`World.health`); what they mean is the business of the fault rules.
 """
@@ -23,7 +23,7 @@ STATES: tuple[DeviceState, ...] = (OK, WARN, STALE, ERROR)
 is known; as ROS's diagnostics have it."""
 
 Fact = float | bool | str
-"""What a device measures about itself: a number, yes or no, or a word."""
+"""A device's measurement of itself: a number, yes or no, or a word."""
 
 
 class Reading(NamedTuple):

@@ -17,7 +17,7 @@ PAUSING: tuple[Pausing, ...] = (SELDOM, OFTEN, TOO_OFTEN)
 
 @dataclass(frozen=True)
 class Liveness:
-    """What a robot does about late data: s, m/s, and shares of time.
+    """Limits for a robot's reaction to late data: s, m/s, and shares of time.
 
     Data older than a device's `stale_after` makes the robot stand: a pause. It goes on by itself
     after `fresh_readings` new ones, no faster than `slow_speed` for `slow_seconds`. Data that is

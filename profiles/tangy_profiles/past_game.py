@@ -82,7 +82,7 @@ class PastGame:
     run: tuple[GameBeginning, ...] = ()
     """How the earlier games began."""
     changes: tuple[GameChange, ...] = ()
-    """What changed in this game and the earlier ones beside their steps."""
+    """Changes in this game and the earlier ones beside their steps."""
 
     @property
     def world(self) -> GameWorld:

@@ -67,7 +67,7 @@ class SpeechNoted(EventRecord):
 
 @kind("response", about="strategy")
 class ResponseGiven(EventRecord):
-    """What a person did about a request in a game: after so many s."""
+    """A person's response to a request in a game, with its delay in s."""
 
     game: str | None = None
     followed: bool | None = None
@@ -130,7 +130,7 @@ class FaceConsent(EventRecord):
 
 @kind("face forgotten", about="person")
 class FaceForgotten(EventRecord):
-    """What was kept of a person's face was deleted, and their consent taken back."""
+    """A person's face data was deleted, and their consent withdrawn."""
 
 
 @kind("consent to recordings")
@@ -148,7 +148,7 @@ class RecordingsForgotten(EventRecord):
 
 @kind("microphone checked")
 class MicrophoneChecked(EventRecord):
-    """What a check of a microphone found; settings that are odd are as good as none."""
+    """The result of a microphone check; odd settings count as none."""
 
     source: str
     settings: Any = None

@@ -1,4 +1,4 @@
-"""What staff change in a game beside its behaviours: its pattern, a call, a claim, who is here.
+"""Changes by staff in a game beside its behaviours: pattern, calls, claims, who is here.
 
 Both worlds have this part in common. Each change is a `GameChange`, so that the log has it, and a
 game that was interrupted comes to where it was.

@@ -1,4 +1,4 @@
-"""What every process writes down of its decisions: one line each, with the command it serves.
+"""The log of each process: a line for each decision, with the command it serves.
 
 The program writes `program.log` in the data folder; the robot process, its cameras, the speech
 worker and the device simulator write to the files beside it (see `worker_log`). A command has one

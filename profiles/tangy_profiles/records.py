@@ -1,4 +1,4 @@
-"""What a kind of event in the log is: a record with a name, a version, and whom it is about."""
+"""Kinds of events in the log: records with a name, a version, and a subject."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tangy_profiles import codec
 from tangy_profiles.codec import Unreadable
 
 About: TypeAlias = Literal["nobody", "person", "strategy"]
-"""Whom an event's row names: nobody, or a person, or a person and a strategy."""
+"""The subject of an event's row: none, a person, or a person and a strategy."""
 Older: TypeAlias = Callable[[int, dict[str, Any]], dict[str, Any]]
 """Returns the body of an earlier version as one of the present version."""
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
 
 LOOKS_AT = ("cards",)
-"""What the profile can say that a camera looks at."""
+"""Subjects of a camera that a profile can name."""
 
 
 LINK = "link"
@@ -36,7 +36,7 @@ LINK_STALE_SECONDS = 0.25
 LONGEST_SECONDS = 1e6
 
 GAZES = ("card", "face")
-"""What the robot turns its eyes to."""
+"""Targets of the robot's gaze."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Limb:
 
 @dataclass(frozen=True)
 class Measure:
-    """What a device measures: in words of the staff, and its values.
+    """A quantity that a device measures: in words of staff, and its values.
 
     They are words, or a range of numbers, or else yes and no.
     """
@@ -104,7 +104,7 @@ class DeviceProfile:
 
 @dataclass(frozen=True)
 class Driver:
-    """What drives a device: the `kind` of driver, and settings that are that driver's own."""
+    """The driver of a device: its `kind`, and its own settings."""
 
     kind: str
     settings: Mapping[str, str | float | bool]

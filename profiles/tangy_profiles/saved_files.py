@@ -1,4 +1,4 @@
-"""What lies in a data folder beside the log, and how a name is erased from it.
+"""Files in a data folder beside the log, and how to erase a name from them.
 
 Only what Tangy wrote is changed: its pages and the logs of its processes are text; copies of the
 log, and damaged ones, are overwritten byte for byte. Files of others, also lists that were put
@@ -25,9 +25,9 @@ from tangy_profiles.salvage import SALVAGE
 
 LARGEST = 64_000_000  # bytes of a file that is looked through
 OURS = (FILE, f"{FILE}-wal", f"{FILE}-shm", "tangy.lock", "tangy.seal")
-"""What the writer of the log sees to."""
+"""Files that the writer of the log handles."""
 PAGE_MARK = '<meta name="generator" content="Tangy"/>'
-"""By this a page of ours is known."""
+"""Marks a page that Tangy wrote."""
 
 _MARKS = (PAGE_MARK.encode(), b"<style>\n:root { color-scheme: light dark; --font: system-ui")
 """The second: pages up to 0.6 had no mark."""

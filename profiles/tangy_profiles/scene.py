@@ -18,7 +18,7 @@ class CardView:
 
 @dataclass(frozen=True, slots=True)
 class Arranged:
-    """What a guided game is about to bring about: whose card will be how when they ask.
+    """The coming situation of a guided game: a person, and the state of their card when they ask.
 
     `hidden`: the card is out of view when the robot arrives.
     """

@@ -16,7 +16,7 @@ Request = Literal["ANR", "AR"]
 FACTS = "; "
 """Between the facts of a situation, where an activity is declared by facts."""
 EVERYBODY = "everybody"
-"""Whom a command is for that names the whole group."""
+"""The target of a command for the whole group."""
 
 FRONT = "front"
 """The place in front of the group; every other place is the id of the person the robot is with."""
@@ -32,7 +32,7 @@ Variable = Literal[
     "card",
     "others' requests",
 ]
-"""What a behaviour can change, as its effects are learnt and compared."""
+"""Features that a behaviour can change, for learning and comparing its effects."""
 VARIABLES: tuple[Variable, ...] = get_args(Variable)
 
 
@@ -138,7 +138,7 @@ class ActivityState(NamedTuple):
 
 
 class Response(NamedTuple):
-    """What a person did about a request that was put to them with a persuasive strategy.
+    """A person's response to a request made with a persuasive strategy.
 
     `followed`: what was asked for was seen done before the next behaviour.
     `complied`: it was done within the activity's patience window; this is the Bernoulli outcome
@@ -153,7 +153,7 @@ class Response(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What became of an executed action.
+    """The outcome of an executed action.
 
     `numbers` are the numbers it was about: the one that was called, or those a person was asked
     to mark or to clear. `seconds` is how long it took in the world's own time. `speech` and `image`

@@ -59,10 +59,10 @@ class Store:
         self._now = now
         self._lock = RLock()
         self.file = LogFile(folder, writable, now)
-        """What the log is kept in; for those who look at the file itself, and write nothing."""
+        """The file of the log, for readers of the file itself."""
         self.notices = self.file.notices
         self.aside: dict[int, str] = {}
-        """What was met in the log that is left out: a sentence for each such event, by seq."""
+        """Events left out of the log: a sentence for each, by seq."""
         self.robot = ""  # the id of the robot whose log it is; a reader does not ask
         self._seal = Seal(folder)
         self._newest = 0  # the newest event of the transaction that is going on

@@ -159,7 +159,7 @@ class ForestSettings:
 
 
 class LearntRow(NamedTuple):
-    """What a policy does in a situation that was shown, and the share of the votes for it."""
+    """A policy's decision in a demonstrated situation, and its share of the votes."""
 
     stage: str
     request: Request

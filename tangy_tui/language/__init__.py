@@ -1,1 +1,1 @@
-"""What words mean, typed or spoken: phrases, commands, stop, and how words are pronounced."""
+"""The meaning of words, typed or spoken: phrases, commands, stop, and pronunciation."""

@@ -1,4 +1,4 @@
-"""What a teacher may say or type, and which behaviour is meant by it (III-A-1).
+"""Commands that a teacher may say or type, and the behaviours they mean (III-A-1).
 
 The identified words are matched to the phrases and keywords that the activity lists for each
 behaviour. Typed and spoken words come through this one door, so both are understood alike.

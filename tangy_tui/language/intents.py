@@ -1,4 +1,4 @@
-"""What was learnt of each activity: learnt once, and kept by the digest of its examples.
+"""Models of intents for each activity, trained once and stored under their examples' digest.
 
 To learn takes seconds, to read what was learnt milliseconds. That of the activities which come with
 Tangy comes with it, too; others are learnt when they are first needed.

@@ -1,4 +1,4 @@
-"""What can be said or typed: every phrase of an activity, also with people and their seats.
+"""The phrasebook: every phrase of an activity, also with people and their seats.
 
 The matcher, the completion, the recogniser and the help page are made from this one table; what
 is meant by a text that is no phrase is found in `commands`.

@@ -62,9 +62,9 @@ WAYS: dict[Steering, tuple[str, ...]] = {
     ),
 }
 WHILE_TEACHING: tuple[Steering, ...] = ("undo", "redo", "phrases", "help")
-"""What a teacher asks for while showing a game."""
+"""Requests of a teacher to the program while showing a game."""
 IN_GAMES: tuple[Steering, ...] = ("pause", "go on", "call again")
-"""What staff ask for while Tangy plays."""
+"""Requests of staff to the program while Tangy plays."""
 
 
 def steering_texts(ways: Collection[Steering]) -> tuple[str, ...]:

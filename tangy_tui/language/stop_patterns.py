@@ -118,7 +118,7 @@ PEOPLE_DO = (
     "|staring|stealing|sulking|swearing|teasing|thinking|whining|whispering|whistling|winking"
     "|wondering|worrying|yawning|yelling"
 )
-"""What only people do: the robot is not asked to leave it off, though nobody is named."""
+"""Actions that only people do: the sentence is not about the robot, even if it names nobody."""
 _WHOM = "me|us|him|her|them|you|it|that|this|people|everybody|everyone|anybody|anyone|somebody"
 _WHERE = (
     r"about(?! (?:it|that|this|him|her|them|me|us)\b)|"

@@ -1,4 +1,4 @@
-"""What a guided game is about to bring about, told once, as soon as it is known."""
+"""Announcements of a guided game: each coming situation once, as early as possible."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from tangy_tui.learning.conflicts import Resolution, Shown, joined, shown_steps
 
 
 class Contradictions:
-    """What was shown before, by situation. Each contradiction is found once."""
+    """Earlier answers, by situation. Finds each contradiction once."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""What forests answered, kept beside the log, so that a policy that was learnt is not learnt again.
+"""Cache of forests' answers beside the log, so that a learnt policy loads without training.
 
 To load scikit-learn and to grow a hundred trees takes seconds; to read what they said takes
 milliseconds. A cache is never trusted: loading a policy compares the digest.

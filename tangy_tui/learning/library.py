@@ -119,13 +119,13 @@ class Library:
 
     @property
     def resolutions(self) -> tuple[Resolution, ...]:
-        """What teachers said of conflicts, joined for each situation."""
+        """Teachers' resolutions of conflicts, joined for each situation."""
         said = (e.done.resolution for e in self.done if isinstance(e.done, Settlement))
         return tuple(joined(said).values())
 
     @property
     def conflicts(self) -> list[Conflict]:
-        """What the finished demonstrations disagree about, and nobody has settled."""
+        """Conflicts of the finished demonstrations that nobody has resolved."""
         return find_conflicts(self.finished, self.resolutions)
 
     @property

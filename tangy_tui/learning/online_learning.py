@@ -32,7 +32,7 @@ one."""
 
 @dataclass(frozen=True, slots=True)
 class PolicyReplay:
-    """All demonstrated steps gone through with two policies.
+    """Replay of all demonstrated steps with two policies.
 
     `steps` were looked at, `changed` are the other situations that are answered otherwise now,
     `overruled` are the earlier steps in the answered situation that the answer sets aside, and
@@ -47,7 +47,7 @@ class PolicyReplay:
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """What an answer led to: the demonstration it became, the policy, and the replay."""
+    """The result of an answer: its demonstration, the new policy, and the replay."""
 
     demonstration: Demonstration
     policy: Policy

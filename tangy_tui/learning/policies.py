@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tangy_profiles.store import Store
 
 ASKS = "to ask"
-"""What a policy does where it is not sure."""
+"""The decision of a policy in situations where it is not sure."""
 GONE = "no situation any more"
 MANY = 20
 """Where one step in so many, or more, is not of the activity, the activity was changed."""

@@ -48,7 +48,7 @@ FORESTS: Mapping[str, ForestSettings] = MappingProxyType({"exact": EXACT, "paper
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What the policy does in a situation: pi(s) = b with the share of the trees that voted for it.
+    """The decision in a situation: pi(s) = b, with the share of the trees that voted for it.
 
     `votes` lists every behaviour that got votes, most first; `seen` counts the steps in exactly
     this situation that were learnt from. `contested`: demonstrations disagree about it, and no
@@ -208,7 +208,7 @@ def _name_by_count(activity: str, ids: Sequence[str]) -> str:
 
 
 class Forest(NamedTuple):
-    """What a forest answers: in each situation the behaviours voted for, most votes first."""
+    """A forest's answers: in each situation the behaviours voted for, most votes first."""
 
     votes: tuple[tuple[tuple[str, float], ...], ...]
     versions: tuple[tuple[str, str], ...]

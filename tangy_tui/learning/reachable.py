@@ -1,4 +1,4 @@
-"""All joint activity states that the stage rules can bring about, for checking a policy whole."""
+"""All joint activity states that the stage rules can reach, for checking a whole policy."""
 
 from __future__ import annotations
 

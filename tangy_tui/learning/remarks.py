@@ -1,4 +1,4 @@
-"""What a teacher may have overlooked, told as soon as it is taught, each once.
+"""Remarks about a teacher's possible mistakes, made once and at once.
 
 A step that differs from what was shown before, a stage that was passed over, a person who did not
 ask, a game that ends too early: the teacher who knows the right answer is there now, and may have
@@ -63,7 +63,7 @@ class Remarks:
 
     @property
     def _shown(self) -> Contradictions:
-        """What was shown before; what this teacher was told of it is no news any more."""
+        """Earlier answers; remarks that this teacher has had are not repeated."""
         if self._contradictions is None:
             library = read_library(self._store, self._activity.name)
             self._contradictions = Contradictions(

@@ -1,4 +1,4 @@
-"""What a teacher can do in a session of demonstrating, and what follows from it."""
+"""Commands of a teacher in a teaching session, and the resulting events."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Again:
 
 
 RemarkAnswer = Literal["this", "earlier", "both", "undo", "keep", "later"]
-"""What can be answered to a remark: this step is right, the earlier one, both; take this one back,
+"""Answers to a remark: this step is right, the earlier one, both; take this one back,
 keep the words for it, or decide later."""
 
 

@@ -154,7 +154,7 @@ class TeachingSession:
 
     @property
     def remark(self) -> Remark | None:
-        """What was said of the last step, while it can be answered."""
+        """The remark about the last step, while it can be answered."""
         return self._remarks.open
 
     def name(self, person: str) -> str:

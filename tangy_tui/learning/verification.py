@@ -74,7 +74,7 @@ class Asked:
 
 @dataclass(frozen=True, slots=True)
 class Offered:
-    """What unsure words may mean: one of these, each of which is asked about, or nothing."""
+    """Candidates for unsure words: one of these, after a question, or none."""
 
     heard: str
     confidence: float

@@ -1,4 +1,4 @@
-"""What a teacher said is all right, although no demonstration had shown it: effects learnt late.
+"""Effects that a teacher accepted although no demonstration had shown them.
 
 Each can be taken back, and then is a fault again when it happens.
 """

@@ -1,4 +1,4 @@
-"""What a fault explains after it is over: devices that have not been well again since.
+"""Later symptoms that a fault explains: devices that have not recovered since.
 
 A link that was lost takes all with it that is reached by it, and they do not come back at the very
 moment at which it does: a camera opens its stream anew, a scanner has to turn once. Until each of

@@ -1,4 +1,4 @@
-"""What each person got of a game: how often they asked and waited, who was visited, for how long.
+"""Attention to each person in a game: their requests and waits, and Tangy's visits.
 
 All of it is read from the log. Times are in s since the game began.
 """

@@ -39,7 +39,7 @@ ACTIONS: Mapping[str, str] = MappingProxyType(
         "expert": "Keep people away, call the expert, then clear",
     }
 )
-"""What staff can do, by the recovery that it is, in their words."""
+"""Actions of staff by recovery, in their words."""
 
 ASKED: Mapping[str, str] = MappingProxyType(
     {WHAT: "What is it?", DO: "What do you do?", CLEAR: "May Tangy be cleared now?"}

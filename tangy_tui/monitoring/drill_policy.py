@@ -1,4 +1,4 @@
-"""By which policy a drill is played: what Tangy has learnt, or else what it is shown quickly."""
+"""The policy of a drill: the one Tangy has learnt, or one from quick scripted demonstrations."""
 
 from __future__ import annotations
 

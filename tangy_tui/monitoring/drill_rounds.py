@@ -71,7 +71,7 @@ class RoundKind:
 QUIET = RoundKind("quiet")
 _TWO_AT_ONCE = (RoundKind("mute", "mute", ("voice-dead", "screen-dead")),)
 _NOT_YET_A_FAULT = ("never-complies",)
-"""What makes somebody refuse, which is a fault only when it goes on."""
+"""Injections that make a person refuse; a fault only if they persist."""
 _GAPS = (RoundKind("unknown-situation", "unknown-situation", gap=True),)
 
 

@@ -19,7 +19,7 @@ from tangy_profiles.store import Event, Store
 SOMEBODY = "somebody"
 
 OPEN, BORNE, OVER = "open", "borne", "over"
-"""What a fault can be: still to be dealt with; there, but Tangy goes on without; over."""
+"""Status of a fault: open; tolerated, so that Tangy goes on; over."""
 
 ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended", "left"))
 """The moves after which a fault is over."""
@@ -65,17 +65,17 @@ class Fault:
 
     @property
     def name(self) -> str:
-        """What the fault is called."""
+        """The fault's name."""
         return named(self.texts[0], self.called)
 
     @property
     def console(self) -> str:
-        """What staff are told."""
+        """The message for staff."""
         return named(self.texts[1], self.called)
 
     @property
     def advice(self) -> tuple[str, ...]:
-        """What staff should do, step by step."""
+        """Steps for staff."""
         return tuple(named(text, self.called) for text in self.texts[2:])
 
     @property

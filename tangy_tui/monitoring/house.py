@@ -71,7 +71,7 @@ class PersonOverTime:
 
     @property
     def sum(self) -> Attention:
-        """All of it added up."""
+        """The sums."""
         added = Attention(self.name)
         for one in self.games:
             added.add(one.attention)
@@ -79,7 +79,7 @@ class PersonOverTime:
 
     @property
     def answers(self) -> list[AnsweredRequest]:
-        """What the person did about what they were asked to do."""
+        """The person's responses to requests."""
         return [answer for one in self.games for answer in one.answers]
 
     def to_json(self) -> dict[str, Any]:

@@ -57,14 +57,14 @@ class Done:
     said: str
     draws: bool
     numbers: tuple[int, ...] = ()
-    """What was called, or what somebody was asked to mark or to clear."""
+    """The number called, or the numbers a person should mark or clear."""
     wins: bool = False
     """Whether it celebrates somebody who has won, where the activity is known."""
 
 
 @dataclass(frozen=True, slots=True)
 class AnsweredRequest:
-    """What a person did about a request; None if that was not known in the game."""
+    """A person's response to a request; None if the game did not see it."""
 
     uuid: str
     person: str
@@ -76,7 +76,7 @@ class AnsweredRequest:
 
 @dataclass(frozen=True, slots=True)
 class Noted:
-    """What people did beside: they stopped the robot, or brought a fault about."""
+    """Other actions of people: stops, injected faults."""
 
     what: str
     by: str
@@ -156,7 +156,7 @@ class GameReplay:
 
     @property
     def answers(self) -> list[tuple[Moment, AnsweredRequest]]:
-        """What people did about requests, and when."""
+        """People's responses to requests, with their times."""
         return [(m, m.what) for m in self.moments if isinstance(m.what, AnsweredRequest)]
 
     @property

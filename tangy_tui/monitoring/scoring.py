@@ -1,4 +1,4 @@
-"""What was brought about in games, held against what was noticed: recall and precision by kind."""
+"""Scores diagnoses against injected faults: recall and precision by kind."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.replay import GameReplay, Noted, read_replays
 
 STATUS_WORDS = {OPEN: "left open", BORNE: "Tangy goes on with it", OVER: "over"}
-"""What became of a fault, in words."""
+"""Outcomes of faults, in words."""
 
 RESULTS = (
     ("complied", "complied"),
@@ -32,7 +32,7 @@ RESULTS = (
     ("void", "void"),
     ("awaited", "without an answer"),
 )
-"""What can come of a request: the counts of `Attempts`, and each in words."""
+"""Outcomes of a request: the counts of `Attempts`, and each in words."""
 
 SET_ASIDE = "set aside"
 """The remedy after which a person is left alone: somebody should look after them."""
@@ -40,7 +40,7 @@ SET_ASIDE = "set aside"
 
 @dataclass
 class Attempts:
-    """What came of one strategy with one person: how often it was used, and what they did.
+    """Results of one strategy with one person: its uses, and the responses.
 
     `late`: they did it, but not soon enough to count as complied. `void` are left out of the
     belief, `awaited` have no answer yet. `before` and `after` are the beliefs.
@@ -61,7 +61,7 @@ class Attempts:
 
     @property
     def in_words(self) -> str:
-        """What came of it: "2 complied, 1 without an answer"."""
+        """The results in words: "2 complied, 1 without an answer"."""
         return result_words({what: getattr(self, what) for what, _ in RESULTS})
 
     def to_json(self) -> dict[str, Any]:
@@ -97,7 +97,7 @@ class Progress:
 
     @property
     def in_words(self) -> str:
-        """What came of all that was asked, over the strategies."""
+        """The results of all requests, over the strategies."""
         return result_words({what: self.total(what) for what, _ in RESULTS})
 
 
@@ -115,7 +115,7 @@ class Session:
     rows: tuple[TallyRow, ...]
     people: tuple[Progress, ...]
     notes: tuple[str, ...]
-    """What a reader should know of how this was put together."""
+    """Notes for the reader about the sources of the report."""
     names: Mapping[str, str]
     reads: frozenset[str] = frozenset()
     """The stages in which Tangy helps somebody."""

@@ -145,7 +145,7 @@ class Supervision:
 
     @property
     def question(self) -> Unsure | None:
-        """What Tangy asks a teacher."""
+        """The question to the teacher."""
         return self.game.question
 
     def verifier(self) -> Verifier:
@@ -228,7 +228,7 @@ class Supervision:
 
     @property
     def devices(self) -> Evidence:
-        """What the devices give as evidence now."""
+        """The current evidence of the devices."""
         return self.watch.devices
 
     @property
@@ -338,7 +338,7 @@ class Supervision:
 
     @property
     def acceptable(self) -> bool:
-        """Whether what Tangy asks about can be said to be all right: no rule has a cause for it."""
+        """Whether staff may accept the observation in question: no rule explains it."""
         fault = self._asked_about(self.question)
         unexplained = fault is not None and fault.code == self.book.fallback.code
         return unexplained and fault is not None and fault.id in self.watch.acted

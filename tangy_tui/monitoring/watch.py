@@ -50,7 +50,7 @@ class FaultWatch:
 
     @property
     def devices(self) -> Evidence:
-        """What the devices give as evidence now."""
+        """The current evidence of the devices."""
         return self._detector.watch(self._game.world.health())
 
     def look(self) -> list[Event]:

@@ -25,7 +25,7 @@ END_SECONDS = 2.0  # for arecord to end by itself when it has closed its output
 
 
 class LocalMicrophone(Source):
-    """What arecord hears; one that is unplugged is waited for."""
+    """A microphone by arecord; if it is unplugged, it waits for it."""
 
     def __init__(self, name: str, device: str = "", *, again: float = AGAIN_SECONDS) -> None:
         """Find the recorder.

@@ -1,4 +1,4 @@
-"""What a stream is that should be raw 16-bit samples, when it obviously is something else."""
+"""Recognise streams that should be raw 16-bit samples and obviously are something else."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ class SoundPlayer(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is called: the program, or `null`."""
+        """Its name: the program, or `null`."""
 
     async def play(self, wav: Path) -> None:
         """Play a WAV; return when it has been heard to its end, or was stopped.

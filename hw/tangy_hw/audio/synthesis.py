@@ -107,7 +107,7 @@ class Synthesiser:
 
     @property
     def variants(self) -> frozenset[str]:
-        """What can be added to every voice after a plus: other people's throats.
+        """Variants that can follow every voice after a plus: other speakers.
 
         Raises:
             VoiceError: as for `version`.

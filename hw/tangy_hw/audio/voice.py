@@ -18,7 +18,7 @@ from tangy_profiles.voice import VoicePreference
 
 @dataclass(frozen=True, slots=True)
 class Rendered:
-    """What was made beforehand: how many texts, in how many bytes and seconds."""
+    """Texts synthesised in advance: their number, bytes and seconds."""
 
     texts: int
     bytes: int

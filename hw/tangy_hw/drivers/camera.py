@@ -122,7 +122,7 @@ class Camera:
 
     @property
     def over(self) -> bool:
-        """Whether no picture will come any more."""
+        """Whether the stream has ended."""
         return self._watch.over
 
     def reading(self) -> Reading:

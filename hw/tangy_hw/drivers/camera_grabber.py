@@ -67,7 +67,7 @@ def make_grabber(source: CameraSource) -> Grabber:
 
 
 class Capture:
-    """What OpenCV reads: cameras, streams and video files.
+    """Grabs from sources that OpenCV reads: cameras, streams and video files.
 
     A handle that has failed or timed out never recovers, though it says that it is open: it is
     dropped and made anew. The last picture of a stream that breaks off is given as if it were

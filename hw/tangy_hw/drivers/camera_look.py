@@ -1,4 +1,4 @@
-"""What a camera's picture is like: how bright, how full of contrast, how sharp; all from 0 to 1."""
+"""Measures of a picture: brightness, contrast and sharpness, each from 0 to 1."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ FOLDER_RATE = 5.0
 """Default frame rate of a folder of pictures, per second."""
 
 WIDTH, HEIGHT = 1280, 720
-"""What a camera is asked for: cards need it."""
+"""Requested resolution; reading cards needs it."""
 
 
 class CameraError(TangyError):

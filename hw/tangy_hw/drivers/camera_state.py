@@ -1,4 +1,4 @@
-"""What state a camera is in, from what its pictures are like and when they came."""
+"""The state of a camera, from the measures and times of its pictures."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ class CameraWatch:
 
     @property
     def over(self) -> bool:
-        """Whether no picture will come any more."""
+        """Whether the stream has ended."""
         return self._over is not None
 
     def saw(self, look: Look) -> None:

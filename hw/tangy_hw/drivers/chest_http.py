@@ -31,12 +31,12 @@ SAFE = (
 
 
 class BadRequest(Exception):
-    """What came is no request that is answered here."""
+    """The request is not one that this server answers."""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What a browser asks for: method, path, and what stands behind the question mark.
+    """A browser's request: method, path, and query.
 
     `headers` have lower-case names; `stays`: it will ask more over the same connection.
     """

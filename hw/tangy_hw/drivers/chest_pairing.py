@@ -36,7 +36,7 @@ class TooManyCodes(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Pairing:
-    """What tablets are paired by: the key that signs their tokens, and the code that is shown."""
+    """The secrets of pairing: the key that signs tokens, and the code on the console."""
 
     key: bytes = field(default_factory=lambda: secrets.token_bytes(KEY_BYTES), repr=False)
     code: str = field(

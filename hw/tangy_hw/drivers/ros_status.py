@@ -1,4 +1,4 @@
-"""What a robot behind ROS says of itself: its diagnostics, and its emergency stop."""
+"""Status of a robot behind ROS: its diagnostics, and its emergency stop."""
 
 from __future__ import annotations
 

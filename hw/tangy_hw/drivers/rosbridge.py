@@ -74,7 +74,7 @@ class Rosbridge:
             raise DeviceError(f"{plain(url)}: ros must be 1 or 2.")
         self.url, self.ros = url, ros
         self.drives = True
-        """Whether the robot drives by it: without such a link it must stand still."""
+        """Whether driving needs this link: without it the robot must stand still."""
         self.clock = clock
         self._tell = tell
         self._told: set[str] = set()

@@ -1,4 +1,4 @@
-"""What was asked of a rosbridge server and is still to be answered: services and goals."""
+"""Pending requests to a rosbridge server: services and goals."""
 
 from __future__ import annotations
 

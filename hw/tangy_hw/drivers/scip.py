@@ -88,7 +88,7 @@ class ScipLaser:
         self.address = address
         self.optics: Optics | None = None
         self.about: Mapping[str, str] = MappingProxyType({})
-        """What it says of itself: its maker, firmware, serial number (VV)."""
+        """Its maker, firmware and serial number (VV)."""
         self.missed = self.spoilt = self.connected = 0
         self._clock = clock
         self._stale_after = stale_after

@@ -27,7 +27,7 @@ class ScipError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class ScipReply:
-    """What a scanner answered: the command it answers, how it went, and lines with checksums."""
+    """A reply of a scanner: the echoed command, its status, and lines with checksums."""
 
     echo: bytes
     status: str
@@ -36,7 +36,7 @@ class ScipReply:
 
 @dataclass(frozen=True, slots=True)
 class Optics:
-    """What a scanner is and can: `nearest` and `farthest` in m, its steps, its turns a second.
+    """Parameters of a scanner: `nearest` and `farthest` in m, its steps, its turns a second.
 
     There are `resolution` steps to a full turn, counter-clockwise; those from `first` to `last` are
     measured, and `front` is straight ahead.

@@ -39,7 +39,7 @@ class ExternalNavigator:
         """Why it failed or is blocked: one sentence."""
         self.path = None
         self.lets: Held = ""
-        """Who is let pass: somebody who walks into its way."""
+        """The kind of person it waits for: one who walks into its way."""
         self.tracks: tuple[Track, ...] = ()
         self._tracker, self._limits = PeopleTracker(laser), limits or MotionLimits()
         self.obstacles: Floats = np.zeros((0, 2))
@@ -118,7 +118,7 @@ class ExternalNavigator:
     # ------------------------------------------------------------------ what it knows
     @property
     def drives(self) -> bool:
-        """Whether a goal is under way, or was called off and that is not confirmed."""
+        """Whether a goal is active, or its cancellation is not confirmed yet."""
         return self._driving is not None or bool(self._ending)
 
     @property

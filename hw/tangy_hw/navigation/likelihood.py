@@ -38,7 +38,7 @@ def covered(scan: Scan) -> bool:
 
 
 class ScanLikelihood(NamedTuple):
-    """What beams say about one pose.
+    """The evidence of a scan's beams for one pose.
 
     `score` is how well those fit that something on the map explains or contradicts; `share` is how
     many of all beams those are. The others end before anything on the map: something is in the way,

@@ -62,12 +62,12 @@ class Estimate:
 
     @property
     def lost(self) -> bool:
-        """Whether it looks as if the robot were not where it thinks."""
+        """Whether the scans contradict the estimated pose."""
         return self.fit < LOST and self.spread > WIDE
 
     @property
     def found(self) -> bool:
-        """Whether it knows where it is: one place is believed, and no other is thought possible."""
+        """Whether it is localised: one pose is believed, and no other is likely."""
         return self.settled and not self.lost and self.spread < WIDE
 
 

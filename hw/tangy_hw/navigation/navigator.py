@@ -93,7 +93,7 @@ class Navigator:
         self._around = Surroundings(map_, laser, self.limits)
         self._disagreement = Disagreement(laser)
         self.lets: Held = ""
-        """Who is let pass, or stands in the way, while it stands for somebody."""
+        """The kind of person it waits for, while it waits."""
         self._pursuit: Pursuit | None = None
         self._given_up: Floats | None = None
         self._way = "clear"
@@ -173,12 +173,12 @@ class Navigator:
 
     @property
     def obstacles(self) -> Floats:
-        """What it sees and the map does not have (n, 2)."""
+        """Points seen that are not on the map (n, 2)."""
         return self._around.points
 
     @property
     def unseen(self) -> Floats:
-        """What the map keeps it out of and no laser sees, such as a table's top (n, 2).
+        """Keep-out points of the map that no laser sees, such as a table's top (n, 2).
 
         It is in the robot's frame, as far as the robot knows its pose.
         """

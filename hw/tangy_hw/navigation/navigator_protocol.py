@@ -25,7 +25,7 @@ class NavigatorProtocol(Protocol):
 
     @property
     def drives(self) -> bool:
-        """Whether something drives the base past us now, which commands alone do not end."""
+        """Whether an external navigation drives the base now; commands alone do not stop it."""
         ...
 
     @property
@@ -40,7 +40,7 @@ class NavigatorProtocol(Protocol):
 
     @property
     def lets(self) -> Held:
-        """Who is let pass, or stands in the way, while it stands for somebody."""
+        """The kind of person it waits for, while it waits."""
         ...
 
     @property
@@ -55,7 +55,7 @@ class NavigatorProtocol(Protocol):
 
     @property
     def unseen(self) -> Floats:
-        """What must not be touched and no laser sees, (n, 2) in the robot's frame, if known."""
+        """Keep-out points that no laser sees, (n, 2) in the robot's frame, if known."""
         ...
 
     @property

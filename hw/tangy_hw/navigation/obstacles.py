@@ -1,4 +1,4 @@
-"""What the laser sees and the map does not have: chairs that were moved, bags, people."""
+"""Obstacles that the laser sees and the map lacks: moved chairs, bags, people."""
 
 from __future__ import annotations
 

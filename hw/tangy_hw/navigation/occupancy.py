@@ -17,7 +17,7 @@ Cells: TypeAlias = NDArray[np.int8]
 Mask: TypeAlias = NDArray[np.bool_]
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
-"""What a cell can be, in the numbers of nav_msgs/OccupancyGrid."""
+"""Cell values, as in nav_msgs/OccupancyGrid."""
 
 MARGIN = 0.5  # metres of the unknown around a room, so that beams through doors end on the map
 LEG_INSET = 0.1  # metres from the table's edge to the middle of a leg

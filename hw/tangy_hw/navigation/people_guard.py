@@ -31,7 +31,7 @@ END = 0.15  # metres that a body reaches out beyond a return of which nothing mo
 
 
 class Around(NamedTuple):
-    """Who is around, in the robot's frame: tracks, and returns (n, 2) that the map has not."""
+    """People around, in the robot's frame: tracks, and returns (n, 2) that are not on the map."""
 
     tracks: Sequence[Track]
     ends: Floats

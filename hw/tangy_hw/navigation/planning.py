@@ -45,7 +45,7 @@ class PlanError(TangyError):
 
 @dataclass(frozen=True, eq=False)
 class Costs:
-    """What a metre costs in each cell (rows, columns); inf if the robot would touch something.
+    """Cost of a metre in each cell (rows, columns); inf where the robot would touch something.
 
     `distance` is how far the nearest obstacle is, in metres.
     """

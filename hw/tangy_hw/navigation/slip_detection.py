@@ -50,7 +50,7 @@ class Disagreement:
 
     @property
     def metres(self) -> float:
-        """By how many metres they disagree: the sum of the steps' differences."""
+        """Their disagreement in m: the sum of the steps' differences."""
         if not self._steps:
             return 0.0
         return float(np.linalg.norm(np.sum([step for _, step in self._steps], axis=0)))

@@ -1,4 +1,4 @@
-"""All that is around the robot and not on the map: what stands there, and who walks by."""
+"""The surroundings that are not on the map: obstacles, and people who walk by."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
 
 Held = Literal["", "walking", "standing"]
-"""Who is let pass, or stands in the way: nobody, somebody who walks, somebody who stands."""
+"""The kind of person the robot waits for: nobody, one who walks, one who stands."""
 
 SURE = 0.3  # metres of spread of the pose up to which points go onto the map
 WALKS = 0.25  # m/s from which on somebody walks

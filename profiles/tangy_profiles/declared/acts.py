@@ -1,4 +1,4 @@
-"""What simulated people do in a declared activity: who acts, when, and with which answer."""
+"""Acts of simulated people in a declared activity: who acts, when, and with which answer."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ Key = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """What became of a behaviour: whether it could be done, and who was invited to do what."""
+    """The result of a behaviour: whether it was possible, and the invitations."""
 
     completed: bool
     invited: tuple[tuple[str, str, str], ...] = ()

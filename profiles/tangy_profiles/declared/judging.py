@@ -1,4 +1,4 @@
-"""What a raw observation says of a fact: the answer of a person, judged against the item."""
+"""Judges raw observations: a person's answer is compared with the item."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ class FactCondition:
     comparison: Comparison
     value: str
     number: int = 0
-    """What a comparison by >= or < is with."""
+    """The number that >= or < compares with."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.state import FRONT, Situation
 
 Event = tuple[Act, ...] | float
-"""What happens after a behaviour: acts of people, or that so many s pass without one."""
+"""An event after a behaviour: an act of a person, or a number of s without one."""
 FEW = 2
 _Node = tuple[bool, Hashable]
 """Whether it is the robot's move, and the state."""

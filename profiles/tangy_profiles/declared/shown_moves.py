@@ -1,4 +1,4 @@
-"""What was shown so far of a declared activity, as the interpreter can follow it."""
+"""Moves shown so far in a declared activity, for the interpreter to follow."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ UNDECIDED = "?"
 
 
 class ShownMoves:
-    """By situation the behaviour that was shown last, and by stage and behaviour for whom."""
+    """The last behaviour shown in each situation; selectors for each stage and behaviour."""
 
     def __init__(self, behaviours: Mapping[str, Behaviour]) -> None:
         """Begin with nothing shown.

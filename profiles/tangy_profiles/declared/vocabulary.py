@@ -6,15 +6,15 @@ from collections.abc import Iterable
 from typing import Literal, get_args
 
 Kind = Literal["flag", "choice", "count", "timer", "test"]
-"""What a fact holds: no or yes; one of its values; a number; seconds; what its conditions give."""
+"""Kinds of facts: no or yes; one of its values; a number; seconds; the result of conditions."""
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 Source = Literal["button", "sign", "speech", "camera", "card", "staff"]
-"""What tells a fact about people."""
+"""Sources of facts about people."""
 SOURCES: tuple[Source, ...] = get_args(Source)
 
 Quantifier = Literal["", "any", "every", "nobody", "most"]
-"""Of how many players a condition has to hold; "": of the one whom the stage is about."""
+"""Quantifiers over players in a condition; "": the person of the stage."""
 
 Comparison = Literal["is", "is not", ">=", "<"]
 
@@ -31,7 +31,7 @@ Does = Literal[
     "invite",  # FACT VALUE: a person is asked to bring it about
     "finish",
 ]
-"""What a behaviour does to the game."""
+"""Effects of a behaviour on the game."""
 DOES: tuple[Does, ...] = get_args(Does)
 
 Selector = Literal[
@@ -44,7 +44,7 @@ Selector = Literal[
     "addressed",
     "beside",
 ]
-"""Whom a behaviour is for, or a stage is about."""
+"""Selectors of the person of a behaviour or a stage."""
 SELECTORS: tuple[Selector, ...] = get_args(Selector)
 
 Order = Literal["given", "shuffled"]

@@ -19,7 +19,7 @@ Whom = Mapping[tuple[str, str], tuple[str, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Addressee:
-    """Whom a behaviour is for now (None: the group), and by which selectors.
+    """The current person of a behaviour (None: the group), and the selectors that name them.
 
     `others` are whom the selectors name instead, if they disagree: then nothing is sure.
     """

@@ -1,4 +1,4 @@
-"""What the bench's cameras see: cards and faces before the head, signs before the infrared camera.
+"""Views of the bench's cameras: cards and faces before the head, signs before the infrared camera.
 
 A picture is drawn once for a scene, and sent with other noise again and again, as cameras do.
 Drawing takes a tenth of a second at most, the same scene again some milliseconds.

@@ -1,4 +1,4 @@
-"""What people make of the robot's words in an activity declared by facts.
+"""How people understand the robot's words in an activity declared by facts.
 
 They know its sentences, and the rows of its items: by a question they know which row it is.
 """

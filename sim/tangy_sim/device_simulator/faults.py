@@ -32,7 +32,7 @@ class Faults:
     def __init__(self) -> None:
         self.present: dict[str, SimulatedFault] = {}
         self.lifted: list[SimulatedFault] = []
-        """What was put right since somebody last looked; who acts on it empties it."""
+        """Faults ended since the last look; the part that handles them empties it."""
 
     def __contains__(self, kind: str) -> bool:
         return kind in self.present

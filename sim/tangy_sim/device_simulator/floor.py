@@ -1,4 +1,4 @@
-"""What stands on the bench's floor: walls, the table, chairs, people's legs, things dropped.
+"""Obstacles on the bench's floor: walls, the table, chairs, people's legs, dropped things.
 
 The laser sees legs and walls; the robot bumps into those and into the table's top as well.
 Coordinates are metres in the room's frame (see `tangy_profiles.room`).
@@ -82,7 +82,7 @@ class Floor:
         self._legs = [self._placed(seat, side) for seat in self._seats for side in (-1, 1)]
         self._still_for = self._waiting()
         self.dropped: list[Circle] = []
-        """What was put in the robot's way; call `changed` after changing it."""
+        """Obstacles put in the robot's way; call `changed` after changing them."""
         self.changed()
 
     def _placed(self, seat: Point, side: int) -> Circle:

@@ -1,4 +1,4 @@
-"""What the bench's people are told between the robot's sentences: what wins, who is done, who left.
+"""News for the bench's people between the robot's sentences: the pattern, winners, who left.
 
 In a room people know that from the host, or from each other; the robot's words need not say it.
 """

@@ -62,7 +62,7 @@ class Sitter:
 
 @dataclass
 class GameProgress:
-    """What happened in a game so far, as everybody in the room knows it."""
+    """The events of a game so far, as everybody in the room knows them."""
 
     opened: bool = False
     over: bool = False
@@ -71,7 +71,7 @@ class GameProgress:
     spoken: list[str] = field(default_factory=list)
     """Who said aloud that they would like help, because signs cannot be seen."""
     acts: list[tuple[str, str, str]] = field(default_factory=list)
-    """What no sensor sees: the fact, who, and what they said or showed."""
+    """Called with observations that no sensor sees: the fact, the person, the value."""
 
 
 class People:

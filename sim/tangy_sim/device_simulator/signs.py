@@ -1,4 +1,4 @@
-"""What the infrared camera over the bench's table sees: a dark room, and signs that shine.
+"""The view of the infrared camera over the bench's table: a dark room, and bright signs.
 
 It looks at the table from the robot's side. Who asks for help has a triangle up on the table.
 """

@@ -1,4 +1,4 @@
-"""What people make of the robot's words: which behaviour it was, how it was put, and to whom.
+"""How people understand the robot's words: the behaviour, its strategy, and its person.
 
 They know the sentences that the activity has for each behaviour and persuasive strategy, and those
 with which the robot asks for help when something is wrong. Anything else they do not react to.

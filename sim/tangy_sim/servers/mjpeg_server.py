@@ -15,7 +15,7 @@ HEAD = (
 PART = b"--" + BOUNDARY + b"\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n"
 LONGEST_REQUEST = 8192
 KERNEL_BYTES = 1 << 17
-"""What the system may hold back for a slow viewer: more of it would be old pictures."""
+"""Bytes buffered for a slow viewer; more would only hold old pictures."""
 
 
 class JpegStream:

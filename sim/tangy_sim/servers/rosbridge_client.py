@@ -39,9 +39,9 @@ class Client:
         self.topics: dict[str, dict[str, tuple[float, int]]] = {}
         """Throttle in s and largest message by subscription, by topic."""
         self.held: list[dict[str, Any]] = []
-        """What it said in a pause."""
+        """Messages it sent during a pause."""
         self.unsaid: list[str] = []
-        """What it would have been answered in a pause."""
+        """Replies it would have received during a pause."""
         self._queue: deque[tuple[bool, str]] = deque()
         self._size = 0
         self._last: dict[str, float] = {}

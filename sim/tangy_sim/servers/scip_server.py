@@ -43,7 +43,7 @@ class ScipServer:
         """Scans that at least one client got."""
         self.port = 0
         self.cable: Callable[[bytes], bytes] = bytes
-        """What becomes of a reply on its way."""
+        """The transmission fault applied to replies."""
         self._closed = False
         self._now = 0
         self._wires: set[_Wire] = set()

@@ -1,4 +1,4 @@
-"""What a SCIP 2.0 laser scanner answers: its commands, and the state it is in, for one client.
+"""A session of a SCIP 2.0 laser scanner: commands and state for one client.
 
 Written from Hokuyo C-42-03320B apart from the driver that reads it, so that each tests the other.
 """
