@@ -1,4 +1,4 @@
-"""Typed records and the JSON that stands for them: one codec, made from the fields of a class.
+"""Typed records as JSON: one codec, built from the fields of a class.
 
 A dataclass is a table, a plain named tuple a row, a tuple a list; `Annotated` says what else holds
 of a value. What does not fit is refused, and the reason is the tail of a sentence ("has 'step'
@@ -33,14 +33,14 @@ from tangy_profiles.reading import nearest
 
 T = TypeVar("T")
 Reader = Callable[[Any], Any]
-"""Returns what a JSON value stands for, or refuses it."""
+"""Decodes a JSON value, or refuses it."""
 
 LARGEST = 1e12
-"""No measure in a log is larger: s, counts, probabilities, what devices say."""
+"""No number in a log is larger: s, counts, probabilities, readings of devices."""
 
 
 class Unreadable(ValueError):
-    """A value is not what it should be; the text is the tail of a sentence ("is not text")."""
+    """A value is not valid; the text is the end of a sentence ("is not text")."""
 
 
 class By(NamedTuple):
@@ -67,7 +67,7 @@ Unlogged = Annotated[T, Key(unlogged=True)]
 
 
 class Field(NamedTuple):
-    """One field of a record: its key, what it holds, and what it is where the key is missing."""
+    """One field of a record: its key, its type, and its default."""
 
     name: str
     key: Key
@@ -76,7 +76,7 @@ class Field(NamedTuple):
 
 
 def read(kind: type[T], value: Any) -> T:
-    """Return what a value of a JSON document stands for.
+    """Decode a value of a JSON document.
 
     Raises:
         Unreadable: it is not of that kind; says where and why.
@@ -85,7 +85,7 @@ def read(kind: type[T], value: Any) -> T:
 
 
 def written(value: Any) -> Any:
-    """Return the JSON that stands for a record, or for a value within one."""
+    """Encode a record, or a value within one, as JSON."""
     if isinstance(value, str | int | float | NoneType):
         return value
     if isinstance(value, Mapping):
@@ -138,12 +138,12 @@ def _derived(kind: Any) -> Mapping[str, str]:
 
 
 def _is_record(kind: Any) -> bool:
-    """Say whether a table stands for it: a dataclass, or a named tuple with a `glance`."""
+    """Say whether it is encoded as a table: a dataclass, or a named tuple with a `glance`."""
     return is_dataclass(kind) or hasattr(kind, "glance")
 
 
 def _unpacked(hint: Any) -> tuple[Any, tuple[Any, ...]]:
-    """Return a type, and what `Annotated` says beside."""
+    """Return a type, and its `Annotated` metadata."""
     return (hint.__origin__, hint.__metadata__) if get_origin(hint) is Annotated else (hint, ())
 
 
@@ -152,10 +152,10 @@ def _unpacked(hint: Any) -> tuple[Any, tuple[Any, ...]]:
 
 @cache
 def reader(hint: Any) -> Reader:
-    """Return what reads values of a type.
+    """Return the decoder for a type.
 
     Raises:
-        TypeError: no value of a JSON document stands for that type.
+        TypeError: no JSON value can represent that type.
     """
     plain, marks = _unpacked(hint)
     origin, args = get_origin(hint), get_args(hint)
@@ -209,7 +209,7 @@ Count = Annotated[int, at_least(0)]
 
 
 def measurement(value: Any) -> Any:
-    """Let pass what a device measures: any number that is one, yes or no, or a word."""
+    """Accept a device's measurement: a finite number, yes or no, or a word."""
     number = isinstance(value, int | float) and abs(value) <= sys.float_info.max
     if not (number or isinstance(value, str)):
         raise Unreadable("is not a measurement")
@@ -217,7 +217,7 @@ def measurement(value: Any) -> Any:
 
 
 def one_of(*words: str) -> Reader:
-    """Return what lets one of these words pass."""
+    """Return a decoder that accepts one of these words."""
 
     def take(value: Any) -> Any:
         if _text(value) not in words:
@@ -263,7 +263,7 @@ _PLAIN: Mapping[Any, Reader] = {
 
 
 def _union(kinds: list[Any], may_be_none: bool) -> Reader:
-    """Return what reads nothing or a value; of several records, by their first field."""
+    """Return the decoder for an optional value; records differ by their first field."""
     if len(kinds) == 1:
         inner = reader(kinds[0])
     elif all(map(is_dataclass, kinds)):
@@ -300,7 +300,7 @@ def _table_of(inner: Reader) -> Reader:
 
 
 def _record(kind: Any) -> Reader:
-    """Return what reads the table of a record; what it says of itself as a whole counts too."""
+    """Return the decoder for a record's table; it also runs the record's own checks."""
     parts = [(*field, reader(field.hint)) for field in fields_of(kind)]
     only = keys_of(kind) if getattr(kind, "ONLY", False) else None  # other keys may be there
     misfit, glance = getattr(kind, "misfit", None), getattr(kind, "glance", None)

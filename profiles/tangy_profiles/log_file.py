@@ -169,7 +169,7 @@ class LogFile:
             held.close()
 
     def compact(self) -> None:
-        """Write the log anew, so that nothing that was deleted from it is left in its bytes.
+        """Rewrite the log, so that no deleted text is left in its bytes.
 
         Raises:
             StoreError: another process reads it, so that its tail has to stay for now.
@@ -192,7 +192,7 @@ class LogFile:
 
     @contextmanager
     def in_words(self) -> Iterator[None]:
-        """Turn what SQLite or the file system refuse into one sentence."""
+        """Turn errors of SQLite or the file system into one sentence."""
         try:
             yield
         except sqlite3.ProgrammingError:
@@ -254,7 +254,7 @@ class LogFile:
     def _take_over(
         self, aside: Path, db: sqlite3.Connection, sealed: tuple[str, int] | None
     ) -> None:
-        """Take what can be read of a damaged log, and say what became of it."""
+        """Recover the readable part of a damaged log, and report the result."""
         kept, lost = salvage(aside, db, sealed[1] if sealed else 0)
         self.lost = [EventsLost(first=first, last=last, damaged=True) for first, last in lost]
         notice = f"The log was damaged: it is kept as {aside}, and a new one was begun."
@@ -271,7 +271,7 @@ class LogFile:
         for end in ("-wal", "-shm", ""):
             with suppress(FileNotFoundError):
                 (self.folder / (FILE + end)).rename(self.folder / (aside.name + end))
-        with suppress(OSError):  # what it counts is not in the new log
+        with suppress(OSError):  # its count does not hold for the new log
             (self.folder / seal.FILE).rename(self.folder / aside.name.replace(FILE, seal.FILE, 1))
         return aside
 
@@ -330,7 +330,7 @@ class LogFile:
 
 
 def hold(path: Path) -> tuple[FileIO, str]:
-    """Become the folder's one writer; return the lock file and what the last writer left in it.
+    """Become the folder's only writer; return the lock file and the last writer's text in it.
 
     The kernel drops the lock with the process. Removing the file would race with the next one.
     """

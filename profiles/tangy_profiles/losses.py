@@ -1,4 +1,4 @@
-"""Events that a log once had and has no more: noticed when it is opened, told until accepted.
+"""Events missing from a log: detected when it is opened, and reported until accepted.
 
 The newest are missed by the count beside the log (`seal`), others after damage (`salvage`). What is
 noticed becomes an event, so that it is reported at each opening until staff accept it.
@@ -16,7 +16,7 @@ Rows = Callable[..., list[Any]]
 """Runs a query with its values, and returns the rows."""
 
 SEALED = "INSERT OR IGNORE INTO meta VALUES ('sealed', '1')"
-"""Notes that there is a count beside this log, so that it is missed where it is gone."""
+"""Records that this log has a count beside it, so that its absence is noticed."""
 
 
 def newest(rows: Rows) -> int:

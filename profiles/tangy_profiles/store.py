@@ -266,7 +266,7 @@ class Store:
         rows = self._rows("SELECT person, rate, voice FROM speech ORDER BY person")
         found = {}
         for person, rate, voice in rows:
-            with suppress(ProfileError):  # what nobody can have chosen is as nothing noted
+            with suppress(ProfileError):  # impossible choices count as none
                 found[person] = VoicePreference(rate, voice)
         return found
 

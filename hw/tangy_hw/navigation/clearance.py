@@ -1,4 +1,4 @@
-"""How much room there is along an arc, by what the scanner sees, whatever that is.
+"""Clearance along an arc from the scanner's points, of whatever kind.
 
 How much of a command may be driven past people is the guard's to say (`people_guard`).
 """
@@ -77,7 +77,7 @@ def guarded(twist: Twist, points: Floats, around: Around, limits: MotionLimits) 
     Args:
         twist: the commanded twist.
         points: the obstacles, in metres (n, 2), in the robot's frame.
-        around: what of that may be people.
+        around: the points that may be people.
         limits: how it may drive.
     """
     forward, turn = limits.clamped(twist)

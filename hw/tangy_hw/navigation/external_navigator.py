@@ -54,12 +54,12 @@ class ExternalNavigator:
 
     # ------------------------------------------------------------------------------- commands
     def go(self, goal: Pose) -> None:
-        """Have a goal handed over, at the next tick; what becomes of it `state` and `why` tell."""
+        """Send a goal at the next tick; `state` and `why` report its progress."""
         self.cancel()
         self.state, self._goal = "driving", goal
 
     def spin(self) -> None:
-        """Turn on the spot once, by the wheels: what the scanner sees then tells it its place."""
+        """Turn on the spot once, by the wheels, so that the scans show its navigation the pose."""
         self.cancel()
         self.state, self._turned = "spinning", 0.0
 
@@ -102,7 +102,7 @@ class ExternalNavigator:
         return STILL
 
     def _watch(self, odometry: Odometry, scan: Scan | None, dt: float) -> None:
-        """Follow who is around, and have it wait for somebody who walks into its way."""
+        """Track people, and make the robot wait for a person who walks into its way."""
         if scan is None:
             return
         tracks = self._tracker.update(odometry.pose, scan, dt)
@@ -115,7 +115,7 @@ class ExternalNavigator:
         if self.lets:
             self.held()
 
-    # ------------------------------------------------------------------ what it knows
+    # -------------------------------------------------------------- state
     @property
     def drives(self) -> bool:
         """Whether a goal is active, or its cancellation is not confirmed yet."""

@@ -51,7 +51,7 @@ def sightings(
     """Return the people and things in a scan that the map does not have.
 
     Args:
-        scan: what was measured.
+        scan: the scan.
         laser: where the scanner sits on the robot.
         unmapped: (n,) for each beam, whether it ends off all that is on the map; None: all do.
     """

@@ -18,7 +18,7 @@ BEAMS = 60
 NEAREST = 0.15  # metres: nearer returns come from the robot itself
 COVERED = 0.4  # share of beams that end that near
 SIGMA = 0.12  # metres by which a beam's end and the wall it hit are apart, map and pose included
-FLOOR = 0.1  # what a beam counts that ends where nothing is on the map: somebody may stand there
+FLOOR = 0.1  # likelihood of a beam that ends in free space of the map: a person may stand there
 SHORT = 0.3  # metres by which a beam goes past a wall, or stops before one
 MOST_STEPS = 60  # along a beam
 WALL = 15  # cells that hang together and make a wall; chairs have fewer, and are moved about
@@ -56,7 +56,7 @@ class LikelihoodField:
         self.map = map_
         near = np.exp(-0.5 * (map_.seen_distance / sigma) ** 2)
         inner = (FLOOR + (1 - FLOOR) * near).astype(np.float32)
-        # one more cell on each side stands for all that lies outside
+        # one more cell on each side represents everything outside
         self._field = np.pad(inner, 1, constant_values=np.float32(FLOOR))
         self._flat: Field = self._field.ravel()
         self._width = self._field.shape[1]
@@ -92,7 +92,7 @@ class LikelihoodField:
         return np.asarray(self._flat.take(index))
 
     def evidence(self, pose: Pose, points: Floats) -> ScanLikelihood:
-        """Return what beams (n, 2: their ends, in the robot's frame) say about a pose."""
+        """Return the evidence of beams (n, 2: their ends, in the robot's frame) for a pose."""
         if not len(points):
             return ScanLikelihood(0.0, 0.0)
         fits = self.beams(np.asarray([pose]), points)[0]

@@ -13,17 +13,17 @@ PLANNED = 0.6  # of how hard a base brakes, by which drives are planned
 
 @dataclass(frozen=True)
 class MotionLimits:
-    """How a base may drive: m/s, rad/s, m/s^2, rad/s^2, and metres.
+    """Limits of a base: m/s, rad/s, m/s^2, rad/s^2, and m.
 
-    `radius` is the robot's own, or that of its outermost corner where it has `corners` (x, y in m,
-    once round it to the left); `gap` is what it always keeps free ahead. Within `wary` of people,
-    on any side, it drives at no more than `gentle`. `unseen` is how fast it drives where its laser
-    does not look; within `close` of anything it turns no faster than `turn_close`.
+    `radius` is the robot's own, or that of its outermost corner if it has `corners` (x, y in m,
+    counter-clockwise); `gap` always stays free ahead. Within `wary` of people, on any side, the
+    speed limit is `gentle`. `unseen` is the limit in directions that the laser does not see; within
+    `close` of obstacles the limit for turning is `turn_close`.
 
-    Past people it must be able to stop before they meet (see `people_guard`): `late` is how many s
-    pass until it brakes, `stops` how hard it then does, `spare` how many metres are left at the
-    end. People are taken to come `approach` m/s faster than they do now, those who have just
-    appeared `approach_new`; those who walk may turn, and come at `approach_turned`.
+    Near people the robot must be able to stop before they meet (see `people_guard`): `late` is the
+    delay until it brakes in s, `stops` the deceleration, `spare` the distance left at the end.
+    People are assumed to approach `approach` m/s faster than now, new tracks `approach_new`;
+    walkers may turn, and come at `approach_turned`.
     """
 
     speed: float = 0.5

@@ -1,8 +1,8 @@
-"""Where the robot is: adaptive Monte Carlo localisation with recovery (Thrun et al., ch. 8.3).
+"""Adaptive Monte Carlo localisation with recovery (Thrun et al., ch. 8.3).
 
-Particles are moved by the wheels, weighed by how well the scan fits a likelihood field, and
-resampled. Two averages of that fit, a fast and a slow one, tell a robot that was carried off: while
-the fast one is much the lower, some particles are drawn anew, where the scan fits.
+Particles move with the odometry, are weighted by the fit of the scan to a likelihood field, and
+resampled. A fast and a slow average of that fit detect a robot that was carried away: while the
+fast one is much lower, some particles are redrawn where the scan fits.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ GENTLE = 0.15  # of the sharpness, while several places are possible
 EVERY = 360  # beams that count while several places are possible: few tell them apart
 SETTLING = 15  # scans with a good fit at one place until it is believed
 JUMP, PROOF = 0.5, 0.75  # metres to another place, which must prove itself from such a fit on
-FRESH = 0.1  # of the particles are drawn anew until then
+FRESH = 0.1  # share of the particles that is redrawn until then
 FIRST_TRIED, TRIED, PLACES = 20_000, 4000, 40  # poses looked at first, and then; kept of them
 
 
@@ -80,7 +80,7 @@ class Localisation:
         """Begin.
 
         Args:
-            map_: what the laser should see.
+            map_: the map.
             rng: where chance comes from.
             start: where the robot is, within some 10 cm; None: it may be anywhere.
             laser: where the scanner sits on the robot.
@@ -113,11 +113,11 @@ class Localisation:
         return self._particles
 
     def update(self, odometry: Pose, scan: Scan) -> Estimate:
-        """Take in what wheels and laser say at one moment, and return where the robot is.
+        """Update with odometry and a scan of one moment, and return the estimated pose.
 
         Args:
             odometry: the pose that the wheels have counted, in any frame that stays.
-            scan: what the laser saw from there.
+            scan: the scan from there.
         """
         points = thin(scan, FARTHEST, self._laser)
         first = self._odometry is None
@@ -179,7 +179,7 @@ class Localisation:
         return sqrt(float(self._weights @ (x * x + y * y)))
 
     def _renew(self, points: Floats) -> None:
-        """Resample; while the robot is not settled, draw a part anew where the scan fits."""
+        """Resample; until the pose has settled, redraw a part where the scan fits."""
         drawn = resample(self._particles, self._weights, len(self._particles), self._rng)
         count, renewed = needed(drawn), self._particles[:0]
         if self._unsettled:

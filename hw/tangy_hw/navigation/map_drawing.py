@@ -13,7 +13,7 @@ NOTHING, UNSEEN, KEPT_OUT, WALL = range(4)
 
 
 def map_lines(map_: OccupancyMap, columns: int = 100, *, ascii_only: bool = False) -> list[str]:
-    """Return lines of at most so many characters, the highest y at the top.
+    """Return lines of limited length, the highest y at the top.
 
     Walls are full blocks, free floor is blank, keep-out areas and unknown cells are shaded;
     in ASCII they are `#`, blank, `+` and `.`.

@@ -194,7 +194,7 @@ def _yaml(text: str, name: str) -> dict[str, list[str]]:
 
 
 def _without_comment(line: str) -> str:
-    """Return a line without what stands behind a # at its start or after a space."""
+    """Return a line without its comment: a # at its start or after a space."""
     if line.lstrip().startswith("#"):
         return ""
     return line.split(" #", 1)[0]

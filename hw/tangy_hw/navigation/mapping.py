@@ -76,7 +76,7 @@ class MapMaker:
         ranges = np.where(np.isfinite(scan.ranges), scan.ranges, 0.0)
         known = (scan.ranges > 0) & (scan.ranges < scan.farthest)
         met = known & (scan.ranges < REACH)
-        # what a beam went through, short of the cell it ended in
+        # the cells that a beam passed, except the one it ended in
         through = np.where(met, np.maximum(ranges - self.resolution, 0), np.where(known, REACH, 0))
         angles = scan.first + scan.step * np.arange(len(ranges))
         free = np.column_stack((through * np.cos(angles), through * np.sin(angles)))

@@ -75,7 +75,7 @@ class Navigator:
             start: where the robot is, within some 10 cm; None: it may be anywhere.
             limits: how it may drive.
             laser: where the scanner sits on the robot.
-            people: where people may be (n, 2), near whom it drives gently.
+            people: positions where people may be (n, 2); near them it drives gently.
         """
         self.map = map_
         self.limits = limits or MotionLimits()
@@ -134,7 +134,7 @@ class Navigator:
         self._turned, self._turn_to = 0.0, angle
 
     def replan(self) -> None:
-        """Look for a way to the goal anew, whatever stands in the one it has."""
+        """Plan a new path to the goal, whatever blocks the current one."""
         if self.goal is not None and self.state not in ("arrived", "failed"):
             self._since_plan = AGAIN
             self._pursuit = None
@@ -160,7 +160,7 @@ class Navigator:
         estimate = self._estimate
         return estimate is not None and self._plan(estimate.pose, goal) is not None
 
-    # ------------------------------------------------------------------ what it knows
+    # -------------------------------------------------------------- state
     @property
     def estimate(self) -> Estimate | None:
         """Where it thinks it is; None before the first scan."""

@@ -88,7 +88,7 @@ class NavigatorProtocol(Protocol):
         ...
 
     def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
-        """Take in the newest, and return what to tell the base for the next `dt` s."""
+        """Take the newest data, and return the base's command for the next `dt` s."""
         ...
 
     def facts(self) -> Mapping[str, Fact]:
@@ -96,5 +96,5 @@ class NavigatorProtocol(Protocol):
         ...
 
     def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
-        """Return the readings of "localisation" and "navigator", which worked so many s ago."""
+        """Return the readings of "localisation" and "navigator", with their age in s."""
         ...

@@ -69,7 +69,7 @@ class Obstacles:
         rows = np.floor(y / self._map.resolution).astype(np.intp)
         inside = (rows >= 0) & (columns >= 0) & (rows < self._map.shape[0])
         inside &= columns < self._map.shape[1]
-        away = np.zeros(len(ranges))  # what lies outside the map is seen through a door
+        away = np.zeros(len(ranges))  # points outside the map are seen through a door
         away[inside] = self._map.seen_distance[rows[inside], columns[inside]]
         beyond = AWAY + AWAY_SHARE * ranges
         fidgets = np.zeros(len(ranges), dtype=np.bool_)

@@ -83,7 +83,7 @@ def needed(particles: Floats) -> int:
 
 
 def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> Floats:
-    """Draw so many of (n, 3) in proportion to their weights (n,), with one random number."""
+    """Draw from (n, 3) in proportion to the weights (n,), with one random number."""
     if count == 0:
         return particles[:0]
     at = (np.arange(count) + rng.random()) / count

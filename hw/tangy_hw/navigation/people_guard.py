@@ -1,11 +1,10 @@
-"""The guard over people: how much of a command may be driven, past everybody who is around.
+"""Limits commands near people: speed and separation monitoring, as in ISO 13855.
 
-A robot keeps apart from each of them by what it takes to stop before they meet, while they go on as
-they do and come towards it a little faster, or, where they walk, turn round and come at a walk
-(separation and speed, as in ISO 13855; how fast they are taken to come is data, `MotionLimits`, and
-slower than the 1.6 m/s of that standard, by which a robot would never get beside a seat). Only what
-driving brings nearer than standing counts: a robot that somebody walks up to may drive away from
-them.
+The robot keeps the distance it needs to stop before it meets a person. It assumes that people keep
+their velocity and approach a little faster, and that walkers may turn round and come at a walk. The
+assumed speeds are data (`MotionLimits`), and below the 1.6 m/s of the standard, with which a robot
+would never get beside a seat. Only motion that brings a person nearer than standing still counts: a
+robot may drive away from a person who walks up to it.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ SHARES = (1.0, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2, 0.12)  # of a command that are tr
 REACH = 3.0  # metres beyond which nobody is met while the robot stops
 STEP = 0.1  # seconds between the moments that are looked at
 NEARER = 0.005  # metres by which driving must bring who stands nearer than standing, to count
-FURTHER, WALKS = 0.01, 0.25  # metres by which it must get away from who walks, at so many m/s
+FURTHER, WALKS = 0.01, 0.25  # m by which it must move away from walkers; m/s of a walker
 SPOT = 0.02  # m/s below which a robot turns on the spot
 FRESH = 0.5  # seconds for which a person who has just appeared is taken to come fast
 END = 0.15  # metres that a body reaches out beyond a return of which nothing more is known
@@ -72,11 +71,11 @@ def _slower_before_followers(twist: Twist, around: Around, limits: MotionLimits)
 
 
 class _Bodies(NamedTuple):
-    """Places (n, 2) in m, velocities (n, 2), how far each must be off, and how fast it may come.
+    """Positions (n, 2) in m, velocities (n, 2), separations, and speeds of approach.
 
-    Driving must leave it further off than standing would, by `leeway` in m, where both are too
-    near: no nearer than what stands, and further than who walks. Who walks may also turn where they
-    are, and come at `turned` m/s; 0 for what stands.
+    If driving and standing are both too near, driving must gain `leeway` m over standing: slightly
+    negative for standing bodies, positive for walkers. Walkers may also turn on the spot, and come
+    at `turned` m/s; 0 for standing bodies.
     """
 
     at: Floats

@@ -1,9 +1,9 @@
-"""People and what else stands or moves around, followed from scan to scan: where, and how fast.
+"""Tracks people and other objects from scan to scan: positions and velocities.
 
-Each is followed by a Kalman filter of constant velocity (Y. Bar-Shalom et al., "Estimation with
-applications to tracking and navigation", 2001, ch. 6) in the frame of the wheels, which never jumps
-as that of the map does. Of what stands still too little is known to tell a person from a chair, so
-that all of it is followed; `person` is only a word for staff.
+Each track is a Kalman filter of constant velocity (Y. Bar-Shalom et al., "Estimation with
+applications to tracking and navigation", 2001, ch. 6) in the odometry frame, which never jumps as
+the map frame does. A scan cannot tell a standing person from a chair, so that all objects are
+tracked; `person` is only a word for staff.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ class _Followed:
         self.hidden = False
 
     def note(self, legs: bool, dt: float) -> None:
-        """Take note of where it was, and judge by that whether it stands, and what it is."""
+        """Record its position, and judge from that whether it stands, and its kind."""
         x, y = self.state[0]
         self.past.append((self.age, float(x), float(y), legs))
         while self.age - self.past[0][0] > LEGS_SECONDS:
@@ -166,7 +166,7 @@ class PeopleTracker:
 
         Args:
             odometry: where the wheels count the robot.
-            scan: what it sees from there.
+            scan: the scan from there.
             dt: seconds since the scan before.
             unmapped: (n,) for each beam, whether it ends off all that is on the map; None: all do.
         """

@@ -1,4 +1,4 @@
-"""Ways across a map: costs that keep off what must not be touched, and the cheapest way.
+"""Path planning on a map: costs near obstacles, and the cheapest path.
 
 Obstacles are inflated by their Euclidean distance; the cheapest way over the grid is found by
 Dijkstra's algorithm in its geometric form (`skimage.graph.MCP_Geometric`: the cost of a step is its
@@ -24,16 +24,16 @@ from tangy_profiles.errors import TangyError
 FOOTPRINT = 0.25  # metres from the robot's middle to its edge
 RADIUS = FOOTPRINT + 0.07  # metres from its centre within which it would touch the map's obstacles
 KEEP = FOOTPRINT + 0.37
-"""Metres from its middle to what the map does not have, which may be somebody: a torso of .22 m
+"""Metres from its centre to obstacles not on the map, which may be people: a torso of .22 m
 stands over the legs that are seen, with .15 m to spare."""
 BESIDE = FOOTPRINT + 0.2
-"""Metres that are left to somebody who stands beside where a way begins or ends: a way does not
-begin and end elsewhere for that, and the torso over the legs is still not touched."""
+"""Metres kept from a person who stands beside an end of the path. The end does not move for that,
+and the torso over the legs is still not touched."""
 COMFORT = 0.25  # metres over which the cost of being near something falls to a third
-DISLIKE = 4.0  # how much dearer a metre is right beside something than far off it
-SQUEEZE = 12.0  # how much dearer again one is that is nearer to somebody than ways keep
+DISLIKE = 4.0  # factor on the cost of a metre right beside an obstacle
+SQUEEZE = 12.0  # factor on the cost of a metre nearer to a person than paths keep
 YIELD, YIELD_WITHIN = 6.0, 0.45
-"""How much dearer a metre is where somebody walks, and in how many metres that falls to a third."""
+"""Factor on the cost of a metre at a walking person; the m in which it falls to a third."""
 STEP = 0.05  # metres between the points of a path
 OUT = 0.5  # metres by which a robot that stands too near to something may get away from it
 SLACK = 0.1  # metres: two cells, within which an end and its surroundings are distinguished
@@ -62,7 +62,7 @@ class Costs:
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """A way: points (n, 2) some centimetres apart, its length in metres and what it costs."""
+    """A path: points (n, 2) some centimetres apart, its length in m, and its cost."""
 
     points: Floats
     length: float
@@ -77,14 +77,14 @@ def inflate(
     ends: Sequence[tuple[float, float]] = (),
     walking: Floats | None = None,
 ) -> Costs:
-    """Return what each cell costs, with more obstacles at the points `blocked` (n, 2).
+    """Return the cost of each cell, with more obstacles at the points `blocked` (n, 2).
 
     Args:
         map_: the map.
         blocked: further obstacles, which may be people.
         radius: least distance of the robot's centre from the map's obstacles, in m.
         keep: least distance from `blocked`, in m.
-        ends: where a way begins and ends: beside what stands there it may come nearer.
+        ends: the ends of the path, where it may come nearer to obstacles.
         walking: where those who walk are and will be (n, 2): ways avoid that where they can.
     """
     distance = _distance(map_, ~map_.obstacles)

@@ -42,7 +42,7 @@ def between(start: Pose, end: Pose) -> Pose:
 
 
 def placed(points: Floats, pose: Pose) -> Floats:
-    """Return points (n, 2) that are told in the frame of a pose in the frame around it."""
+    """Transform points (n, 2) from the frame of a pose into its parent frame."""
     c, s = cos(pose.heading), sin(pose.heading)
     turned = points @ np.array([[c, s], [-s, c]]) + np.array([pose.x, pose.y])
     return np.asarray(turned, dtype=np.float64)
@@ -64,7 +64,7 @@ def endpoints(
     """Return where beams end (m, 2), in the robot's frame; those that met nothing are left out.
 
     Args:
-        scan: what was measured.
+        scan: the scan.
         farthest: metres beyond which a beam does not count.
         laser: where the scanner sits on the robot.
         nearest: metres short of which a beam does not count.

@@ -81,7 +81,7 @@ class Pursuit:
         Args:
             pose: where the robot is, in the frame of the path.
             twist: how fast it drives now.
-            scan: what the laser sees now.
+            scan: the current scan.
             dt: seconds until the next command.
             wary_of: where people may be (n, 2), in the frame of the path.
         """
@@ -130,7 +130,7 @@ class Pursuit:
         if abs(curvature) > 0.01:
             most = min(most, limits.turn / abs(curvature))
         room = room_ahead(seen, curvature, limits)
-        if room + limits.gap > left:  # what stands behind the goal leaves it free
+        if room + limits.gap > left:  # obstacles behind the goal leave it free
             room = max(room, left)
         most = min(most, speed_in(room, limits))
         if wary_of is not None and len(wary_of):

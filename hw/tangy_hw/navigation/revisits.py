@@ -30,7 +30,7 @@ EVERY = 0.5  # metres between the scans that are looked at
 ASTRAY = 0.2  # of the way driven between: how far off the poses may be
 FARTHEST = 8.0  # metres off at most
 FITS = 0.85  # share of points that must fit
-FULLY = 1.5  # trace of what the walls told: both directions of the floor
+FULLY = 1.5  # trace of the observable directions: both directions of the floor
 AGREES, DISAGREES = 0.3, 0.6  # metres between the poses and the match
 
 
@@ -64,7 +64,7 @@ class Revisits:
 
     @property
     def unconfirmed(self) -> bool:
-        """Whether it came back, and no scan fits what was seen there before."""
+        """Whether the robot came back, and no scan fits the earlier ones there."""
         return not self.closed and self.crossed >= SURE
 
 

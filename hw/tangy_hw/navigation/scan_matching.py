@@ -119,7 +119,7 @@ def _directions(matrix: Floats) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 def _solve(hessian: Floats, gradient: Floats) -> tuple[float, float, float]:
-    """Solve for a step in the directions that are told about, and stay in the others."""
+    """Solve for a step in the observable directions, and stay in the others."""
     # on the floor alone first, with the turn that belongs to each step
     if hessian[2, 2] < 1e-6:
         turn = np.zeros(2)

@@ -21,7 +21,7 @@ STEPS = 8  # that are summed up: most of a metre
 KEPT = 50  # scans after which a step does not count any more: 5 s at ten a second
 FITS = 0.6  # share of points that must fit for a match to be believed
 FARTHEST = 0.4  # metres: a match that is further off the wheels than that is not believed
-ARM = 0.25  # metres from the robot's middle to its wheels: what a turn means in metres of wheel
+ARM = 0.25  # metres from the robot's centre to its wheels: converts a turn into metres of wheel
 
 
 class Disagreement:
@@ -56,7 +56,7 @@ class Disagreement:
         return float(np.linalg.norm(np.sum([step for _, step in self._steps], axis=0)))
 
     def reset(self) -> None:
-        """Begin anew, as after the wheels were mended."""
+        """Reset, for example after a repair of the wheels."""
         self._steps.clear()
         self._reference = None
 

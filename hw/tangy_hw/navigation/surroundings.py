@@ -27,13 +27,13 @@ AHEAD = (0.0, 0.7, 1.4, 2.1)  # seconds after which ways avoid those who walk
 
 
 class Surroundings:
-    """Keeps what a scanner sees and a map does not have, as things, as people, as an obstacle."""
+    """Keeps points of the scanner that are not on the map: as things, people and obstacles."""
 
     def __init__(self, map_: OccupancyMap, laser: Pose, limits: MotionLimits) -> None:
         """Begin with nothing around.
 
         Args:
-            map_: what need not be minded.
+            map_: the map, whose walls are ignored.
             laser: where the scanner sits on the robot.
             limits: how the robot may drive past people.
         """
@@ -58,7 +58,7 @@ class Surroundings:
         self._ends = points
 
     def forget(self) -> None:
-        """Forget what stands where, as when the robot was somewhere else than it thought."""
+        """Forget all obstacles, for example after the pose estimate was wrong."""
         self._obstacles.forget()
 
     @property
