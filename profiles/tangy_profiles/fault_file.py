@@ -22,8 +22,10 @@ from tangy_profiles.faults import (
     FaultRule,
 )
 from tangy_profiles.health import STATES, Fact
+from tangy_profiles.known_devices import possible_devices
 from tangy_profiles.reading import Table, nearest, plain, read_toml
-from tangy_profiles.robot import Robot
+from tangy_profiles.robot import DeviceProfile, Robot
+from tangy_profiles.rules_for_robot import for_devices
 
 _TESTS = ("is", "not", "above", "below", "at_least")
 
@@ -43,10 +45,12 @@ def load_faults(robot: Robot, path: Path | None = None) -> FaultBook:
 def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | None, list[str]]:
     """Read fault rules as `load_faults` does, and return the problems, a line for each entry.
 
-    Without mistakes there is a book; with any there is none.
+    Without mistakes there is a book, with the rules as they are for this robot; with any there is
+    none.
     """
     path = path or Path(str(files("tangy_profiles"))) / "faults.toml"
-    known = evidence_keys(robot)
+    devices = possible_devices(robot)
+    known = evidence_keys(devices)
     rules: list[FaultRule] = []
     mistakes: list[str] = []
     read = True
@@ -54,18 +58,17 @@ def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | No
         top = read_toml(path)
         for entry in top.tables("faults"):
             read = False
-            if (needs := entry.text("needs", "")) and needs not in robot.devices:
-                read = True  # it is of a device that this robot has not
-                continue
             try:
-                rule = _read_rule(entry, robot, known)
+                needs = entry.choice("needs", (*devices, ""), "")
+                rule = _read_rule(entry, devices, known)
                 _check_order(entry, rule, rules)
                 entry.close()
             except ProfileError as error:
                 mistakes.append(str(error))
             else:
-                rules.append(rule)
                 read = True
+                if not needs or needs in robot.devices:
+                    rules.append(rule)
         top.close()
     except ProfileError as error:
         mistakes.append(str(error))
@@ -75,13 +78,14 @@ def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | No
             f"{plain(path.name)}: the last of the faults must have `fallback = true`: it is what "
             "is diagnosed when no other rule explains what was seen."
         )
-    return (None if mistakes else FaultBook(tuple(rules), path.name)), mistakes
+    book = None if mistakes else FaultBook(for_devices(rules, robot.devices), path.name)
+    return book, mistakes
 
 
-def evidence_keys(robot: Robot) -> dict[str, str]:
+def evidence_keys(devices: Mapping[str, DeviceProfile]) -> dict[str, str]:
     """Return every key that a rule may look at, with what it is."""
     keys = {**CONTEXT, **SYMPTOMS}
-    for device in robot.devices.values():
+    for device in devices.values():
         keys[f"{device.name}.state"] = f"{device.label}: OK, WARN, STALE or ERROR"
         keys[f"{device.name}.age"] = f"{device.label}: s since the newest data"
         for fact, measure in device.facts.items():
@@ -89,7 +93,9 @@ def evidence_keys(robot: Robot) -> dict[str, str]:
     return keys
 
 
-def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRule:
+def _read_rule(
+    entry: Table, devices: Mapping[str, DeviceProfile], known: Mapping[str, str]
+) -> FaultRule:
     code = entry.text("code")
     if not code.replace("-", "").isalnum() or code != code.lower():
         raise entry.wrong("code", "must be lower-case words with hyphens.")
@@ -112,10 +118,10 @@ def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRul
         recovery=recovery,
         console=_text(entry, "console"),
         advice=_texts(entry, "advice"),
-        when=() if fallback else _alternatives(entry, known, robot),
+        when=() if fallback else _alternatives(entry, known, devices),
         also=entry.words("also", known, ()),
         continues=entry.words("continues", default=()),
-        device=entry.choice("device", (*robot.devices, ""), ""),
+        device=entry.choice("device", (*devices, ""), ""),
         tries=entry.whole("tries", 1, 10, 1),
         remedy=entry.choice("remedy", OWN_REMEDIES, ""),
         solved=entry.choice("solved", SOLVED, SOLVED[0]),
@@ -135,7 +141,7 @@ def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRul
 
 
 def _alternatives(
-    entry: Table, known: Mapping[str, str], robot: Robot
+    entry: Table, known: Mapping[str, str], devices: Mapping[str, DeviceProfile]
 ) -> tuple[tuple[Condition, ...], ...]:
     found: list[tuple[Condition, ...]] = []
     for alternative in entry.tables("when"):
@@ -148,7 +154,7 @@ def _alternatives(
             if len(words) != 1 or words[0] not in _TESTS:
                 raise alternative.wrong(key, f"must hold one of: {', '.join(_TESTS)}.")
             condition = Condition(key, words[0], _value(test, words[0]))
-            if problem := _never(condition, robot):
+            if problem := _never(condition, devices):
                 raise test.wrong(words[0], problem)
             conditions.append(condition)
         if not conditions:
@@ -159,10 +165,10 @@ def _alternatives(
     return tuple(found)
 
 
-def _never(condition: Condition, robot: Robot) -> str:
+def _never(condition: Condition, devices: Mapping[str, DeviceProfile]) -> str:
     """Say why a condition on what a device reports can never be met as meant; "" if it can."""
     head, _, fact = condition.key.partition(".")
-    device = robot.devices.get(head)
+    device = devices.get(head)
     if device is None or fact == "age":
         return ""
     if fact == "state":
@@ -217,16 +223,7 @@ def _check_order(entry: Table, rule: FaultRule, earlier: Sequence[FaultRule]) ->
         raise entry.wrong("code", f"comes after {earlier[-1].code!r}, which explains everything.")
     for conditions in rule.when:
         for other in earlier:
-            if conditions and _hidden(rule, conditions, other):
+            if conditions and other.hides(conditions):
                 raise entry.wrong(
                     "when", f"can never be reached: {other.code!r} matches first, and explains it."
                 )
-
-
-def _hidden(rule: FaultRule, conditions: Sequence[Condition], other: FaultRule) -> bool:
-    """Say whether whenever the conditions hold, an earlier rule explains all their symptoms."""
-    mine = {condition.key for condition in conditions if condition.key not in CONTEXT}
-    return mine <= other.symptoms and any(
-        all(any(mine.implies(theirs) for mine in conditions) for theirs in alternative)
-        for alternative in other.when
-    )

@@ -7,7 +7,7 @@ reads the evidence by them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -182,6 +182,14 @@ class FaultRule:
             if all(condition.holds(evidence) for condition in conditions):
                 return conditions
         return None
+
+    def hides(self, conditions: Sequence[Condition]) -> bool:
+        """Say whether this rule explains all symptoms whenever conditions of a later one hold."""
+        theirs = {condition.key for condition in conditions if condition.key not in CONTEXT}
+        return theirs <= self.symptoms and any(
+            all(any(one.implies(mine) for one in conditions) for mine in alternative)
+            for alternative in self.when
+        )
 
     def fill(self, text: str, *, name: str, object: str, why: str = "") -> str:
         """Put the person's name, the activity's object and the evidence into a text."""

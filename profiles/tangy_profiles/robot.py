@@ -127,7 +127,8 @@ class Robot:
     (angles in degrees) to look at a `card` and at a `face`. `file` is where all this was read.
     `expert` is whom the facility has named for what staff cannot mend, and `staff` who is called
     where it stands still. `liveness` is how late its data may be, `body` how large it is, how it
-    drives, and where its devices sit.
+    drives, and where its devices sit. `undriven` are the devices of its file that
+    nothing drives.
     """
 
     name: str
@@ -144,6 +145,7 @@ class Robot:
     liveness: Liveness = field(default_factory=Liveness)
     staff: Contact | None = None
     body: BodyProfile = field(default_factory=BodyProfile)
+    undriven: tuple[DeviceProfile, ...] = ()
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -160,14 +162,19 @@ class Robot:
                 )
 
 
+def shipped_robots() -> dict[str, Path]:
+    """Return the files of the robots that ship, by name."""
+    folder = Path(str(files("tangy_profiles"))) / "robots"
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+
+
 def load_robot(name: str = "tangy") -> Robot:
     """Load a robot by name, or by the path of its TOML file.
 
     Raises:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
-    folder = Path(str(files("tangy_profiles"))) / "robots"
-    shipped = {path.stem: path for path in folder.glob("*.toml")}
+    shipped = shipped_robots()
     if name not in shipped and not name.endswith(".toml"):
         if Path(name).is_file():
             raise ProfileError(plain(f"{name} is no robot: a robot's file ends in .toml."))

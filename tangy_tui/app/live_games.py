@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.beliefs import Beliefs
+from tangy_profiles.known_devices import missing_devices
 from tangy_profiles.past_game import PastGame
 from tangy_tui.app.card_news import BY, CardNews, CardNote, doubt_document
 from tangy_tui.app.game_controller import GameController
@@ -114,6 +115,7 @@ class LiveGames:
         world = self._supervision.world
         found = self.tally.to_json(self._workspace.activity.situations, self.beliefs, self.faults)
         found["card_doubts"] = self.card_doubts
+        found["missing_devices"] = list(missing_devices(self._workspace.robot))
         if isinstance(world, BenchedWorld):
             found |= world.score.to_json()
             found["real_time_factor"] = round(self.seconds / self.took, 2) if self.took else None

@@ -15,6 +15,7 @@ from tangy_hw.robot_client.live_world import FACING, PACE_SECONDS, LiveWorld
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.health import Health
+from tangy_profiles.known_devices import driven
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
@@ -58,6 +59,9 @@ def opening_of(
     """
     from tangy_profiles.fault_file import load_faults
 
+    if not bench:
+        workspace.robot = driven(workspace.robot, _named(own or {}))
+
     def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
         told: dict[str, Any] = {"book": load_faults(workspace.robot), "cancellation": cancellation}
         if bench:
@@ -66,6 +70,12 @@ def opening_of(
         return open_robot(workspace, **told, **(own or {}), **both)
 
     return opening
+
+
+def _named(own: Mapping[str, Any]) -> list[str]:
+    """Return the devices that are driven by what a command names, and not the robot's file."""
+    cameras = [str(given).partition("=")[0] for given in own.get("cameras", ())]
+    return [*cameras, *(["requests"] if own.get("requests") else [])]
 
 
 @contextmanager
@@ -100,7 +110,7 @@ def open_bench(
         Cancelled: it was called off.
         TangyError: the bench or the robot process does not begin.
     """
-    folder = workspace.store.folder
+    folder, has = workspace.store.folder, workspace.robot.devices
     cancellation = cancellation or Cancellation()
     bench = DeviceSimulator(
         seed=seed,
@@ -120,12 +130,12 @@ def open_bench(
             people=tuple(workspace.names),
             room=workspace.room.name,
             drivers={
-                **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE},
+                **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE if name in has},
                 "laser": {"kind": "scip", "at": bench.wires.scip},
-                "screen": {"kind": "page", "port": 0},
+                **({"screen": {"kind": "page", "port": 0}} if "screen" in has else {}),
             },
-            cameras={CAMERA: bench.wires.head},
-            requests=f"signs:{bench.wires.infrared}",
+            cameras={CAMERA: bench.wires.head} if CAMERA in has else {},
+            requests=f"signs:{bench.wires.infrared}" if "requests" in has else "",
             corners=bench.wires.corners,
             start=None if lost else _start(workspace.room, tuple(workspace.names)),
             map=map_,

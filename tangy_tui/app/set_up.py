@@ -13,6 +13,7 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
 from tangy_profiles.health import OK
+from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.app.joining import let_join
 
@@ -229,6 +230,8 @@ class SetUp:
         return Check("tablet", "ready" if shown else "not ready", page)
 
     def _cards(self) -> Check:
+        if not reads_cards(self.workspace.robot):
+            return Check("cards", "not told")
         return Check("cards", "ready" if self.card else "not checked", self.card)
 
     def _faces(self) -> Check:
@@ -238,6 +241,8 @@ class SetUp:
         return Check("faces", "ready" if seen else "not checked", seen)
 
     def _sound(self) -> Check:
+        if "voice" not in self.workspace.robot.devices:
+            return Check("sound", "not told")
         state: CheckState = "ready" if self.heard else "not ready" if self.said else "not checked"
         return Check("sound", state)
 

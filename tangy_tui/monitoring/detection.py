@@ -236,14 +236,16 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
     """Return the evidence that the devices of a robot give.
 
     What a device measured before it fell silent is no evidence any more, and a device of the
-    robot's that is not even mentioned is as silent as any.
+    robot's that is not even mentioned is as silent as any. Of others nothing is taken in.
     """
     found: dict[str, Fact] = {f"{name}.state": STALE for name in robot.devices}
     quiet = _link_is_quiet_for(robot, health)
     for reading in health:
         device = robot.devices.get(reading.device)
+        if device is None:
+            continue  # what the robot has not cannot fail
         state = lasting_state(device, reading)
-        if state == STALE and quiet and device is not None:
+        if state == STALE and quiet:
             grew_old = device.stale_after < reading.age <= device.lost_after + quiet
             told = OK if reading.state == STALE else reading.state
             state = told if grew_old else state  # as it was: a pause is no sign of anything

@@ -9,6 +9,11 @@ NOT_SIMULATED = "You can bring about faults in the simulated room only."
 NO_GAME = "No game is going on: press {next} to play one first."
 
 
+def not_of_this_robot(kind: str, robot: str) -> str:
+    """Say that a fault is one of a device that a robot has not."""
+    return f"--inject {kind}: {robot} has no device that this could happen to."
+
+
 def comes_later_words(kind: str) -> str:
     """Say that a fault shows itself later."""
     return f"{kind} comes as soon as it can show."

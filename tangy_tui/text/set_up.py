@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import assert_never
 
 from tangy_tui.app.set_up import Check, CheckName, SetUp
+from tangy_tui.text.missing_devices import missing_words
 
 TITLE = "Set up"
 PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
@@ -106,7 +107,9 @@ def check_words(check: Check) -> str:
 
 _NOT_TOLD: dict[CheckName, str] = {
     "tablet": "this robot has no tablet",
+    "cards": "this robot reads none",
     "faces": "Tangy knows no faces here",
+    "sound": "this robot has no loudspeaker",
 }
 
 
@@ -215,4 +218,5 @@ def lines_of(setup: SetUp) -> list[str]:
         f"Played for: {patterns_words(setup)}. Winners: {winners_words(setup)}.",
         f"Pace: {pace_words(setup.pace)}. Time: {minutes_words(setup.minutes)}.",
         f"Tangy visits {visits_words(setup)}. Its words: {strength_words(setup)}.",
+        *missing_words(setup.workspace.robot, setup.workspace.activity),
     ]

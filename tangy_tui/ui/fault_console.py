@@ -20,6 +20,7 @@ from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.game_commands import Acknowledge, CallExpert, Clear, Reached, StaffNote
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.injected import possible_kinds
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.fault import (
@@ -365,7 +366,8 @@ class FaultConsole:
             if kind not in world.present and all(kind != late for _, late in world.came[came:])
         ]
         book = self.supervision.book
-        called = {name: book.rule(kind.code).name for name, kind in KINDS.items()}
+        possible = possible_kinds(rule.code for rule in book.rules)
+        called = {name: book.rule(KINDS[name].code).name for name in possible}
         dialog = InjectDialog(world.present, to_come, called)
         kind = await self._screen.app.push_screen_wait(dialog)
         if kind is None or self.refuses():

@@ -25,6 +25,7 @@ from tangy_tui.verbs.playing import (
     Plain,
     PolicyName,
     Teacher,
+    check_injections,
     list_injections,
     play_with_staff,
     recall,
@@ -155,6 +156,7 @@ def live(
 
         if map_:
             check_map(workspace, map_)
+        check_injections(faults, workspace)
         own = {
             "cameras": camera or (), "requests": requests, "corners": read_corners(table),
             "cards": read_dealt(card or (), workspace.people), "courtesies": COURTESIES,
@@ -196,10 +198,14 @@ def live(
             print(SWITCHING_ON, file=sys.stderr)
         from tangy_tui.app.live_games import LiveGames
         from tangy_tui.app.switching_on import switched_on
+        from tangy_tui.text.missing_devices import missing_words
 
         with switched_on(opening(number), stepped=bench and not plain_lines) as there:
             if not as_json and (plain_lines or not bench) and there.link.tablet:
                 print(plain(there.link.tablet), file=sys.stderr)
+            told_missing = missing_words(workspace.robot, workspace.activity)
+            for told in [] if as_json or lines is not None else told_missing:
+                print(plain(told), file=sys.stderr)  # the lines of the set-up have told it
             asks = plain_lines or who == SCRIPTED
             if lines is not None:
                 lines.setup.world = there

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.past_game import PastGame
+    from tangy_sim.worlds.injection import Injection
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.console.staff import StaffLines
     from tangy_tui.learning.policy import Policy
@@ -99,6 +100,24 @@ def list_injections(as_json: bool) -> None:
         when = kind.shows if kind.shows == "at once" else f"while {kind.shows}"
         print(f"{kind.name:<{width}}  {kind.words} (shows {when})")
     print(injecting_words(next(iter(KINDS))))
+
+
+def check_injections(injections: Sequence[Injection], workspace: Workspace) -> None:
+    """Refuse a fault that needs a device which the robot does not have.
+
+    Raises:
+        TangyError: naming the fault and the robot.
+    """
+    from tangy_profiles.fault_file import load_faults
+    from tangy_tui.app.injected import possible_kinds
+    from tangy_tui.text.injections import not_of_this_robot
+
+    if not injections:
+        return
+    possible = possible_kinds(rule.code for rule in load_faults(workspace.robot).rules)
+    for one in injections:
+        if one.kind.name not in possible:
+            raise TangyError(plain(not_of_this_robot(one.kind.name, workspace.robot.title)))
 
 
 def play_with_staff(

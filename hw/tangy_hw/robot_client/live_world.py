@@ -257,6 +257,8 @@ class LiveWorld(LivePlan):
     @property
     def _has_voice(self) -> bool:
         health = self.link.health()
+        if "voice" not in self._robot.devices:
+            return False
         return all(reading.state == OK for reading in health if reading.device == "voice")
 
     def name_of(self, person: str | None) -> str:

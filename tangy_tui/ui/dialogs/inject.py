@@ -49,14 +49,15 @@ class InjectDialog(Dialog[str | None]):
         Args:
             there: the kinds of fault that are there now.
             to_come: the kinds that are still to come.
-            called: what the console calls the fault of each kind; it can be searched for, too.
+            called: the kinds that can come to this robot, and what the console calls the fault of
+                each; it can be searched for, too.
         """
         super().__init__(None)
+        self._all = [kind for kind in KINDS.values() if kind.name in called]
         self._there = frozenset(there)
         self._to_come = frozenset(to_come)
         self._found_by = {
-            kind.name: f"{kind.name} {kind.words} {called.get(kind.name, '')}".lower()
-            for kind in KINDS.values()
+            kind.name: f"{kind.name} {kind.words} {called[kind.name]}".lower() for kind in self._all
         }
         self._typed = ""
         self.kinds: tuple[Kind, ...] = ()
@@ -74,7 +75,7 @@ class InjectDialog(Dialog[str | None]):
 
     def _show(self) -> None:
         words = self._typed.lower().split()
-        order = sorted(KINDS.values(), key=lambda kind: not self._lifts(kind))
+        order = sorted(self._all, key=lambda kind: not self._lifts(kind))
         self.kinds = tuple(
             kind for kind in order if all(w in self._found_by[kind.name] for w in words)
         )
@@ -88,7 +89,7 @@ class InjectDialog(Dialog[str | None]):
     def _lines(self, width: int) -> list[ChoiceLine]:
         if not self.kinds:
             return [ChoiceLine(((NONE_FOUND, "dim"),))]
-        label = max(cell_len(kind.name) for kind in KINDS.values())
+        label = max(cell_len(kind.name) for kind in self._all)
         lines: list[ChoiceLine] = []
         for number, kind in enumerate(self.kinds, 1):
             note = THERE if kind.name in self._there else TO_COME

@@ -57,6 +57,7 @@ from tangy_tui.text.control import (
 )
 from tangy_tui.text.live_games import LOOKS_ROUND, MAY_MOVE, frozen_words
 from tangy_tui.text.live_news import seated_words
+from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
@@ -125,6 +126,9 @@ class LiveScreen(PlayScreen):
         """Show what is known of the robot, and follow it; the playing screen begins the game."""
         self.show_status()
         self.set_interval(STAFF_SECONDS, self.show_staff)
+        workspace = self._workspace
+        for told in missing_words(workspace.robot, workspace.activity):
+            self._write(told, "text")
         if self.world.link.tablet:
             self._write(self.world.link.tablet, "text")
             # the log has no room in a small window, and the tablet may have to be opened again

@@ -16,6 +16,7 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import CHECKS, SetUp
 from tangy_tui.text import set_up as text
+from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.program import NOTHING_MOVES
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
@@ -165,7 +166,9 @@ class SetUpScreen(TangyScreen[bool]):
             ink = inks.get(check.state, "text")
             label, value = text.NAMES[check.name], text.check_words(check)
             lines.append(SetUpLine("check", check.name, label, value, ink))
-        return lines
+        workspace = self.setup.workspace
+        told = missing_words(workspace.robot, workspace.activity)
+        return [*lines, *(SetUpLine("head", "missing", "", one) for one in told)]
 
     # -------------------------------------------------------------------------------- the keys
 

@@ -1,0 +1,76 @@
+"""The devices that a robot can have: those of the robots that ship, and those that one lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from functools import cache
+from types import MappingProxyType
+
+from tangy_profiles.robot import LINK, DeviceProfile, Robot, load_robot, shipped_robots
+
+NEEDED = (LINK, "base", "laser", "localisation", "navigator")
+"""The devices that no robot is without: it must be reached, drive, and know where it is."""
+
+CARDS = "cards"
+TOLD_MISSING = ("stop_button", "camera", "requests", "voice", "screen", "arms")
+"""The devices of which staff are told if a robot has none, in this order."""
+
+
+@cache
+def known_devices() -> Mapping[str, DeviceProfile]:
+    """Return the devices of all robots that ship, by name, each with all facts it may have."""
+    found: dict[str, DeviceProfile] = {}
+    for name in shipped_robots():
+        for device in load_robot(name).devices.values():
+            known = found.get(device.name, device)
+            facts = MappingProxyType({**device.facts, **known.facts})
+            found[device.name] = replace(known, facts=facts)
+    return MappingProxyType(found)
+
+
+def possible_devices(robot: Robot) -> Mapping[str, DeviceProfile]:
+    """Return the devices that fault rules may name: the robot's own, and all that are known.
+
+    A fact that the robot's own device does not have is taken from the known one.
+    """
+    known = known_devices()
+    own = {
+        name: replace(
+            device,
+            facts=MappingProxyType(
+                {**(known[name].facts if name in known else {}), **device.facts}
+            ),
+        )
+        for name, device in robot.devices.items()
+    }
+    return {**known, **own}
+
+
+def driven(robot: Robot, also: Collection[str] = ()) -> Robot:
+    """Return a robot without the devices that its file lists, and that nothing drives.
+
+    Args:
+        robot: whose devices they are.
+        also: names of devices that are driven although the file does not say by what.
+
+    Returns:
+        The robot; its `undriven` are the devices that were left out.
+    """
+    there = {*NEEDED, *robot.drivers, *also}
+    kept = {
+        name: device for name, device in robot.devices.items() if name in there or device.source
+    }
+    left_out = [device for name, device in robot.devices.items() if name not in kept]
+    return replace(robot, devices=MappingProxyType(kept), undriven=(*robot.undriven, *left_out))
+
+
+def missing_devices(robot: Robot) -> tuple[str, ...]:
+    """Return the names of the devices that a robot has not, of which staff are told."""
+    known = tuple(name for name in TOLD_MISSING if name not in robot.devices)
+    return (*known, *(one.name for one in robot.undriven if one.name not in TOLD_MISSING))
+
+
+def reads_cards(robot: Robot) -> bool:
+    """Say whether a robot has a camera in whose pictures cards are read."""
+    return any(device.looks_at == CARDS for device in robot.devices.values())

@@ -1,0 +1,53 @@
+"""What a robot does not have, told once, before a game begins."""
+
+from __future__ import annotations
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.known_devices import missing_devices, reads_cards
+from tangy_profiles.robot import Robot
+
+ALL_SHOWN = "This robot has no loudspeaker: Tangy shows everything on its screen."
+ALL_SAID = "This robot has no screen: Tangy says everything."
+NEITHER = "This robot has neither a loudspeaker nor a screen: nobody could follow the game."
+NO_BUTTON = (
+    "Tangy does not notice whether this robot's emergency stop is pressed. If you press it, stop "
+    "the game here as well."
+)
+NO_REQUESTS = "This robot does not see who asks for help: tell Tangy who does."
+NO_ARMS = "This robot has no arms: Tangy makes no gestures."
+
+
+def missing_words(robot: Robot, activity: Activity) -> list[str]:
+    """Say in a sentence each what a robot does not have, and what Tangy does instead.
+
+    Args:
+        robot: without the devices that nothing drives.
+        activity: what is played with it.
+    """
+    missing = missing_devices(robot)
+    labels = {device.name: device.label for device in robot.undriven}
+    told = []
+    for name in missing:
+        match name:
+            case "stop_button":
+                told.append(NO_BUTTON)
+            case "camera":
+                pass  # what matters is whether anything reads cards: below
+            case "requests":
+                told.append(NO_REQUESTS)
+            case "voice":
+                told.append(NEITHER if "screen" in missing else ALL_SHOWN)
+            case "screen":
+                told += [] if "voice" in missing else [ALL_SAID]
+            case "arms":
+                told.append(NO_ARMS)
+            case _:
+                told.append(f"This robot has no {labels.get(name, name)}.")
+    if activity.deck.columns and not reads_cards(robot):
+        told.append(no_camera_words(activity.object))
+    return told
+
+
+def no_camera_words(object: str) -> str:
+    """Say that nobody reads what people have before them, but staff."""
+    return f"This robot has no camera that sees a {object}: Tangy asks you how each one is."
