@@ -50,6 +50,7 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.speech.input import Heard, SpeechInput
 from tangy_tui.text.coach import coach_words
+from tangy_tui.text.hearing import hearing_words
 from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
 from tangy_tui.text.teaching_commands import (
@@ -129,7 +130,7 @@ class TeachingLines:
         self._spoken: asyncio.Future[Heard | None] | None = None
         self._typed: asyncio.Future[str | None] | None = None
         if ears is not None:
-            ears.tell = write
+            ears.tell = lambda note: write(hearing_words(note))
 
     async def run(self, *, resume: bool = True) -> None:
         """Teach until `quit` or the end of the input. What was verified is kept."""

@@ -11,6 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Literal
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
@@ -85,6 +86,7 @@ class Phrases:
             elif behaviour.effect == "go to user":
                 self._add_people(behaviour)
         self.pronunciations = self._read_pronunciations(activity, people)
+        self.sources: dict[str, Literal["activity", "person"]]
         self.sources = dict.fromkeys(self.pronunciations, "person")
         """Who says how a word is pronounced: "activity" or "person"."""
         self.sources |= dict.fromkeys(activity.pronunciations, "activity")

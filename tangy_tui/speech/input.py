@@ -8,7 +8,7 @@ from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, S
 from pathlib import Path
 from typing import TypeAlias
 
-from tangy_hw.audio.meter import Meter
+from tangy_hw.audio.meter import Meter, SoundTrouble
 from tangy_hw.audio.source import SpokenRecording
 from tangy_hw.audio.sources import open_source
 from tangy_tui.language.commands import Phrasebook
@@ -16,6 +16,7 @@ from tangy_tui.language.steering import Steering
 from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, AcousticEvidence, EvidenceSettings
+from tangy_tui.speech.hearing_notes import HearingKind, HearingNote
 from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.recogniser import Recogniser, SpeechUnavailable
 from tangy_tui.speech.recordings import Recorder
@@ -26,7 +27,7 @@ RINGING = 0.3  # s for which a microphone stays shut after the robot has spoken
 FAILURES = 3  # utterances in a row that cannot be decoded, until it is no use to go on by itself
 
 Heard: TypeAlias = Say | StopCommand | Reply
-WAITS = {"starting": "The decoder is getting ready.", "thinking": "Still thinking."}
+WAITS: dict[State, HearingKind] = {"starting": "getting ready", "thinking": "still thinking"}
 
 
 class SpeechInput:
@@ -77,8 +78,8 @@ class SpeechInput:
         """The words so far of what is being said."""
         self.sound = b""
         """The last utterance that was heard, 16 kHz mono s16le."""
-        self.tell: Callable[[str], None] = lambda sentence: None
-        """Is called with a sentence when something must be said about hearing."""
+        self.tell: Callable[[HearingNote], None] = lambda note: None
+        """Is called when something must be said about hearing."""
         self.changed: Callable[[], None] = lambda: None
         """Is called when `state` or `words` have changed."""
         self._state: State = "starting"
@@ -96,9 +97,9 @@ class SpeechInput:
         self._asking, self._choices = False, tuple[str, ...]()
         self.steering: tuple[Steering, ...] = ()  # taken while no command is
         self._renew = False  # there are other phrases to listen for
-        self._noticed: set[str] = set()
+        self._noticed: set[HearingNote] = set()
         if recorder is not None:
-            recorder.tell = self._told
+            recorder.tell = lambda why: self._told("records no more", why)
         self.ended = False  # the source has no more
         self._closed = False
         self._over = asyncio.Event()  # all that was started has ended
@@ -115,11 +116,11 @@ class SpeechInput:
         return self._recorder is not None
 
     @property
-    def trouble(self) -> str:
-        """What is wrong with the sound, in a sentence; "" if nothing is."""
+    def trouble(self) -> SoundTrouble | None:
+        """What is wrong with the sound, if anything is."""
         listens = self.state in ("listening", "speaking")
         spoken = not self.words and not self.hands_free  # who was heard spoke loudly enough
-        return self.meter.words(speaking=spoken) if self.live and listens else ""
+        return self.meter.trouble(speaking=spoken) if self.live and listens else None
 
     def begin(self) -> None:
         """Let a recording that is heard as if it were said now begin."""
@@ -132,7 +133,7 @@ class SpeechInput:
         if self.utterance is not None and not self.utterance.over:
             self._end()
         elif self._state in WAITS:
-            self._told(f"{WAITS[self._state]} Push again in a moment.")
+            self._told(WAITS[self._state])
         elif self._state == "off":
             self.meter.begin()
             self.utterance = Utterance(found=False)
@@ -201,17 +202,19 @@ class SpeechInput:
                 await self._over.wait()
 
     async def _hear(self) -> AsyncGenerator[Heard, None]:
-        recogniser = self._recogniser = Recogniser(log=self._log, notify=self._told)
+        recogniser = self._recogniser = Recogniser(
+            log=self._log, notify=lambda how: self._told("worker ended", how)
+        )
         recogniser.partial = self._partial
         recogniser.speaking = self._spoke
-        self._source.tell = self._told
+        self._source.tell = lambda words: self._told("source", words)
         pump: asyncio.Task[None] | None = None
         try:
             await self._listen_for(recogniser)
             if self._closed:
                 return
             if self._recorder is not None:
-                self._told("What you say, and say yes to, is recorded.")
+                self._told("records")
             if self.live:
                 pump = asyncio.create_task(self._pump())
                 spoken = self._live(recogniser)
@@ -228,9 +231,7 @@ class SpeechInput:
                 await pump
             if self._closed:
                 return
-            self._told(
-                "The recording is over." if self._source.recorded else "The microphone has closed."
-            )
+            self._told("recording over" if self._source.recorded else "microphone closed")
         except SpeechUnavailable:
             if not self._closed:
                 raise
@@ -253,10 +254,10 @@ class SpeechInput:
         if self._closed:
             return
         await recogniser.start(wanted(phrasebook, self._settings, lexicon.heard()))
-        for sentence in lexicon.notices():
-            if sentence not in self._noticed:
-                self._noticed.add(sentence)
-                self._told(sentence)
+        for note in lexicon.notices():
+            if note not in self._noticed:
+                self._noticed.add(note)
+                self.tell(note)
 
     async def _recorded(self, recogniser: Recogniser) -> AsyncGenerator[AcousticEvidence, None]:
         pcm = b"".join([chunk async for chunk in self._source])
@@ -264,7 +265,7 @@ class SpeechInput:
             self._now("thinking")
             self.sound = piece
             if len(piece) > 2 * RATE * LONGEST:
-                self._told(f"Of {len(piece) / 2 / RATE:.0f} s without a pause I hear {LONGEST} s.")
+                self._told("cut off", seconds=round(len(piece) / 2 / RATE))
             try:
                 if self._renew:
                     await self._listen_for(recogniser)
@@ -274,7 +275,7 @@ class SpeechInput:
             except SpeechUnavailable as error:
                 if self._closed:
                     raise
-                self._told(str(error))
+                self._told("decoder failed", str(error))
                 continue
             self._now("listening")
             yield evidence
@@ -293,7 +294,7 @@ class SpeechInput:
                 failures += 1
                 if self._closed or (self.hands_free and failures >= FAILURES):
                     raise
-                self._told(f"{error} Please say that again.")
+                self._told("not decoded", str(error))
                 evidence, left = None, b""
             finally:
                 self.utterance = None
@@ -308,7 +309,7 @@ class SpeechInput:
             if not utterance.dropped or isinstance(command, StopCommand):  # whatever came between
                 yield evidence
             elif evidence.words and self._asking:
-                self._told(f"I heard {evidence.words!r}, but a question came between.")
+                self._told("question between", evidence.words)
 
     async def _next(self, recogniser: Recogniser) -> Utterance | None:
         """Wait for the next utterance to listen to; None if the source is over."""
@@ -378,7 +379,8 @@ class SpeechInput:
             )
         else:
             heard, told = commanded(evidence, self._phrasebook, self._settings, live=self.live)
-        self._told(told)
+        if told is not None:
+            self._told(told)
         return heard
 
     def _partial(self, words: str) -> None:
@@ -395,6 +397,5 @@ class SpeechInput:
             self._state = state
             self.changed()
 
-    def _told(self, sentence: str) -> None:
-        if sentence:
-            self.tell(sentence)
+    def _told(self, kind: HearingKind, about: str = "", *, seconds: int = 0) -> None:
+        self.tell(HearingNote(kind, about, seconds=seconds))

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
+from typing import Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import ProfileError
@@ -15,8 +16,12 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.phrasebook import Phrase
 from tangy_tui.language.pronunciation import pronounce, suggest
 from tangy_tui.language.words import Words, clean, spoken, words_of
+from tangy_tui.speech.hearing_notes import HearingNote
 
 MOST_WAYS = 64  # to say one phrase; those of most words count first
+
+WordSource: TypeAlias = Literal["activity", "person", "dictionary", "suggested", ""]
+"""Where a pronunciation comes from: "" where nobody knows one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +34,7 @@ class Said:
 
     word: str
     phones: tuple[str, ...]
-    source: str
+    source: WordSource
 
     @property
     def heard(self) -> bool:
@@ -114,23 +119,19 @@ class Lexicon:
                 reasons[phrase.said] = f"no pronunciation of {', '.join(map(repr, lacks))}"
         return reasons
 
-    def notices(self) -> tuple[str, ...]:
-        """Return a sentence for each word and phrase that cannot be heard, with what helps."""
+    def notices(self) -> tuple[HearingNote, ...]:
+        """Return a note for each word and phrase that cannot be heard."""
         whose = {word: id for words, id in self._table.names.items() for word in words}
-        lines = [
-            f"{said.word!r} can be typed, but not heard: "
-            + (
-                f"say how it is pronounced (tangy people pronounce {whose[said.word]})."
-                if said.word in whose
-                else "the activity does not say how it is pronounced (tangy activity check)."
-            )
+        notes = [
+            HearingNote("name not heard", said.word, whose[said.word])
+            if said.word in whose
+            else HearingNote("word not heard", said.word)
             for said in self.unknown
         ]
-        lines += [
-            f"{one.phrase.said!r} can be typed, but not heard: it sounds like {one.other.said!r}."
-            for one in self.alike
+        notes += [
+            HearingNote("phrase not heard", one.phrase.said, one.other.said) for one in self.alike
         ]
-        return tuple(lines)
+        return tuple(notes)
 
     def _look_up(self, word: str) -> Said:
         if word in self._table.pronunciations:

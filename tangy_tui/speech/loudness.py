@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Literal, TypeAlias
 
 from tangy_hw.audio.meter import CLIPPED, QUIET, RAILS
 
@@ -12,6 +13,11 @@ LOUD = 0.9  # the part of the frames that is less loud than a voice, or a room, 
 CLEAR, FAIR = 20.0, 12.0  # dB of a voice above the room
 LEAST = 0.33  # of a sample's steps: nothing that was recorded is less loud
 SILENT = -99.0  # dB: zeros alone are below that
+
+SoundAdvice: TypeAlias = Literal[
+    "turn down", "turn up", "room as loud", "room rather loud", "speak soon", "without a pause"
+]
+"""What to change about a sound: the microphone's level, the room, or how phrases are said."""
 
 
 def loudness(pcm: bytes, share: float) -> float:
@@ -25,21 +31,21 @@ def loudness(pcm: bytes, share: float) -> float:
     return 20 * math.log10(max(level, LEAST) / 32_768)
 
 
-def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) -> list[str]:
-    """Say what to change, a sentence each, by the levels in dB: nothing if the sound is right."""
-    said = []
+def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) -> list[SoundAdvice]:
+    """Return what to change, by the levels in dB: nothing if the sound is right."""
+    said: list[SoundAdvice] = []
     if sum(_cut_off(pcm) for pcm in sounds) > 1:
-        said.append("Some of it was too loud: move a little away, or turn the microphone down.")
+        said.append("turn down")
     elif voice < 20 * math.log10(QUIET / 32_768):
-        said.append("Your voice comes in very quietly: move closer, or turn the microphone up.")
+        said.append("turn up")
     if voice - room < FAIR:
-        said.append("The room is nearly as loud as your voice: a headset helps most.")
+        said.append("room as loud")
     elif voice - room < CLEAR and not perfect:
-        said.append("The room is rather loud: move closer to the microphone, or use a headset.")
+        said.append("room rather loud")
     if sum(not pcm for pcm in sounds) > 1:
-        said.append("Some phrases were not heard: speak soon after they are shown, then pause.")
+        said.append("speak soon")
     if not said and not perfect:
-        said.append("The sound is good; say each phrase as it stands there, without a pause in it.")
+        said.append("without a pause")
     return said
 
 

@@ -6,11 +6,14 @@ Nothing of what is recorded here is kept; what comes of it are figures and setti
 from __future__ import annotations
 
 import asyncio
+import tomllib
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Literal, Protocol, TypeAlias
 
-from tangy_hw.audio.meter import NO_SOUND_SECONDS, Meter
+from tangy_hw.audio.meter import NO_SOUND_SECONDS, Meter, SoundFault, SoundTrouble
 from tangy_hw.audio.source import Source
 from tangy_hw.audio.utterances import split
 from tangy_hw.audio.wav import SoundError
@@ -35,18 +38,10 @@ from tangy_tui.speech.evidence import (
 )
 from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.lexicon import Lexicon
-from tangy_tui.speech.loudness import LOUD, SILENT, advice, loudness
+from tangy_tui.speech.loudness import LOUD, SILENT, SoundAdvice, advice, loudness
 from tangy_tui.speech.understanding import wanted
 
 COMMANDS = 6
-SENTENCES = (  # of everyday speech; one that means something in the activity is not used
-    "I would like a cup of tea and a biscuit.",
-    "My sister came to see me yesterday afternoon.",
-    "It is rather warm in here, could you open the window?",
-    "There was a lot of rain over the weekend.",
-    "What are we having for dinner this evening?",
-    "He has lived in that house for a very long time.",
-)
 OTHERS = 3
 QUIET_SECONDS = 3.0  # of the room alone
 WAIT_SECONDS = 6.0  # for a phrase to begin
@@ -55,7 +50,40 @@ PATIENCE = 30.0  # s without any sound, after which a check is given up
 LOOK_SECONDS = 0.5  # between two looks at the meter
 TIMES = 2  # that a phrase is asked for, or the quiet of the room
 
-Tell = Callable[[str], None]
+StepKind: TypeAlias = Literal[
+    "recording holds",
+    "be quiet",
+    "say all",
+    "say",
+    "say again",
+    "goes on by itself",
+    "works out",
+]
+"""What a check asks for or does: `say` and `say again` come for each phrase."""
+
+
+@dataclass(frozen=True, slots=True)
+class CheckStep:
+    """What a check asks for or does now.
+
+    `about` is the phrase to say, or the recording; `number` is the phrase's, how many there are, or
+    for how many seconds (whole) to be quiet.
+    """
+
+    kind: StepKind
+    about: str = ""
+    number: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class SourceNews:
+    """What a source of sound says of itself, in its own words."""
+
+    words: str
+
+
+CheckNews: TypeAlias = CheckStep | SoundTrouble | SourceNews
+Tell = Callable[[CheckNews], None]
 
 
 class CheckRecogniser(Protocol):
@@ -84,7 +112,7 @@ class CheckResult:
     """What came of a check; loudness in dB below full scale (negative).
 
     `heard` has for each text that was asked for the words that were heard with the settings that
-    were chosen, None where nothing was said. `advice` is what to change, a sentence each.
+    were chosen, None where nothing was said. `advice` is what to change.
     """
 
     room: float
@@ -92,47 +120,19 @@ class CheckResult:
     heard: tuple[tuple[CalibrationPrompt, str | None], ...]
     chosen: Chosen
     parted: bool
-    advice: tuple[str, ...]
+    advice: tuple[SoundAdvice, ...]
 
     @property
     def room_heard(self) -> bool:
         """Whether there was any sound of the room, above which a voice can be measured."""
         return self.room > SILENT
 
-    @property
-    def reason(self) -> str:
-        """Say in one sentence why it is not good enough to be kept; "" if it is."""
-        figures = self.chosen.figures
-        known = figures.understood + figures.offered
-        if self.parted:
-            return ""
-        if not figures.kept:
-            few = f"only {known}" if known else "none"
-            were = "was" if known == 1 else "were"
-            why = f"{few} of {figures.commands} commands {were} understood"
-        elif not figures.others:
-            why = "none of the other sentences was heard"
-        else:
-            were = "was" if figures.taken == 1 else "were"
-            why = f"{figures.taken} of {figures.others} other sentences {were} taken for a command"
-        return f"Nothing was stored: {why}."
 
-    def document(self) -> dict[str, Any]:
-        """Return it as one JSON document."""
-        return {
-            "room_db": round(self.room, 1) if self.room_heard else None,
-            "voice_db": round(self.voice, 1),
-            "heard": [
-                {"asked": a.text, "command": a.meant is not None, "heard": words}
-                for a, words in self.heard
-            ],
-            "settings": asdict(self.chosen.settings),
-            "figures": asdict(self.chosen.figures),
-            "usual": asdict(self.chosen.usual),
-            "parted": self.parted,
-            "reason": self.reason or None,
-            "advice": list(self.advice),
-        }
+@cache
+def other_talk() -> tuple[str, ...]:
+    """Return sentences of everyday speech; one that means something in an activity is not used."""
+    content = files("tangy_tui.speech").joinpath("other_talk.toml").read_text(encoding="utf-8")
+    return tuple(tomllib.loads(content)["sentences"])
 
 
 def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[CalibrationPrompt]:
@@ -155,13 +155,8 @@ def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[CalibrationPrompt]:
         known.update(best.bare)
         behaviours.add(best.behaviour)
         chosen.append(CalibrationPrompt(best.said, UtteranceLabel(best.behaviour, best.user)))
-    others = [s for s in SENTENCES if phrasebook.understand(s) is None and not stops(s)]
+    others = [s for s in other_talk() if phrasebook.understand(s) is None and not stops(s)]
     return [*chosen, *(CalibrationPrompt(text, None) for text in others[:OTHERS])]
-
-
-def numbered(asked: Sequence[CalibrationPrompt]) -> list[str]:
-    """Return what is to be said, a line each."""
-    return [f"{number}. {one.text}" for number, one in enumerate(asked, 1)]
 
 
 class MicrophoneCheck:
@@ -201,7 +196,7 @@ class MicrophoneCheck:
         self._ended = False
         self._room = bytearray()
         self._quiet = asyncio.Event()
-        self._wrong = ""
+        self._wrong: SoundFault | None = None
         self._patience = patience
         self._offered = False
 
@@ -225,9 +220,9 @@ class MicrophoneCheck:
         return await self._find(room, sounds)
 
     async def _recorded(self) -> tuple[float, list[bytes]]:
-        self._tell(f"{self._source.name} is taken to hold these, with a second of quiet between:")
-        for line in numbered(self._asked):
-            self._tell(line)
+        self._tell(CheckStep("recording holds", self._source.name))
+        for number, one in enumerate(self._asked, 1):
+            self._tell(CheckStep("say", one.text, number))
         pcm = b"".join([chunk async for chunk in self._source])
         found = await self._recogniser.pieces(pcm)
         if len(found) < len(self._asked):
@@ -236,7 +231,7 @@ class MicrophoneCheck:
         return loudness(pcm, 1 - LOUD), sounds
 
     async def _live(self) -> tuple[float, list[bytes]]:
-        self._source.tell = self._tell
+        self._source.tell = lambda words: self._tell(SourceNews(words))
         self._recogniser.speaking = self._began
         pump = asyncio.create_task(self._pump())
         watch = asyncio.create_task(self._watch())
@@ -244,8 +239,7 @@ class MicrophoneCheck:
             room = await self._room_alone(pump)
             sounds: list[bytes] = []
             if not self._ended:
-                count = len(self._asked)
-                self._tell(f"Now say each of these, as you would to Tangy ({count} in all).")
+                self._tell(CheckStep("say all", number=len(self._asked)))
             for number, asked in enumerate(self._asked, 1):
                 sounds.append(await self._say(number, asked))
                 await self._still_there(pump)
@@ -261,7 +255,7 @@ class MicrophoneCheck:
         A microphone that is muted sends silence; so does one that lets only voices through.
         """
         for _ in range(TIMES):
-            self._tell(f"Please be quiet for {QUIET_SECONDS:g} seconds.")
+            self._tell(CheckStep("be quiet", number=round(QUIET_SECONDS)))
             self._room.clear()
             self._quiet.clear()
             await self._quiet.wait()
@@ -291,8 +285,7 @@ class MicrophoneCheck:
         for again in range(TIMES):
             if self._ended:
                 break
-            request = "I heard nothing. Please say it again:" if again else f"{number}."
-            self._tell(f"{request} {asked.text}")
+            self._tell(CheckStep("say again" if again else "say", asked.text, number))
             self._spoke, self._sound = False, asyncio.Queue()
             self._left = 2 * round(WAIT_SECONDS * RATE)
             self._meter.begin()
@@ -336,20 +329,20 @@ class MicrophoneCheck:
         """Say what is wrong with the sound, once for each thing."""
         while True:
             await asyncio.sleep(LOOK_SECONDS)
-            words = self._meter.words(speaking=self._spoke)
-            kind = words.partition(":")[0].rstrip("0123456789 s")
-            if words and kind != self._wrong:
-                self._tell(words)
+            trouble = self._meter.trouble(speaking=self._spoke)
+            kind = None if trouble is None else trouble.kind
+            if trouble is not None and kind != self._wrong:
+                self._tell(trouble)
                 if not self._offered and self._silent(NO_SOUND_SECONDS):
                     self._offered = True
-                    self._tell("It goes on as soon as something is heard; Ctrl+C ends it.")
+                    self._tell(CheckStep("goes on by itself"))
             self._wrong = kind
             if self._silent(self._patience):
                 self._end()
 
     async def _find(self, room: float, sounds: Sequence[bytes]) -> CheckResult:
         """Decode what was said, with one weight or with all of them."""
-        self._tell("Thank you. One moment.")
+        self._tell(CheckStep("works out"))
         scores: dict[float, list[CalibrationScore]] = {}
         words: dict[float, list[str | None]] = {}
         for weight in sorted(WEIGHTS, key=lambda weight: weight != USUAL.garbage):

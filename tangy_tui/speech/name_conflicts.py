@@ -32,19 +32,6 @@ class NameConflict:
     lost: str
     guessed: str = ""
 
-    @property
-    def sentence(self) -> str:
-        """Say what follows from it."""
-        name = self.person.name
-        if self.guessed:
-            return (
-                f"{name} can be typed, but not heard: it may be said {self.guessed}, "
-                f"and that sounds like {self.like}."
-            )
-        if not self.lost:
-            return f"{name} sounds like {self.like}: said alone, it is taken for that."
-        return f"{name} sounds like {self.like}: {self.lost} can be typed, but not heard."
-
 
 def find_clash(activity: Activity, people: Sequence[Person], person: Person) -> NameConflict | None:
     """Find what the name of one of the people sounds like: as it is said, else as is suggested."""

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_tui.language.phrasebook import name_phones
 from tangy_tui.language.pronunciation import suggest_name, unknown_words
 from tangy_tui.language.words import bare, clean, words_of
+
+NameSource: TypeAlias = Literal["person", "dictionary", "suggested", ""]
+"""Who says how a name is said: staff, the dictionary, a guess, or nobody."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,24 +26,8 @@ class HowSaid:
 
     name: str
     phones: str
-    source: str
+    source: NameSource
     lacks: tuple[str, ...]
-
-    @property
-    def sentence(self) -> str:
-        """Say it in a sentence."""
-        lacks = " and ".join(map(repr, self.lacks))
-        match self.source:
-            case "person":
-                return f"{self.name} is said {self.phones}."
-            case "dictionary":
-                return f"{self.name} is said {self.phones}, as in the dictionary."
-            case "suggested":
-                return (
-                    f"{self.name} can be typed, but not yet heard: {lacks} is not in the "
-                    f"dictionary. It may be said {self.phones}."
-                )
-        return f"{self.name} can be typed, but not heard: nobody knows how it is said."
 
     def to_json(self) -> dict[str, Any]:
         """Write it for a script."""
@@ -71,24 +58,3 @@ def accept_suggested(person: Person) -> str:
     if not said.phones:
         raise TangyError(f"Nothing can be suggested for {person.name}: give the phones.")
     return said.phones
-
-
-def naming_lines(person: Person, options: str = "") -> list[str]:
-    """Say of a new name, where it cannot be heard yet, what can be done about it.
-
-    Args:
-        person: who has the name.
-        options: which the commands need, with a space before them.
-    """
-    said = how_said(person)
-    if said.source not in ("suggested", ""):
-        return []
-    verb = f"tangy people pronounce {person.id}{options}"
-    if not said.phones:
-        return [said.sentence, f'Say how:     {verb} "R OW Z AH"']
-    return [
-        said.sentence,
-        f"Hear it:     {verb} --hear",
-        f"Accept it:   {verb} --accept",
-        f'Change it:   {verb} "{said.phones}"',
-    ]

@@ -4,22 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.person import Person
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.speech.lexicon import Lexicon, Said
 from tangy_tui.speech.name_pronunciation import HowSaid, how_said
-
-SOURCES = {
-    "activity": "the activity says so",
-    "person": "noted for the person",
-    "dictionary": "dictionary",
-    "suggested": "guessed, not heard yet",
-    "": "unknown, cannot be heard",
-}
-"""Where a pronunciation comes from, in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,46 +120,3 @@ def _called(phrasebook: Phrasebook, people: Sequence[Person]) -> Iterator[Called
         name = next((" ".join(words) for words, id in table.names.items() if id == person.id), "")
         ways = (*(f"{noun} {number}" for noun in nouns if number), name, *person.seats)
         yield Called(person, tuple(dict.fromkeys(filter(None, ways))), how_said(person))
-
-
-class Item(NamedTuple):
-    """One entry of the page: its heading, what it is about, and what there is to say of it.
-
-    `phones` are those to hear (a comma between words; "" for none), `person` the id of whose name
-    it is, if it is one.
-    """
-
-    heading: str
-    about: str
-    texts: tuple[str, ...]
-    phones: str = ""
-    person: str | None = None
-
-    def has(self, wanted: str) -> bool:
-        """Whether all words of a search are in it."""
-        text = " ".join((self.about, *self.texts)).casefold()
-        return all(word in text for word in wanted.casefold().split())
-
-
-def items(listed: PhraseList) -> Iterator[Item]:
-    """Yield the page entry by entry."""
-    phones = {said.word: said.phones[0] for said in listed.words if said.phones}
-    for ways in listed.behaviours:
-        texts = [", ".join(ways.phrases) + ("; or with a person" if ways.to_people else "")]
-        texts += [f"keywords: {', '.join(ways.keywords)}"] if ways.keywords else []
-        own = [text for text, behaviour in listed.own.items() if behaviour == ways.behaviour]
-        texts += [f"your own: {', '.join(own)}"] if own else []
-        first = ways.phrases[0].split() if ways.phrases else []
-        aloud = ", ".join(phones[word] for word in first) if phones.keys() >= set(first) else ""
-        yield Item("What can be said for what", ways.behaviour, tuple(texts), aloud)
-    for called in listed.people:
-        texts = [", ".join(called.ways), called.said.sentence]
-        aloud, id = called.said.phones, called.person.id
-        yield Item("People and seats", called.person.name, tuple(texts), aloud, id)
-    reasons = listed.left_out.values()
-    for reason in dict.fromkeys(reasons):
-        out = [phrase for phrase, why in listed.left_out.items() if why == reason]
-        yield Item("Cannot be heard, only typed", reason, (", ".join(out),))
-    for said in listed.words:
-        text = f"{' or '.join(said.phones) or '?'} ({SOURCES[said.source]})"
-        yield Item("How words are said", said.word, (text,), phones.get(said.word, ""))

@@ -322,7 +322,7 @@ class Recogniser:
 
     def _tell_end(self, how: str) -> None:
         if self._worker is not None and self._notify is not None and not self._closing:
-            self._notify(f"The speech worker ended {_WorkerDied(how)}; it is started again.")
+            self._notify(how)
 
     async def _end(self, patience: float | None = None) -> None:
         worker, self._worker = self._worker, None

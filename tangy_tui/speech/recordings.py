@@ -43,20 +43,6 @@ FOLDER = "recordings"  # in the data folder
 _OURS = re.compile(r"\d{8}T\d{6}-\d+\.wav")
 
 
-def consent_question(store: Store, options: str = "") -> str:
-    """Return what a teacher is asked before anything is recorded.
-
-    Args:
-        store: in whose folder recordings lie.
-        options: which the command that deletes them needs, with a space before them.
-    """
-    return (
-        "May Tangy keep recordings of the commands that you say, and say yes to, while you teach, "
-        f"to practise on? They stay on this machine, in {store.folder / FOLDER}; "
-        f"`tangy listen --forget-recordings{options}` deletes them all."
-    )
-
-
 def consented(store: Store, teacher: str) -> bool:
     """Say whether a teacher has agreed to be recorded, and nothing was forgotten since."""
     agreed = False
@@ -133,8 +119,8 @@ class Recorder:
         self.teacher = teacher
         self.kept = 0
         """How many recordings were kept."""
-        self.tell: Callable[[str], None] = lambda sentence: None
-        """Is called with a sentence if nothing can be kept any more."""
+        self.tell: Callable[[str], None] = lambda why: None
+        """Is called with the folder and the reason if nothing can be kept any more."""
         self._now = now
         self._pcm = b""  # of the command that is not verified yet
         self._texts: frozenset[str] = frozenset()  # what it may be called in a question
@@ -194,7 +180,7 @@ class Recorder:
             self.kept += 1
         except OSError as error:
             self._works = False
-            self.tell(f"Nothing more is recorded: {self.folder} ({error.strerror}).")
+            self.tell(f"{self.folder} ({error.strerror})")
 
     def _write(self, pcm: bytes, folder: Path) -> None:
         """Write a file that only its owner reads, and that is there as a whole or not at all."""

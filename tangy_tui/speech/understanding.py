@@ -26,6 +26,7 @@ from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import clean
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import AcousticEvidence, EvidenceSettings, Wanted
+from tangy_tui.speech.hearing_notes import HearingKind
 
 # How likely words are to be the command they come nearest to: a logistic over the confidence of
 # the phrasebook, over how many telling words it knows, and over how much better words explain the
@@ -152,12 +153,11 @@ def clearly_heard(text: str) -> AcousticEvidence:
 
 def commanded(
     evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings, *, live: bool
-) -> tuple[Say | StopCommand | None, str]:
-    """Return what an utterance commands, if it has words, and what is to be said of it, or ""."""
+) -> tuple[Say | StopCommand | None, HearingKind | None]:
+    """Return what an utterance commands, if it has words, and what is to be said of it, if any."""
     if evidence.words or evidence.stop:
-        return understand(evidence, phrasebook, settings), ""
-    none = live and evidence.seconds
-    return None, "I heard something, but no words that I know." if none else ""
+        return understand(evidence, phrasebook, settings), None
+    return None, "no words" if live and evidence.seconds else None
 
 
 def replied(
@@ -167,17 +167,17 @@ def replied(
     steering: Collection[Steering] = (),
     *,
     answers: bool,
-) -> tuple[Reply | Say | StopCommand | None, str]:
-    """Return what an utterance answers to a question, and what is to be said of it, or "".
+) -> tuple[Reply | Say | StopCommand | None, HearingKind | None]:
+    """Return what an utterance answers to a question, and what is to be said of it, if any.
 
     Where no `answers` are taken, only what stops the robot counts, and what steers the program in
     one of the ways of `steering`; `choices` are the words of what can be chosen instead.
     """
     said = answer(evidence, settings, choices)
     if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):
-        return Say(evidence.words, 1.0, None), ""
+        return Say(evidence.words, 1.0, None), None
     none = answers and said is None and evidence.seconds
-    told = "I heard something, but no yes, no or stop." if none else ""
+    told: HearingKind | None = "no answer" if none else None
     return (said if answers or isinstance(said, StopCommand) else None), told
 
 

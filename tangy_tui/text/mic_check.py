@@ -2,12 +2,108 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, assert_never
+
+from tangy_tui.text.microphone import trouble_words
 
 if TYPE_CHECKING:
-    from tangy_tui.speech.microphone_check import CheckResult
+    from tangy_tui.speech.calibration import CalibrationPrompt
+    from tangy_tui.speech.loudness import SoundAdvice
+    from tangy_tui.speech.microphone_check import CheckNews, CheckResult, CheckStep
 
 LOUD_ENOUGH = "The sound is loud enough."
+
+
+def news_words(news: CheckNews) -> str:
+    """Say what a check asks for, or what is wrong with the sound."""
+    from tangy_hw.audio.meter import SoundTrouble
+    from tangy_tui.speech.microphone_check import SourceNews
+
+    if isinstance(news, SourceNews):
+        return news.words
+    return trouble_words(news) if isinstance(news, SoundTrouble) else _step_words(news)
+
+
+def _step_words(step: CheckStep) -> str:
+    match step.kind:
+        case "recording holds":
+            return f"{step.about} should hold these, with a second of quiet between:"
+        case "be quiet":
+            return f"Please be quiet for {step.number} seconds."
+        case "say all":
+            return f"Now say each of these, as you would to Tangy ({step.number} in all)."
+        case "say":
+            return f"{step.number}. {step.about}"
+        case "say again":
+            return f"I heard nothing. Please say it again: {step.about}"
+        case "goes on by itself":
+            return "The check goes on as soon as Tangy hears something; Ctrl+C ends it."
+        case "works out":
+            return "Thank you. One moment."
+        case forgotten:
+            assert_never(forgotten)
+
+
+def numbered(asked: Sequence[CalibrationPrompt]) -> list[str]:
+    """Return what is to be said, a line each."""
+    return [f"{number}. {one.text}" for number, one in enumerate(asked, 1)]
+
+
+def advice_words(advice: SoundAdvice) -> str:
+    """Say what to change about the sound."""
+    match advice:
+        case "turn down":
+            return "Some of it was too loud: move a little away, or turn the microphone down."
+        case "turn up":
+            return "Your voice is very quiet: move closer, or turn the microphone up."
+        case "room as loud":
+            return "The room is nearly as loud as your voice: a headset helps most."
+        case "room rather loud":
+            return "The room is rather loud: move closer to the microphone, or use a headset."
+        case "speak soon":
+            return "Tangy did not hear some phrases: speak as soon as you see one, then pause."
+        case "without a pause":
+            return "The sound is good. Say each phrase as you see it, without a pause in it."
+        case forgotten:
+            assert_never(forgotten)
+
+
+def reason_words(checked: CheckResult) -> str:
+    """Say in one sentence why a check is not good enough to be kept; "" if it is."""
+    figures = checked.chosen.figures
+    known = figures.understood + figures.offered
+    if checked.parted:
+        return ""
+    if not figures.kept:
+        few = f"only {known}" if known else "none"
+        were = "was" if known == 1 else "were"
+        why = f"{few} of {figures.commands} commands {were} understood"
+    elif not figures.others:
+        why = "none of the other sentences was heard"
+    else:
+        were = "was" if figures.taken == 1 else "were"
+        why = f"{figures.taken} of {figures.others} other sentences {were} taken for a command"
+    return f"Nothing was stored: {why}."
+
+
+def checked_document(checked: CheckResult) -> dict[str, Any]:
+    """Return what came of a check as one JSON document."""
+    return {
+        "room_db": round(checked.room, 1) if checked.room_heard else None,
+        "voice_db": round(checked.voice, 1),
+        "heard": [
+            {"asked": asked.text, "command": asked.meant is not None, "heard": words}
+            for asked, words in checked.heard
+        ],
+        "settings": asdict(checked.chosen.settings),
+        "figures": asdict(checked.chosen.figures),
+        "usual": asdict(checked.chosen.usual),
+        "parted": checked.parted,
+        "reason": reason_words(checked) or None,
+        "advice": [advice_words(one) for one in checked.advice],
+    }
 
 
 def checked_lines(checked: CheckResult, mic: str) -> list[str]:
@@ -17,7 +113,7 @@ def checked_lines(checked: CheckResult, mic: str) -> list[str]:
         *_misheard(checked),
         _understood(checked),
         *_settings(checked, mic),
-        *checked.advice,
+        *map(advice_words, checked.advice),
     ]
 
 

@@ -2,10 +2,72 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, assert_never
+
+if TYPE_CHECKING:
+    from tangy_tui.speech.name_conflicts import NameConflict
+    from tangy_tui.speech.name_pronunciation import HowSaid
+
 
 def renamed(person: str, name: str) -> str:
     """Say what a person is called from now on."""
     return f"{person} is now called {name}."
+
+
+def said_words(said: HowSaid) -> str:
+    """Say how a name is said, and whether Tangy can hear it."""
+    match said.source:
+        case "person":
+            return f"{said.name} is said {said.phones}."
+        case "dictionary":
+            return f"{said.name} is said {said.phones}, as in the dictionary."
+        case "suggested":
+            lacks = " and ".join(map(repr, said.lacks))
+            are = "is" if len(said.lacks) == 1 else "are"
+            return (
+                f"{said.name} can be typed, but not yet heard: {lacks} {are} not in the "
+                f"dictionary. It may be said {said.phones}."
+            )
+        case "":
+            return f"{said.name} can be typed, but not heard: nobody knows how it is said."
+        case forgotten:
+            assert_never(forgotten)
+
+
+def naming_lines(said: HowSaid, command: str) -> list[str]:
+    """Say of a new name, where Tangy cannot hear it yet, what can be done about it.
+
+    Args:
+        said: how the name is said.
+        command: what notes how it is said, without the phones.
+    """
+    match said.source:
+        case "person" | "dictionary":
+            return []
+        case "suggested":
+            return [
+                said_words(said),
+                f"Hear it:     {command} --hear",
+                f"Accept it:   {command} --accept",
+                f'Change it:   {command} "{said.phones}"',
+            ]
+        case "":
+            return [said_words(said), f'Say how:     {command} "R OW Z AH"']
+        case forgotten:
+            assert_never(forgotten)
+
+
+def conflict_words(conflict: NameConflict) -> str:
+    """Say which other name or phrase a name sounds like, and what Tangy cannot hear then."""
+    name, like = conflict.person.name, conflict.like
+    if conflict.guessed:
+        return (
+            f"{name} can be typed, but not heard: it may be said {conflict.guessed}, "
+            f"and that sounds like {like}."
+        )
+    if not conflict.lost:
+        return f"{name} sounds like {like}: if you say it alone, Tangy takes it for that."
+    return f"{name} sounds like {like}: {conflict.lost} can be typed, but not heard."
 
 
 def say_otherwise(command: str) -> str:

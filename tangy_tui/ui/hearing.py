@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.text.hearing import hearing_words
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.voice import HANDS_FREE, OR_KEY_AND_SAY, OR_SAY, RECORDING
 from tangy_tui.ui.clean_output import clean
@@ -92,7 +93,7 @@ class Hearing:
         self._about: VerifyingDialog | None = None  # the question when somebody began to speak
         self._steer: Callable[[str], None] | None = None
         ears.changed = self._changed
-        ears.tell = self.tell
+        ears.tell = lambda note: self.tell(hearing_words(note))
 
     @property
     def by_key(self) -> bool:

@@ -104,14 +104,15 @@ class Listening:
 
 def recorder_for(workspace: Workspace, teacher: str) -> Recorder | None:
     """Record a teacher who agrees; nothing is recorded without a yes."""
-    from tangy_tui.speech.recordings import Recorder, consent, consent_question, consented
+    from tangy_tui.speech.recordings import FOLDER, Recorder, consent, consented
+    from tangy_tui.text.hearing import consent_question
 
     if not consented(workspace.store, teacher):
         if not sys.stdin.isatty():
             raise TangyError(
                 "--record: say yes to it once on a terminal; nothing is recorded before."
             )
-        question = consent_question(workspace.store, _options(workspace))
+        question = consent_question(workspace.store.folder / FOLDER, _options(workspace))
         yes = typer.confirm(plain(question), default=False, err=True)
         consent(workspace.store, teacher, yes)
         if not yes:

@@ -14,6 +14,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.mic_check import LOUD_ENOUGH
+from tangy_tui.text.microphone import trouble_words
 from tangy_tui.verbs.common import Data, as_given
 
 if TYPE_CHECKING:
@@ -98,17 +99,17 @@ async def _run(forwarder: Forwarder) -> None:
 
 async def _show(forwarder: Forwarder) -> None:
     """Say how loud it is: every second on a terminal, elsewhere when there is something new."""
-    connected, wrong = 0, ""
+    connected, wrong = 0, None
     while True:
         await asyncio.sleep(WORDS_SECONDS)
         connected += forwarder.connected
         if sys.stderr.isatty():
             _draw(forwarder)
             continue
-        words = forwarder.meter.words(speaking=connected == FIRST_WORDS)
-        kind = words.partition(":")[0].rstrip("0123456789 s")
+        trouble = forwarder.meter.trouble(speaking=connected == FIRST_WORDS)
+        kind = None if trouble is None else trouble.kind
         if kind != wrong or connected == FIRST_WORDS:
-            _say(words or LOUD_ENOUGH)
+            _say(LOUD_ENOUGH if trouble is None else trouble_words(trouble))
             connected += connected == FIRST_WORDS
         wrong = kind
 
@@ -118,7 +119,8 @@ def _draw(forwarder: Forwarder) -> None:
     state = "connected" if forwarder.connected else "waiting for Tangy"
     columns = shutil.get_terminal_size().columns
     bar = "#" * round(BAR * forwarder.meter.loudest(1.5 * WORDS_SECONDS))
-    line = f"[{bar:<{BAR}}] {forwarder.meter.words(speaking=False) or state}"
+    trouble = forwarder.meter.trouble(speaking=False)
+    line = f"[{bar:<{BAR}}] {state if trouble is None else trouble_words(trouble)}"
     print(f"\r{plain(line)[: columns - 1]}\033[K", end="", file=sys.stderr, flush=True)
 
 

@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tangy_profiles.reading import plain
-from tangy_tui.text.mic_check import checked_lines
+from tangy_tui.text.mic_check import (
+    checked_document,
+    checked_lines,
+    news_words,
+    numbered,
+    reason_words,
+)
 from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, print_json, print_line
 from tangy_tui.verbs.opening import open_workspace
 
@@ -19,7 +25,7 @@ if TYPE_CHECKING:
     from tangy_tui.language.commands import Phrasebook
     from tangy_tui.speech.calibration import CalibrationPrompt
     from tangy_tui.speech.lexicon import Lexicon
-    from tangy_tui.speech.microphone_check import CheckResult
+    from tangy_tui.speech.microphone_check import CheckNews, CheckResult
 
 ALONE = 3.0  # s without any sound, after which a check is given up where nobody could help
 
@@ -69,19 +75,17 @@ def check(
         if stored:
             keep(workspace.store, mic, checked.chosen)
         if as_json:
-            print_json({"source": mic, "stored": stored, **checked.document()})
+            print_json({"source": mic, "stored": stored, **checked_document(checked)})
         else:
             for line in checked_lines(checked, mic):
                 print(plain(line))
         if not stored:
-            print(f"tangy: {checked.reason}", file=sys.stderr)
+            print(f"tangy: {reason_words(checked)}", file=sys.stderr)
             raise typer.Exit(1)
 
 
 def _list(workspace: Workspace, as_json: bool) -> None:
     """Print what is to be said."""
-    from tangy_tui.speech.microphone_check import numbered
-
     _, _, asked = _asked(workspace)
     if as_json:
         print_json([{"say": one.text, "command": one.meant is not None} for one in asked])
@@ -104,11 +108,11 @@ async def _run(workspace: Workspace, source: Source, as_json: bool) -> CheckResu
     from tangy_tui.speech.microphone_check import MicrophoneCheck
     from tangy_tui.speech.recogniser import Recogniser
 
-    def on_stderr(sentence: str) -> None:
-        print(plain(sentence), file=sys.stderr, flush=True)
+    def on_stderr(news: CheckNews) -> None:
+        print(plain(news_words(news)), file=sys.stderr, flush=True)
 
-    def on_stdout(sentence: str) -> None:
-        print_line(plain(sentence))
+    def on_stdout(news: CheckNews) -> None:
+        print_line(plain(news_words(news)))
 
     phrasebook, lexicon, asked = _asked(workspace)
     tell = on_stderr if as_json else on_stdout

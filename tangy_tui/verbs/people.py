@@ -13,7 +13,13 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GameWorld, read_game_world
 from tangy_profiles.reading import nearest, plain
-from tangy_tui.text.names import known_now, renamed, say_otherwise
+from tangy_tui.text.names import (
+    conflict_words,
+    known_now,
+    naming_lines,
+    renamed,
+    say_otherwise,
+)
 from tangy_tui.verbs.common import (
     REGISTERED,
     ActivityName,
@@ -265,7 +271,7 @@ def people_rename(
 ) -> None:
     """Give a person another name; what Tangy has learnt of them stays."""
     from tangy_tui.speech.name_conflicts import find_clash
-    from tangy_tui.speech.name_pronunciation import how_said, naming_lines
+    from tangy_tui.speech.name_pronunciation import how_said
 
     with open_workspace(data, DEFAULT_ACTIVITY, users) as workspace:
         found = workspace.find_person(person)
@@ -278,11 +284,10 @@ def people_rename(
             print_json({**named_so, "sounds_like": like})
             return
         print(renamed(named.id, plain(name)))
-        options = as_given(data, users)
-        lines = naming_lines(named, options)
+        verb = f"tangy people pronounce {named.id}{as_given(data, users)}"
+        lines = naming_lines(how_said(named), verb)
         if clash is not None:
-            verb = f'tangy people pronounce {named.id}{options} "R OW Z AH"'
-            lines = [clash.sentence, say_otherwise(verb)]
+            lines = [conflict_words(clash), say_otherwise(f'{verb} "R OW Z AH"')]
         for line in lines:
             print(plain(line))
 

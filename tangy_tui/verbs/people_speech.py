@@ -10,7 +10,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.names import if_right, voice_words
+from tangy_tui.text.names import conflict_words, if_right, said_words, voice_words
 from tangy_tui.verbs.common import REGISTERED, Data, Json, Seed, Users, as_given, print_json
 from tangy_tui.verbs.opening import open_workspace
 from tangy_tui.verbs.people import Who
@@ -59,9 +59,9 @@ def people_pronounce(
             print_json({"id": found.id, "name": found.name, **said.to_json()})
         else:
             clash = find_clash(workspace.activity, workspace.people, found)
-            print(plain(said.sentence))
+            print(plain(said_words(said)))
             if clash is not None:
-                print(plain(clash.sentence))
+                print(plain(conflict_words(clash)))
             elif said.source == "suggested":
                 verb = f"tangy people pronounce {found.id}{as_given(data, users)}"
                 print(plain(if_right(verb)))

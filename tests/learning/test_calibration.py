@@ -37,7 +37,14 @@ from tangy_tui.speech.calibration import (
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings, Expecting, Wanted
 from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.lexicon import Lexicon
-from tangy_tui.speech.microphone_check import CheckResult, MicrophoneCheck, to_say
+from tangy_tui.speech.microphone_check import (
+    CheckNews,
+    CheckResult,
+    CheckStep,
+    MicrophoneCheck,
+    to_say,
+)
+from tangy_tui.text.mic_check import reason_words
 from tests.support.append_body import append_body
 
 COMMAND, OTHER = (
@@ -195,8 +202,8 @@ class Microphone(Source):
         self.said = said
         self.asked = asyncio.Event()
 
-    def told(self, sentence: str) -> None:
-        if sentence[0].isdigit() or sentence.startswith("I heard nothing"):
+    def told(self, news: CheckNews) -> None:
+        if isinstance(news, CheckStep) and news.kind in ("say", "say again"):
             self.asked.set()
 
     async def _sound(self) -> Chunks:
@@ -229,9 +236,9 @@ class Muted(Microphone):
         self.now = 0.0
         self.switched = asyncio.Event()
 
-    def told(self, sentence: str) -> None:
-        super().told(sentence)
-        if sentence.startswith("It goes on as soon as"):
+    def told(self, news: CheckNews) -> None:
+        super().told(news)
+        if news == CheckStep("goes on by itself"):
             self.switched.set()
 
     async def _sound(self) -> Chunks:
@@ -298,12 +305,12 @@ class TestChecking:
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         microphone = Microphone([1, None, 2, *range(3, len(asked) + 1)])
-        told: list[str] = []
+        told: list[CheckNews] = []
         checked = await self.check(microphone, activity, people, asked, told)
         assert checked.chosen.figures.perfect
-        again = [line for line in told if line.startswith("I heard nothing")]
-        assert again == [f"I heard nothing. Please say it again: {asked[1].text}"]
-        assert told[0] == "Please be quiet for 3 seconds."
+        again = [news for news in told if isinstance(news, CheckStep) and news.kind == "say again"]
+        assert again == [CheckStep("say again", asked[1].text, 2)]
+        assert told[0] == CheckStep("be quiet", number=3)
 
     async def test_what_is_not_said_at_all_counts_as_not_understood(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
@@ -339,13 +346,13 @@ class TestChecking:
     ) -> None:
         said: list[int | None] = [*range(1, len(asked) + 1)]
         monkeypatch.setattr(microphone_check, "LOOK_SECONDS", 0.0)
-        muted, told = Muted(said, mended=True), list[str]()
+        muted, told = Muted(said, mended=True), list[CheckNews]()
         monkeypatch.setattr(microphone_check, "Meter", lambda: Meter(lambda: muted.now))
         checked = await self.check(muted, activity, people, asked, told)
         assert checked.parted
         assert -85 < checked.room < -75
-        assert told.count("Please be quiet for 3 seconds.") == 2
-        assert sum(line.startswith("It goes on as soon as") for line in told) == 1
+        assert told.count(CheckStep("be quiet", number=3)) == 2
+        assert told.count(CheckStep("goes on by itself")) == 1
         muted = Muted(said, mended=False)
         with pytest.raises(SoundError, match="nothing was heard for 50 s, so nothing was changed"):
             await self.check(muted, activity, people, asked, patience=50.0)
@@ -353,11 +360,13 @@ class TestChecking:
     async def test_a_recording_is_told_what_it_should_hold(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
-        told: list[str] = []
+        told: list[CheckNews] = []
         checked = await self.check(Recording("a.wav", b"\1\0"), activity, people, asked, told)
-        assert told[0].startswith("a.wav is taken to hold these, with a second of quiet between")
-        assert told[1 : len(asked) + 1] == [f"{n}. {a.text}" for n, a in enumerate(asked, 1)]
-        assert checked.reason == "Nothing was stored: only 1 of 6 commands was understood."
+        assert told[0] == CheckStep("recording holds", "a.wav")
+        assert told[1 : len(asked) + 1] == [
+            CheckStep("say", one.text, number) for number, one in enumerate(asked, 1)
+        ]
+        assert reason_words(checked) == "Nothing was stored: only 1 of 6 commands was understood."
 
     @pytest.mark.parametrize(
         ("figures", "why"),
@@ -374,7 +383,7 @@ class TestChecking:
         chosen = Chosen(USUAL, figures, figures)
         checked = CheckResult(-60, -30, (), chosen, figures.parted and figures.others > 0, ())
         assert checked.parted is (not why)
-        assert checked.reason == (f"Nothing was stored: {why}." if why else "")
+        assert reason_words(checked) == (f"Nothing was stored: {why}." if why else "")
 
     async def test_a_microphone_that_breaks_says_why(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
@@ -388,14 +397,14 @@ class TestChecking:
         activity: Activity,
         people: tuple[Person, ...],
         asked: list[CalibrationPrompt],
-        told: list[str] | None = None,
+        told: list[CheckNews] | None = None,
         patience: float = microphone_check.PATIENCE,
     ) -> CheckResult:
-        def tell(sentence: str) -> None:
+        def tell(news: CheckNews) -> None:
             if told is not None:
-                told.append(sentence)
+                told.append(news)
             if isinstance(source, Microphone):
-                source.told(sentence)
+                source.told(news)
 
         book = Phrasebook(activity, people)
         hears = Hears([a.text for a in asked])

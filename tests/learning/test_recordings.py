@@ -34,10 +34,10 @@ from tangy_tui.speech.recordings import (
     FOLDER,
     Recorder,
     consent,
-    consent_question,
     consented,
     forget_recordings,
 )
+from tangy_tui.text.hearing import consent_question
 
 SOUND = b"\1\0" * 8000
 NOON = datetime(2026, 1, 2, 12, 0, 0, tzinfo=UTC)
@@ -103,11 +103,11 @@ class TestConsent:
         assert consented(store, "ben")
 
     def test_the_question_says_where_they_lie_and_how_they_are_deleted(self, store: Store) -> None:
-        question = consent_question(store)
+        question = consent_question(store.folder / FOLDER)
         assert str(store.folder / FOLDER) in question
         assert "tangy listen --forget-recordings" in question
         assert question.count("?") == 1
-        there = consent_question(store, " --data /mine")
+        there = consent_question(store.folder / FOLDER, " --data /mine")
         assert "`tangy listen --forget-recordings --data /mine` deletes" in there
 
 
@@ -244,7 +244,7 @@ class TestKeeping:
             recorder.heard(SOUND, spoken("tell a joke"))
             recorder.verified("joke", None)
         assert len(told) == 1
-        assert told[0].startswith("Nothing more is recorded: ")
+        assert told[0].startswith(str(recorder.folder))
         assert recorder.kept == 0
 
     def test_a_session_of_teaching_can_be_followed(

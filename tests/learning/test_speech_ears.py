@@ -15,6 +15,7 @@ from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import input as room
+from tangy_tui.speech.hearing_notes import HearingNote
 from tangy_tui.speech.input import Heard, SpeechInput
 from tangy_tui.speech.recogniser import SpeechUnavailable
 from tangy_tui.speech.recordings import Recorder
@@ -30,7 +31,7 @@ class Room:
     def __init__(self, source: FakeSource, **options: object) -> None:
         self.source = source
         self.ears = SpeechInput("socket", BOOK, **options)  # type: ignore[arg-type]
-        self.told: list[str] = []
+        self.told: list[HearingNote] = []
         self.states: list[str] = []
         self.heard: list[Heard] = []
         self.ears.tell = self.told.append
@@ -147,7 +148,7 @@ class TestPushToTalk:
         await here.source.feed(sound("c"))
         here.ears.talk()
         here.ears.talk()
-        assert here.told == ["Still thinking. Push again in a moment."]
+        assert here.told == [HearingNote("still thinking")]
         here.decoder.decoding.set()
         await here.ready()
         assert here.words == ["call number"]
@@ -198,7 +199,7 @@ class TestPushToTalk:
     ) -> None:
         here = await enter().ready()
         await here.say(sound("?"))
-        assert here.told == ["I heard something, but no words that I know."]
+        assert here.told == [HearingNote("no words")]
         assert here.heard == []
 
     async def test_what_cannot_be_decoded_is_said_and_the_next_is_heard(self, enter: Enter) -> None:
@@ -206,7 +207,7 @@ class TestPushToTalk:
         here.decoder.failures += [SpeechUnavailable("It died.")] * 4
         for _ in range(4):
             await here.say(sound("c"))
-        assert here.told == ["It died. Please say that again."] * 4
+        assert here.told == [HearingNote("not decoded", "It died.")] * 4
         await here.say(sound("c"))
         assert here.words == ["call number"]
 
@@ -314,14 +315,14 @@ class TestRecording:
     async def test_a_teacher_is_told_of_it(self, enter: Enter, tmp_path: Path) -> None:
         here = await enter(recorder=Recorder(tmp_path, "rosa")).ready()
         assert here.ears.records
-        assert here.told == ["What you say, and say yes to, is recorded."]
+        assert here.told == [HearingNote("records")]
 
     async def test_of_what_has_no_end_only_the_beginning_is_heard(self, enter: Enter) -> None:
         here = enter(live=False)
         await here.source.feed(sound("c", 20))
         here.source.end()
         await here.over()
-        assert here.told[0] == "Of 20 s without a pause I hear 15 s."
+        assert here.told[0] == HearingNote("cut off", seconds=20)
 
 
 class TestAsking:
@@ -366,14 +367,14 @@ class TestAsking:
         here.ears.asking(True)
         await here.ready()
         assert here.heard == []
-        assert here.told == ["I heard 'call number', but a question came between."]
+        assert here.told == [HearingNote("question between", "call number")]
 
     async def test_what_is_no_answer_is_said_to_be_none(self, enter: Enter) -> None:
         here = await enter(answers=True).ready()
         here.ears.asking(True)
         await here.say(sound("c"))
         assert here.heard == []
-        assert here.told == ["I heard something, but no yes, no or stop."]
+        assert here.told == [HearingNote("no answer")]
 
     @pytest.mark.parametrize("between", ["a question", "the robot speaks"])
     async def test_a_stop_counts_whatever_came_between(self, enter: Enter, between: str) -> None:
@@ -410,7 +411,7 @@ class TestTheEnd:
         here.source.end()
         await here.over()
         assert here.words == ["call number"]
-        assert here.told == ["The microphone has closed."]
+        assert here.told == [HearingNote("microphone closed")]
 
     @pytest.mark.parametrize("talks", [True, False])
     async def test_a_source_that_breaks_says_so_after_what_was_said(
@@ -546,7 +547,7 @@ class TestHandsFree:
             await soon(lambda: here.state in ("listening", "over"))
         with pytest.raises(SpeechUnavailable):
             await here.over()
-        assert here.told == ["It died. Please say that again."] * (room.FAILURES - 1)
+        assert here.told == [HearingNote("not decoded", "It died.")] * (room.FAILURES - 1)
 
     async def test_a_stream_that_nobody_takes_does_not_grow_for_ever(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
@@ -582,7 +583,7 @@ class TestRecordings:
         here.source.end()
         await here.over()
         assert here.words == ["call number", "tell a joke", "stop"]
-        assert here.told == ["The recording is over."]
+        assert here.told == [HearingNote("recording over")]
 
     async def test_what_cannot_be_decoded_is_said_and_the_next_is_heard(self, enter: Enter) -> None:
         here = enter(live=False)
@@ -592,7 +593,7 @@ class TestRecordings:
         here.source.end()
         await here.over()
         assert here.words == ["tell a joke"]
-        assert here.told[0] == "It died."
+        assert here.told[0] == HearingNote("decoder failed", "It died.")
 
 
 async def _first(ears: SpeechInput) -> Heard:

@@ -77,7 +77,7 @@ def test_in_games_what_steers_them_is_taken_where_it_was_heard_well(
 ) -> None:
     said, _ = replied(heard(words, "", margin), USUAL, steering=IN_GAMES, answers=False)
     assert said == (Say(words, 1.0, None) if steers else None)
-    assert replied(heard(words, "", margin), USUAL, answers=False) == (None, "")
+    assert replied(heard(words, "", margin), USUAL, answers=False) == (None, None)
 
 
 def test_a_stop_that_was_found_stops_while_a_question_is_open_but_for_an_answer() -> None:

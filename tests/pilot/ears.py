@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
+from tangy_hw.audio.meter import SoundTrouble
 from tangy_profiles.voice import VoicePreference
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verification import Reply, Say, StopCommand
+from tangy_tui.speech.hearing_notes import HearingNote
 from tangy_tui.speech.input import SpeechInput
 
 
@@ -34,11 +36,11 @@ class FakeEars:
         self.answers = answers
         self.state = "off" if live and not hands_free else "listening"
         self.words = ""
-        self.trouble = ""
+        self.trouble: SoundTrouble | None = None
         self.records = False
         self.sound = b""
         self.meter = FakeMeter()
-        self.tell: Callable[[str], None] = lambda sentence: None
+        self.tell: Callable[[HearingNote], None] = lambda note: None
         self.changed: Callable[[], None] = lambda: None
         self.asks = False
         self.shuts = 0
@@ -53,7 +55,13 @@ class FakeEars:
         """Itself, for those who want real ears."""
         return cast(SpeechInput, self)
 
-    def be(self, state: str, words: str = "", level: float = 0.0, trouble: str = "") -> None:
+    def be(
+        self,
+        state: str,
+        words: str = "",
+        level: float = 0.0,
+        trouble: SoundTrouble | None = None,
+    ) -> None:
         """Be in another state."""
         self.state, self.words, self.trouble = state, words, trouble
         self.meter.level = level

@@ -8,9 +8,11 @@ from dataclasses import replace
 import pytest
 from textual.app import App
 
+from tangy_hw.audio.meter import SoundTrouble
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.verification import Reply, StopCommand
+from tangy_tui.speech.hearing_notes import HearingNote
 from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
@@ -267,7 +269,7 @@ async def test_what_is_told_while_a_question_is_open_stands_in_it(
             "I heard something, but no yes, no or stop.",
             "Heard: yes. Please say which: type its number, or N for a new command.",
         )
-        ears.tell(nothing)
+        ears.tell(HearingNote("no answer"))
         await pilot.pause()
         assert nothing in dialog_text(pilot)
         ears.be("speaking")
@@ -290,7 +292,7 @@ async def test_the_key_to_talk_takes_away_what_was_told_of_the_last_answer(
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"))
         await pilot.pause()
-        ears.tell("I heard something, but no yes, no or stop.")
+        ears.tell(HearingNote("no answer"))
         await pilot.pause()
         assert "I heard something" in dialog_text(pilot)
         await pilot.press("ctrl+t")
@@ -382,7 +384,7 @@ async def test_the_line_shows_level_words_and_what_is_wrong(run: Run, workspace:
         line.tick()
         assert "■■■■■■······" in line.text
         assert line.text.endswith("call a")
-        ears.be("listening", "", 0.0, "No sound for 2 s: is the microphone plugged in?")
+        ears.be("listening", trouble=SoundTrouble("no sound", 2))
         line.ticks = 0
         line.tick()
         assert "! No sound for 2 s" in line.text
@@ -507,8 +509,7 @@ async def test_how_hearing_looks(
         if shows == "words":
             ears.be("speaking", "call the next", 0.6)
         elif shows == "trouble":
-            trouble = "No sound for 2 s: is the microphone plugged in? It may be muted."
-            ears.be("listening", "", 0.0, trouble)
+            ears.be("listening", trouble=SoundTrouble("no sound", 2))
         else:
             ears.hear(
                 ears.say(
@@ -519,6 +520,6 @@ async def test_how_hearing_looks(
         line.tick()
         await pilot.pause()
         if shows == "no answer":
-            ears.tell("I heard something, but no yes, no or stop.")
+            ears.tell(HearingNote("no answer"))
             await pilot.pause()
         looks(pilot.app)

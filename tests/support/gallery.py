@@ -14,6 +14,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 
+from tangy_hw.audio.meter import SoundTrouble
 from tangy_profiles.activity import load_activity
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.person import load_people
@@ -46,7 +47,7 @@ class SampleEars:
 
     state: str
     words: str = ""
-    trouble: str = ""
+    trouble: SoundTrouble | None = None
     level: float = 0.0
     live: bool = True
     hands_free: bool = False
@@ -65,9 +66,7 @@ HEARD = (
     SampleEars("speaking", "call the next", level=0.7, records=True),
     SampleEars("thinking", "call the next number"),
     SampleEars("shut"),
-    SampleEars(
-        "listening", trouble="No sound for 2 s: is the microphone plugged in? It may be muted."
-    ),
+    SampleEars("listening", trouble=SoundTrouble("no sound", 2)),
     SampleEars("over"),
 )
 

@@ -8,7 +8,9 @@ import time
 from array import array
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 from operator import mul
+from typing import Literal, TypeAlias
 
 from tangy_hw.audio.wav import RATE
 
@@ -26,9 +28,20 @@ QUIET = 150.0  # the loudest 20 ms of a voice lie above it (-47 dB)
 QUIET_SECONDS = 2.0
 MEMORY_SECONDS = 3.0  # for how long the loudest is remembered
 
+SoundFault: TypeAlias = Literal["nothing comes", "no sound", "too loud", "very quiet"]
+"""What can be wrong with a sound: no data come, or only silence, it is cut off, or it is faint."""
+
+
+@dataclass(frozen=True, slots=True)
+class SoundTrouble:
+    """What is wrong with a sound, and for how many whole seconds it has been so (0: just now)."""
+
+    kind: SoundFault
+    seconds: int = 0
+
 
 class Meter:
-    """Shows sound that is fed to it: a bar from 0 to 1, and a sentence when something is wrong.
+    """Shows sound that is fed to it: a bar from 0 to 1, and what is wrong with it.
 
     Give it every chunk of a live source as it comes; what the clock says between two chunks
     counts. `begin` it when somebody starts to speak into it.
@@ -97,23 +110,21 @@ class Meter:
         """Seconds since anything came that a microphone which is off would not send."""
         return self._clock() - self._sound_at
 
-    def words(self, *, speaking: bool = True) -> str:
-        """Name the problem in one line, if there is one.
+    def trouble(self, *, speaking: bool = True) -> SoundTrouble | None:
+        """Name the problem, if there is one.
 
         Args:
-            speaking: somebody is meant to be speaking; only then is a quiet room worth a word.
+            speaking: somebody is meant to be speaking; only then is a quiet room wrong.
         """
         if self.seconds_since_data >= NO_SOUND_SECONDS:
-            seconds = int(self.seconds_since_data)
-            return f"Nothing has come from the microphone for {seconds} s: is it connected?"
+            return SoundTrouble("nothing comes", int(self.seconds_since_data))
         if self.seconds_since_sound >= NO_SOUND_SECONDS:
-            seconds = int(self.seconds_since_sound)
-            return f"No sound for {seconds} s: is the microphone plugged in? It may be muted."
+            return SoundTrouble("no sound", int(self.seconds_since_sound))
         if self.clipping:
-            return "Too loud: move a little away from the microphone, or turn it down."
+            return SoundTrouble("too loud")
         if speaking and self._quiet():
-            return "Very quiet: move closer to the microphone, or turn it up."
-        return ""
+            return SoundTrouble("very quiet")
+        return None
 
     def _quiet(self) -> bool:
         if self._clock() - self._began < QUIET_SECONDS:

@@ -18,6 +18,7 @@ from tangy_profiles.person import Person
 from tangy_tui.app.keymap import is_letter
 from tangy_tui.language.pronunciation import check_name
 from tangy_tui.speech.name_pronunciation import how_said
+from tangy_tui.text.names import said_words
 from tangy_tui.text.voice import SOUNDS_HELP, said_title
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -97,7 +98,7 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
         """Lay out what is known, the line, and the keys."""
         with Vertical(classes="box") as box:
             box.border_title = Content(said_title(clean(self._person.name)))
-            yield Static(clean(self._said.sentence), markup=False)
+            yield Static(clean(said_words(self._said)), markup=False)
             yield Static(SOUNDS_HELP + "\n", markup=False, classes="dim")
             yield PhonesInput(self._said.phones)
             yield Static("", id="wrong", markup=False)

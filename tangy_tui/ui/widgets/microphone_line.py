@@ -10,6 +10,8 @@ from textual.strip import Strip
 from textual.timer import Timer
 from textual.widget import Widget
 
+from tangy_hw.audio.meter import SoundTrouble
+from tangy_tui.text.microphone import trouble_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
@@ -73,8 +75,8 @@ class Microphone(Protocol):
         """The words so far."""
 
     @property
-    def trouble(self) -> str:
-        """What is wrong, in a sentence."""
+    def trouble(self) -> SoundTrouble | None:
+        """What is wrong, if anything is."""
 
     @property
     def records(self) -> bool:
@@ -143,7 +145,8 @@ class MicrophoneLine(Widget):
     def tick(self) -> None:
         """Look at level and words, and now and then at what is wrong."""
         if self.ticks % LOOKS == 0:
-            self._trouble = clean(self.ears.trouble)
+            trouble = self.ears.trouble
+            self._trouble = "" if trouble is None else trouble_words(trouble)
         self.ticks += 1
         self._show()
 
