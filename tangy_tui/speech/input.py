@@ -254,10 +254,9 @@ class SpeechInput:
         if self._closed:
             return
         await recogniser.start(wanted(phrasebook, self._settings, lexicon.heard()))
-        for note in lexicon.notices():
-            if note not in self._noticed:
-                self._noticed.add(note)
-                self.tell(note)
+        for note in (one for one in lexicon.notices() if one not in self._noticed):
+            self._noticed.add(note)
+            self.tell(note)
 
     async def _recorded(self, recogniser: Recogniser) -> AsyncGenerator[AcousticEvidence, None]:
         pcm = b"".join([chunk async for chunk in self._source])
