@@ -44,7 +44,7 @@ def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
         case TourStop.COACH:
             return (
                 "This line says what is going on, and what a host might do. The line below lists "
-                "what Tangy has not seen yet. Now it is your turn: press Enter to teach."
+                "what Tangy has not seen yet. Your turn: press Enter."
             )
         case _:
             assert_never(stop)
