@@ -10,7 +10,7 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
-from tangy_profiles.scene import Arranged, Scene
+from tangy_profiles.scene import Arranged, ArrangedSituation, Scene
 from tangy_profiles.state import ActivityState, Outcome
 
 
@@ -76,6 +76,6 @@ class Arranging(Protocol):
     """A world that sees to it that everything comes about, and says what comes next."""
 
     @property
-    def coming(self) -> Arranged | None:
+    def coming(self) -> Arranged | ArrangedSituation | None:
         """What is about to come about, None where nothing is."""
         ...

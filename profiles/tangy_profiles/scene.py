@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from tangy_profiles.state import Situation
+
 
 @dataclass(frozen=True, slots=True)
 class CardView:
@@ -26,6 +28,17 @@ class Arranged:
     person: str
     user_state: str
     hidden: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ArrangedSituation:
+    """The situation that a guided game is about to bring about.
+
+    `goes_back`: the game goes on from an earlier moment for it.
+    """
+
+    situation: Situation
+    goes_back: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tangy_profiles.scene import Arranged
+from tangy_profiles.scene import Arranged, ArrangedSituation
 from tangy_tui.learning.teaching_events import Announced
 from tangy_tui.world import Arranging, World
 
@@ -11,7 +11,7 @@ class Announcements:
     """Looks at a world after each step, and announces each coming event once."""
 
     def __init__(self) -> None:
-        self._coming: Arranged | None = None
+        self._coming: Arranged | ArrangedSituation | None = None
 
     def news(self, world: World) -> list[Announced]:
         """Return what the world is about to bring about, if that was not told yet."""

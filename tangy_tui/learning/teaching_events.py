@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
-from tangy_profiles.scene import Arranged
+from tangy_profiles.scene import Arranged, ArrangedSituation
 from tangy_profiles.state import Outcome, Situation
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.verification import (
@@ -164,7 +164,7 @@ class Settled:
 class Announced:
     """A guided game is about to bring this about."""
 
-    arranged: Arranged
+    arranged: Arranged | ArrangedSituation
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from tangy_tui.text.situations import card_words
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity, StageRule
-    from tangy_profiles.scene import Arranged, Scene
+    from tangy_profiles.scene import Arranged, ArrangedSituation, Scene
 
 Name = Callable[[str], str]
 
@@ -76,8 +76,13 @@ def _facts(activity: Activity, state: ActivityState, scene: Scene, name: Name) -
     return [fact for fact in facts if fact]
 
 
-def arranged_words(activity: Activity, arranged: Arranged, name: Name) -> str:
+def arranged_words(activity: Activity, arranged: Arranged | ArrangedSituation, name: Name) -> str:
     """Announce what a guided game is about to bring about, and why."""
+    if isinstance(arranged, ArrangedSituation):
+        situation = activity.in_words(arranged.situation)
+        if arranged.goes_back:
+            return f"Back to an earlier moment, to show what has not come up yet: {situation}."
+        return f"Coming up: {situation}."
     states = [activity.unread, arranged.user_state] if arranged.hidden else [arranged.user_state]
     labels = " and ".join(activity.state_label(state) for state in states)
     why = "nobody has shown that in this game yet"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from tangy_profiles.activity import load_activity
+from tangy_profiles.activity import load_activity, read_activity
 from tangy_profiles.declared.activity import DeclaredActivity, build_activity
 from tangy_profiles.declared.search import reach
 from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
@@ -17,6 +19,8 @@ from tests.support.declared import DECLARED, declared
 from tests.support.renaming import renamed
 
 MOST_STEPS = 400
+FILES = Path(__file__).parents[1] / "support" / "activities"
+"""Activities of kinds that do not ship."""
 
 
 def whom(activity: DeclaredActivity, state: ActivityState, behaviour: str) -> str | None:
@@ -72,6 +76,48 @@ def test_what_was_shown_before_is_not_brought_about_again() -> None:
     play(second, activity)
     assert second.covered
     assert len({state.situation for state in long}) == len(activity.situations)
+
+
+@pytest.mark.parametrize("name", ["toss", "who-am-i"])
+@pytest.mark.parametrize("count", [1, pytest.param(2, marks=pytest.mark.slow)])
+def test_two_guided_games_are_enough_where_something_comes_about_only_once_in_a_game(
+    name: str, count: int
+) -> None:
+    activity = read_activity(FILES / f"{name}.toml")
+    assert isinstance(activity, DeclaredActivity)
+    players = tuple(f"user{number}" for number in range(1, count + 1))
+    taught = ShownMoves(activity.behaviours)
+    for seed in (1, 2):
+        world = GuidedDeclaredWorld(activity, players, seed=seed, shown=taught)
+        play(world, activity)
+        taught = world.taught
+    found = reach(activity.declaration, players[:1], taught)
+    assert (found.whole, found.open, found.stuck) == (True, {}, None)
+    world_of_games = DeclaredWorld(activity, players, seed=9)
+    for _ in range(20):
+        world_of_games.begin()
+        while not world_of_games.over:
+            move = taught.move(world_of_games.game)
+            assert move is not None and move[0] in activity.behaviours
+            action = activity.action(activity.behaviours[move[0]], move[1], None)
+            world_of_games.execute(action)
+
+
+def test_a_guided_game_that_goes_back_says_what_for() -> None:
+    activity = read_activity(FILES / "toss.toml")
+    assert isinstance(activity, DeclaredActivity)
+    world = GuidedDeclaredWorld(activity, ("user1",), seed=1, shown=ShownMoves(activity.behaviours))
+    steps, back = [world.begin()], []
+    while not world.over:
+        name = activity.expected[steps[-1].situation]
+        target = whom(activity, steps[-1], name)
+        world.execute(activity.action(activity.behaviours[name], target, None))
+        steps.append(world.observe())
+        if world.coming is not None and world.coming.goes_back:
+            back.append(world.coming.situation)
+    assert back
+    assert len({one.situation for one in steps if one.situation in back}) == len(set(back))
+    assert [one.step for one in steps] == list(range(len(steps)))
 
 
 def test_a_search_names_what_was_not_shown() -> None:

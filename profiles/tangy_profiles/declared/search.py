@@ -26,13 +26,13 @@ _Node = tuple[bool, Hashable]
 SOON = 1.0
 """So many s pass where nothing in particular is to happen."""
 MOST_STATES = 60_000
-MOST_AHEAD = 5_000
-"""Most states visited in the search for the next event."""
 MOST_ASKING = 2
 """More do not ask at once in a search."""
 FEWEST_ROUNDS = 2
 MOST_PLAYERS = 2
 """A search of every game has no more: states grow with every one."""
+MOST_TELLS = 3
+"""With fewer players, most of them are all of them."""
 
 
 def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Event]:
@@ -41,7 +41,7 @@ def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Eve
     Args:
         game: the game.
         last: whether people may do what ends a game as well.
-        few: of those who may all do the same, only two, or all of them together.
+        few: of those who may all do the same, only two, or most or all of them together.
     """
     yield SOON
     ends = {(habit.fact, value) for habit in game.declaration.habits for value in habit.last}
@@ -55,6 +55,8 @@ def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Eve
         yield from ((act,) for act in (same[:FEW] if few else same))
         if few and len(same) > 1 and fact != ASKING:
             yield tuple(same)
+            if len(same) > FEW:
+                yield tuple(same[: len(game.players) // 2 + 1])
     seconds = _until_next_band(game)
     if seconds is not None:
         yield seconds
@@ -123,43 +125,7 @@ class Reach:
     played: dict[str, int] = field(default_factory=dict)
 
 
-def nearest_event(game: DeclaredGame, taught: ShownMoves, most: int = MOST_AHEAD) -> Event | None:
-    """Return what should happen now so that the nearest situation not shown occurs.
-
-    What ends a game comes last. None: nothing can be reached that was not shown.
-    """
-    for last in (False, True):
-        found = _nearest(game, taught, last, most)
-        if found is not None:
-            return found
-    return None
-
-
-def _nearest(game: DeclaredGame, taught: ShownMoves, last: bool, most: int) -> Event | None:
-    known: set[Hashable] = set()
-    waiting: deque[tuple[DeclaredGame, Event]] = deque()
-    for event in events(game, last=last, few=True):
-        other = game.copy()
-        happen(other, event)
-        waiting.append((other, event))
-    while waiting and len(known) < most:
-        one, first = waiting.popleft()
-        key = state_key(one)
-        if key in known:
-            continue
-        known.add(key)
-        move = taught.move(one)
-        if move is None or move[0] == UNDECIDED:
-            return first
-        done = _done(one, move)
-        for event in () if done.over else events(done, last=last, few=True):
-            other = done.copy()
-            happen(other, event)
-            waiting.append((other, first))
-    return None
-
-
-def _done(game: DeclaredGame, move: Move) -> DeclaredGame:
+def done_move(game: DeclaredGame, move: Move) -> DeclaredGame:
     """Return the game after a behaviour, which people have followed."""
     done = game.copy()
     for person, fact, value in done.execute(*move).invited:
@@ -221,7 +187,7 @@ def explore(
             continue
         for move in able:
             found.played[move[0]] = found.played.get(move[0], 0) + 1
-            reach_node(_done(one, move), False, node)
+            reach_node(done_move(one, move), False, node)
     found.states = sum(robot for robot, _ in known)
     if found.whole:
         stuck = _stuck(known, before, ends)
@@ -242,6 +208,12 @@ def _stuck(
                 can.add(earlier)
                 waiting.append(earlier)
     return next((game for node, game in known.items() if node not in can), None)
+
+
+def enough_players(declaration: Declaration) -> int:
+    """Return with how many players everything can come about that conditions tell apart."""
+    most = any(one.quantifier == "most" for one in declaration.conditions)
+    return MOST_TELLS if most else MOST_PLAYERS
 
 
 def search_game(game: DeclaredGame) -> DeclaredGame:
@@ -268,10 +240,12 @@ def reach(declaration: Declaration, players: Sequence[str], taught: ShownMoves) 
 
     Args:
         declaration: the activity.
-        players: those who take turns; more than `MOST_PLAYERS` add nothing that is new.
+        players: those who take turns; more than `enough_players` add nothing that is new.
         taught: what to do in which situation.
     """
-    game = DeclaredGame(declaration, players[:MOST_PLAYERS], range(declaration.items.rounds))
+    game = DeclaredGame(
+        declaration, players[: enough_players(declaration)], range(declaration.items.rounds)
+    )
 
     def moves(now: DeclaredGame) -> list[Move]:
         move = taught.move(now)

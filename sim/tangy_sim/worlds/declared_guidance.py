@@ -1,7 +1,9 @@
 """A guided game of any declared activity: what happens is what nobody has shown yet.
 
 Left to chance, some situations occur in one game of many. Here a search in the interpreter
-finds the events that lead to the nearest situation that was not shown.
+finds the events that lead to the nearest situation that was not shown. Some situations occur only
+once in a game: after the teacher has ended it, the game continues from an earlier moment until
+nothing is left to show.
 """
 
 from __future__ import annotations
@@ -10,10 +12,16 @@ from collections.abc import Sequence
 
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.declared.search import nearest_event
+from tangy_profiles.declared.ahead import Leg, moment_key, nearest_way
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.search import Event
 from tangy_profiles.declared.shown_moves import ShownMoves
+from tangy_profiles.scene import ArrangedSituation
 from tangy_profiles.state import EVERYBODY, ActivityState, Outcome
 from tangy_sim.worlds.declared_world import DeclaredWorld
+
+MOST_BACK = 25
+"""How often a guided game goes back; what is left then is for the next one."""
 
 
 class GuidedDeclaredWorld(DeclaredWorld):
@@ -33,25 +41,66 @@ class GuidedDeclaredWorld(DeclaredWorld):
         """Begin a new game with what earlier demonstrations have shown."""
         self.taught = self._shown.copy()
         self.covered = False
+        self.coming: ArrangedSituation | None = None
+        """The coming situation, None if it is left to chance."""
+        self._moments: list[DeclaredGame] = []
+        self._legs: list[Leg] = []
+        self._went_back = 0
         return super().begin()
 
     def execute(self, action: Action) -> Outcome:
         """Carry out an action of the robot, then the next event of the plan."""
-        if not self.over:
-            target = None if action.target == EVERYBODY else action.target
-            self.taught.show(self.observe(), action.behaviour.name, target)
-        return super().execute(action)
+        if self.over:
+            return super().execute(action)
+        target = None if action.target == EVERYBODY else action.target
+        self.taught.show(self.observe(), action.behaviour.name, target)
+        outcome = super().execute(action)
+        if self.over:
+            self._go_back()
+        return outcome
 
     def _pass(self, seconds: float) -> None:
         """Let no time pass in the game while the robot speaks: it passes when that is needed."""
 
     def _let_people_act(self) -> None:
-        event = None if self.covered else nearest_event(self.game, self.taught)
-        if event is None:
+        self._moments.append(self.game.copy())
+        event = None if self.covered else self._next()
+        if event is not None:
+            self._bring_about(event)
+        elif self._went_back:  # the game was ended before
+            self._go_back()
+        else:
             self.covered = True
             super()._let_people_act()
-        elif isinstance(event, float):
+
+    def _next(self) -> Event | None:
+        """Return what has to happen now: the next leg of the way, or the first of a new one."""
+        key = moment_key(self.game)
+        if not (self._legs and self._legs[0].key == key):
+            way = nearest_way((self.game,), self.taught)
+            self._legs = list(way.legs) if way is not None else []
+            several = way is not None and len(way.legs) > 1
+            self.coming = ArrangedSituation(way.situation) if way and several else None
+        return self._legs.pop(0).event if self._legs else None
+
+    def _go_back(self) -> None:
+        """Go on from the moment that is nearest to what was not shown; end the game without one."""
+        latest = tuple(reversed(self._moments))
+        way = nearest_way(latest, self.taught) if self._went_back < MOST_BACK else None
+        if way is None:
+            self.over, self.covered, self.coming = True, True, None
+            return
+        step = self.game.step
+        self.game = latest[way.start].copy()
+        self.game.step, self.over = step, False
+        self._went_back += 1
+        self._legs = list(way.legs)
+        self.coming = ArrangedSituation(way.situation, goes_back=True)
+        self._bring_about(self._legs.pop(0).event)
+
+    def _bring_about(self, event: Event) -> None:
+        if isinstance(event, float):
             self.game.now += event
-        else:
-            for act in event:
-                self._take_in(act)
+            return
+        for act in event:
+            self._take_in(act)
