@@ -21,11 +21,10 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.codec import written
 from tangy_profiles.reading import plain
-from tangy_tui.app.game_commands import StopRobot
-from tangy_tui.app.game_view import view_of
 
 if TYPE_CHECKING:
     from tangy_tui.app.game_controller import GameController
+    from tangy_tui.app.game_view import GameView
 
 _LOG = logging.getLogger(__name__)
 
@@ -148,6 +147,8 @@ class SessionDoor:
         if control is None:
             return False
         try:
+            from tangy_tui.app.game_commands import StopRobot
+
             control.apply(StopRobot(by=name))
             stopped(name)
         except Exception:
@@ -164,7 +165,7 @@ class SessionDoor:
 
     def _look(self) -> bytes:
         control = self._control
-        view = None if control is None else view_of(control)
+        view = None if control is None else _view_of(control)
         return _line({"pid": os.getpid(), "view": None if view is None else written(view)})
 
     def _tell(self, guest: socket.socket, line: bytes, ready: selectors.BaseSelector) -> None:
@@ -224,3 +225,9 @@ def reachable(folder: Path) -> Iterator[str]:
         yield str(short if short.is_dir() else folder)
     finally:
         os.close(opened)
+
+
+def _view_of(control: GameController) -> GameView | None:
+    from tangy_tui.app.game_view import view_of  # only once somebody looks on
+
+    return view_of(control)

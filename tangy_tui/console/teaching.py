@@ -49,7 +49,7 @@ from tangy_tui.learning.verification import (
     answer_help,
 )
 from tangy_tui.speech.input import Heard, SpeechInput
-from tangy_tui.text.coach import coach_words
+from tangy_tui.text.coach import SAYABLE, coach_words, sayable_now
 from tangy_tui.text.hearing import hearing_words
 from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
@@ -238,6 +238,9 @@ class TeachingLines:
         text = line.strip()
         if self._tour is not None and self._tours(text):
             return None
+        if not text and self._yes.by_person and self._teaching.question is None:
+            can = sayable_now(self._teaching.sayable)
+            self._write(f"{SAYABLE}: {can}." if can else GAME_OVER)
         if not text or text.startswith("#"):
             return None
         word = read_teaching(text, self._teaching.phrasebook.game)

@@ -105,16 +105,21 @@ def paused_lines(count: int, seconds: float) -> list[str]:
     return [f"It waited for late data {times}, for {seconds:.1f} s in all."] if count else []
 
 
+NEVER_ASKED = "Tangy has asked for nothing yet, so that it does not know what works."
+
+
 def belief_lines(supervision: Supervision, name: Name) -> list[str]:
     """Put what is believed of everybody into one line each."""
     lines: list[str] = []
     for person, profile in supervision.persuasion.beliefs.items():
         best = probability_best(profile)
         parts = [
-            f"{strategy} {belief.complied}/{belief.trials} (best {best[strategy]:.0%})"
+            f"{strategy} worked {belief.complied} of {counted(belief.trials, 'time')} "
+            f"(the best way, at {best[strategy]:.0%})"
             for strategy, belief in profile.items()
+            if belief.trials
         ]
-        lines.append(f"{name(person)}: " + ", ".join(parts))
+        lines.append(f"{name(person)}: {', '.join(parts) or NEVER_ASKED}")
     return lines
 
 

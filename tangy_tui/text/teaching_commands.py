@@ -9,7 +9,7 @@ from tangy_tui.text.numbers import counted
 
 HELP = (
     "Type what Tangy should do, or one of: undo, redo, again N, where, seen, why, help, next, "
-    "learn, play, quit."
+    "learn, play, quit. Enter alone lists what can be said now."
 )
 MEANINGS = (
     ("undo", "take the last step back"),

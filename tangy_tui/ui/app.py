@@ -133,6 +133,7 @@ class TangyApp(App[None]):
         self._reader = KeyReader(self)
         self.frames = HeldWrites(lambda: None if self.is_headless else self._driver)
         self._shown = ScreenDiff()
+        self._measured = False
         self._question = question
         self.keymap = keymap
         self._link = link
@@ -143,7 +144,9 @@ class TangyApp(App[None]):
     async def on_event(self, event: events.Event) -> None:
         """Stop where the word is typed or pasted among keys, and let the rest of it be no keys."""
         if isinstance(event, events.Resize):
-            self._shown.forget()
+            if self._measured:  # the first one says only how large the terminal is
+                self._shown.forget()
+            self._measured = True
             if self.round_trip is not None:
                 self.round_trip.resized(event.size)
         if not self._reader.takes(event):

@@ -14,7 +14,6 @@ from tangy_profiles.game_world import SIMULATED
 from tangy_tui.text import program as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
 from tangy_tui.ui import policy_opening
-from tangy_tui.ui.activity_choice import choose_at_home
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.first_start import change_teacher, first_start, rename_teacher
@@ -124,6 +123,8 @@ class Program(SoundingApp):
             case "demo":
                 self._open(tell_story_aside(self))
             case "activity":
+                from tangy_tui.ui.activity_choice import choose_at_home
+
                 self._open(choose_at_home(self))
             case "name":
                 self._open(change_teacher(self))

@@ -54,7 +54,6 @@ def open_program(
     """
     from tangy_profiles.errors import StoreBusy
     from tangy_profiles.fault_file import load_faults
-    from tangy_tui.text.watching import RUNNING_HERE
     from tangy_tui.ui.run import run_program
 
     try:
@@ -62,6 +61,8 @@ def open_program(
             load_faults(workspace.robot)  # what is wrong with its file is said before any screen
             return run_program(workspace, ascii_only=ascii_only)
     except StoreBusy:
+        from tangy_tui.text.watching import RUNNING_HERE
+
         return watch_program(data, note=RUNNING_HERE, ascii_only=ascii_only)
 
 

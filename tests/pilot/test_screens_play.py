@@ -80,6 +80,21 @@ async def test_one_step_is_one_step(run: Run, workspace: Workspace, policy: Poli
         assert screen.query_one(StatusLine).status.note == "paused"
 
 
+async def test_what_staff_see_goes_along_with_a_simulated_game(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=playing(workspace, policy), size=SMALL) as pilot:
+        screen = await pause_at_once(pilot)
+        await pilot.press("u")
+        await pilot.pause()
+        for _ in range(4):
+            await pilot.press("full_stop")
+            await pilot.pause()
+            called = len(screen.control.supervision.world.scene().called)
+            assert f"{called} called" in screen_text(pilot.app) or not called
+        assert called
+
+
 async def test_the_policy_row_in_use_is_marked(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

@@ -20,6 +20,7 @@ from tangy_profiles.state import Response
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import TeachingLines
+from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.interaction.game_events import BeliefUpdated
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
@@ -251,6 +252,15 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(workspace: Worksp
     assert after[3] == "A new demonstration by Ada (game 2)."
     assert after[-1] == "Let Tangy learn from it with `tangy learn --data d`."
     assert not any(line.startswith("You left after") for line in after)
+
+
+def test_enter_alone_lists_what_can_be_said_now(workspace: Workspace) -> None:
+    typed, said = iter(["\n", "quit"]), list[str]()
+    teaching = workspace.teaching("Ada", 1)
+    yes = TypedYes(terminal=True, setting="y", flush=lambda: None)
+    session = TeachingLines(teaching, lambda: next(typed, None), said.append, yes=yes)
+    asyncio.run(session.run())
+    assert teaching.sayable and all(phrase in said[-1] for phrase in teaching.sayable)
 
 
 def test_after_a_game_by_lines_tangy_learns_and_plays_by_their_words(tangy: Tangy) -> None:

@@ -42,7 +42,6 @@ from tangy_tui.app.seats import Seats
 from tangy_tui.app.sensing import LinkedSensors
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.game_events import GameBegun, ResumedGame
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.control import (
@@ -113,7 +112,6 @@ class LiveScreen(PlayScreen):
             past=past,
         )
         self.world = world
-        self._past = past
         self._faults.beside = self._attend_beside
         self.working = 0  # how many things are being done, or wait for their turn
         self._seen_doing = ""
@@ -324,13 +322,6 @@ class LiveScreen(PlayScreen):
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events, and who was seen where somebody else usually sits."""
         super()._tell(events, known)
-        for event in events:
-            if isinstance(event, GameBegun):
-                self._watch.begin(self.world.seconds)
-            elif isinstance(event, ResumedGame) and self._past is not None:
-                self._watch.resume(self.world.seconds, self._past)
-        if events:
-            self.show_staff()
         for seated in self._seats.news(events, self.world.sitting):
             self._write(seated_words(seated, self._workspace.name), "warn")
         self._cards.tell(events)
