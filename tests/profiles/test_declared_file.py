@@ -18,6 +18,7 @@ from tests.support.declared import DECLARED
 from tests.support.laws import tried
 
 SHIPPED = shipped_activities()["trivia"]
+FOLDER = SHIPPED.parent
 TEXT = SHIPPED.read_text(encoding="utf-8")
 TOKENS = [match.span() for match in re.finditer(r"[a-z_]{3,}", TEXT)]
 
@@ -120,3 +121,19 @@ def test_a_word_that_is_mistaken_is_a_line_and_never_a_traceback(
         assert all(line.isprintable() and len(line) < 700 for line in error.lines)
     except ProfileError as error:
         assert str(error).isprintable()
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_a_misspelt_key_is_named_first_with_the_right_one(name: str, tmp_path: Path) -> None:
+    text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    for table in FOLDER.glob("*.csv"):
+        shutil.copy(table, tmp_path)
+    file, passed = tmp_path / f"{name}.toml", set[str]()
+    for key in re.finditer(r"(?m)(?:^|[{,]\s*)([a-z_]{4,})(?=\s*=)", text):
+        if key[1] in passed:
+            continue
+        passed.add(key[1])
+        file.write_text(f"{text[: key.end(1) - 1]}x{text[key.end(1) :]}", encoding="utf-8")
+        with pytest.raises(MistakesError) as refused:
+            read_activity(file)
+        assert f"'{key[1]}'" in str(refused.value)

@@ -37,7 +37,8 @@ class Section:
         """Refuse keys that are not known here."""
         for key in self._values:
             if key not in known:
-                self.wrong(key, f"is not a key here; {nearest(key, known)}")
+                problem = f"is not a key here; {nearest(key, known)}"
+                self.source.wrong((*self.path, key), problem, cause=True)
 
     def text(self, key: str, default: str | None = None) -> str:
         """Take a text; without a default it has to be there."""

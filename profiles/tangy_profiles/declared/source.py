@@ -18,10 +18,15 @@ Path = tuple[str | int, ...]
 class MistakesError(ProfileError):
     """An activity's file has mistakes; `lines` names each, with its line and column."""
 
-    def __init__(self, lines: list[str]) -> None:
-        """Take the mistakes, of which there is at least one."""
+    def __init__(self, lines: list[str], cause: str = "") -> None:
+        """Take the mistakes, of which there is at least one.
+
+        Args:
+            lines: all of them.
+            cause: the one from which others can follow (default: the first).
+        """
         more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
-        super().__init__(lines[0] + more)
+        super().__init__((cause or lines[0]) + more)
         self.lines = tuple(lines)
 
 
@@ -33,14 +38,16 @@ class SourceText:
         self.file = file
         self._text = text
         self._found: list[tuple[int, int, str]] = []
+        self._causes: set[str] = set()
 
-    def wrong(self, path: Path, problem: str, quoted: str = "") -> None:
+    def wrong(self, path: Path, problem: str, quoted: str = "", *, cause: bool = False) -> None:
         """Note a mistake.
 
         Args:
             path: the keys that lead to it; a number is a place in a list, from 0.
             problem: the problem, without a full stop.
             quoted: the wrong text, if it is only a part of the value.
+            cause: other mistakes can follow from it, as from a key that is misspelt.
         """
         offset = self._offset(path, quoted)
         line = self._text.count("\n", 0, offset) + 1
@@ -49,6 +56,7 @@ class SourceText:
         told = f"{self.file}:{line}:{column}: {dotted(path)}: {problem}"
         if (line, column, told) not in self._found:
             self._found.append((line, column, told))
+            self._causes |= {told} if cause else set()
 
     def close(self) -> None:
         """Refuse the file if it has mistakes.
@@ -57,8 +65,9 @@ class SourceText:
             MistakesError: naming all of them, in the order of the file.
         """
         if self._found:
-            lines = [plain(told) for _, _, told in sorted(self._found)]
-            raise MistakesError(lines[:MOST_MISTAKES])
+            found = [told for _, _, told in sorted(self._found)]
+            cause = next((plain(told) for told in found if told in self._causes), "")
+            raise MistakesError([plain(told) for told in found[:MOST_MISTAKES]], cause)
 
     @property
     def sound(self) -> bool:
