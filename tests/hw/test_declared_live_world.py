@@ -67,7 +67,8 @@ def test_people_are_spoken_to_by_their_names(world: DeclaredLiveWorld, link: Fak
     asked(world)
     assert link.said[-1].startswith("Ann, question 1: ")
     (picture,) = [w["picture"] for d, w in link.done if d == "perform" and "Ann" in w["text"]]
-    assert right(world) in picture["text"] and picture["asks"] == "Ann"
+    assert right(world) in picture["text"] and picture["asks"] == "Seat 1"
+    assert "Ann" not in picture["text"]
 
 
 def test_what_is_told_counts_with_the_next_look(world: DeclaredLiveWorld) -> None:

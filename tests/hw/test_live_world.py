@@ -90,6 +90,20 @@ def test_where_nothing_was_said_the_screen_shows_every_word(
     assert link.said[-1] in texts
 
 
+@pytest.mark.parametrize("speaks", [True, False])
+def test_the_page_that_all_can_read_names_nobody(link: FakeLink, speaks: bool) -> None:
+    link.speaks = speaks
+    world = world_of(link)
+    beside(world, link, 2, LaidCard(1, 0))
+    do(world, "call number")
+    do(world, "mark numbers", PEOPLE[1], "neutral")
+    world.recover(Remedy("ask", "f", person=PEOPLE[1], speech="Ben, please.", image="Ben?"))
+    shown = [what["picture"] for did, what in link.done if did == "perform"]
+    assert any("Ben" in said for said in link.said)
+    assert not any("Ben" in str(picture) for picture in shown)
+    assert any(picture["asks"] == "Seat 2" for picture in shown)  # whose turn it is
+
+
 def test_no_number_comes_twice_and_another_seed_has_another_order(link: FakeLink) -> None:
     world = opened(world_of(link))
     numbers = [do(world, "call number").numbers[0] for _ in range(75)]

@@ -179,8 +179,12 @@ class DeclaredLiveWorld(LiveWorld):
         after = game.copy()
         after.execute(behaviour.name, whom)
         speech, image = words(after, game, behaviour.name, action.strategy, whom)
-        picture = Picture(with_names(image, self.name_of), asks=self.name_of(whom))
-        self.say(with_names(speech, self.name_of), picture, self._robot.postures[action.posture])
+        asks = "" if behaviour.persuades else self.seat_of(whom)
+        picture = Picture(with_names(image, self.seat_of), asks=asks)
+        posture = self._robot.postures[action.posture]
+        self.say(
+            with_names(speech, self.name_of), picture, posture, with_names(speech, self.seat_of)
+        )
         if drives and not self._arrives(after.place):
             raise DeviceError("The robot did not get there.")
         return speech, image

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from typing import TypeAlias
 
 from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.robot_client.call_order import LAST_CALLS, CallOrder
@@ -12,9 +13,16 @@ from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
 from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.room import Room
 
 SET_ASIDE: tuple[ChangeKind, ...] = ("others first", "played on", "left")
 """Changes by which somebody's request is over, also while the sign stays up."""
+
+
+Posture: TypeAlias = Mapping[str, Sequence[float]] | None
+"""Joint angles in rad, by limb; None: as they are."""
+SEAT = "seat"
+"""What a seat is called in a room that has no word for it."""
 
 
 class LivePlan(PlannedGame):
@@ -25,12 +33,21 @@ class LivePlan(PlannedGame):
     calls: CallOrder
     requests: HelpRequestTracker
     _due: float
+    _room: Room
 
     def say(
-        self, speech: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
+        self, speech: str, picture: Picture, posture: Posture = None, written: str = ""
     ) -> None:
-        """Say and show something; a posture is joint angles in rad, by limb."""
+        """Say and show something; see `LiveWorld`."""
         raise NotImplementedError
+
+    def seat_of(self, person: str | None) -> str:
+        """Return what all can read in place of a person's name, "" for nobody's; teams have one."""
+        if person not in self.people:
+            return ""
+        if person in self.activity.teams:
+            return person
+        return f"{self._room.seat_word or SEAT} {self.people.index(person) + 1}".capitalize()
 
     @property
     def called_now(self) -> tuple[int, ...]:

@@ -20,7 +20,7 @@ from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
-from tangy_hw.robot_client.live_plan import LivePlan
+from tangy_hw.robot_client.live_plan import LivePlan, Posture
 from tangy_hw.robot_client.recovery_actions import RecoveryActions
 from tangy_hw.robot_client.response_watch import LOOK_SECONDS, watch_response
 from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
@@ -226,33 +226,36 @@ class LiveWorld(LivePlan):
         return watch_response(self, action, numbers), True
 
     def _announce(self, action: Action, numbers: tuple[int, ...]) -> None:
-        """Speak, show and gesture."""
+        """Speak, show and gesture; what is shown to all names no person, only the seat."""
         name, fill, deck = self.name_of(action.target), self.activity.fill, self.activity.deck
+        seat, behaviour = self.seat_of(action.target), action.behaviour
         called = numbers if action.behaviour.effect == "draw" else ()
         picture = Picture(
-            fill(action.image, name, numbers),
+            fill(action.image, seat, numbers),
             deck.label(called[0]) if called else "",
             self.calls.labels(deck),
-            name if action.behaviour.attends else "",
+            seat if behaviour.attends and not behaviour.persuades else "",
         )
-        speech = fill(action.speech, name, numbers)
-        self.say(speech, picture, self._robot.postures[action.posture])
+        speech, written = (fill(action.speech, called, numbers) for called in (name, seat))
+        self.say(speech, picture, self._robot.postures[action.posture], written)
 
     def say(
-        self, speech: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
+        self, speech: str, picture: Picture, posture: Posture = None, written: str = ""
     ) -> None:
         """Say and show something (joints in rad); without a voice the screen shows what is said.
+
+        What is said is `written` otherwise where all can read it, if that is given.
 
         Raises:
             DeviceError: neither could be done.
         """
-        written = picture._replace(text=speech)
+        in_words = picture._replace(text=written or speech)
         if speech and not self._has_voice:
-            self.commands.perform(speech, written, posture)
+            self.commands.perform(speech, in_words, posture)
             return
         done = self.commands.perform(speech, picture, posture)
         if speech and not done.get("said"):  # it failed just now, or the robot has no voice
-            self.commands.perform("", written)
+            self.commands.perform("", in_words)
 
     @property
     def _has_voice(self) -> bool:

@@ -45,7 +45,11 @@ class RecoveryActions:
         world, person = self._world, remedy.person
         commands, tracker = world.commands, world.tracker
         if remedy.speech or remedy.image:
-            world.say(remedy.speech, Picture(remedy.image, asks=world.name_of(person)))
+            name, seat = world.name_of(person), world.seat_of(person)
+            shown, written = (
+                text.replace(name, seat) if name else text for text in (remedy.image, remedy.speech)
+            )
+            world.say(remedy.speech, Picture(shown, asks=seat), written=written)
         match remedy.kind:
             case "ask":
                 self._await_help(remedy)

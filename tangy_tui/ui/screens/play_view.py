@@ -10,8 +10,8 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.set_up import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
 from tangy_tui.text import staff_view as text
-from tangy_tui.ui.widgets.call_board import CallBoard
-from tangy_tui.ui.widgets.staff_panel import PersonLine, StaffPanel
+from tangy_tui.ui.widgets.call_board import CallBoard, column_row
+from tangy_tui.ui.widgets.staff_panel import BOARD, PersonLine, StaffPanel
 from tangy_tui.world import World
 
 INKS = {"asks": "warn", "visited": "robot", "away": "dim", "plays": "text"}
@@ -34,11 +34,13 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
     label = shown.world.activity.deck.label
     board.show(view.called)
     call = label(view.called[-1]).replace("-", "") if view.called else ""
+    columns = () if board.display else shown.world.activity.deck.columns
     panel.show(
         call,
         _next(shown),
-        _facts(view, shown),
+        _facts(view, shown, last=not columns),
         [_person(person, shown.name) for person in _in_order(view.people)],
+        [column_row(column, view.called, BOARD) for column in columns],
     )
 
 
@@ -57,9 +59,10 @@ def _next(shown: ViewSource) -> str:
     return words if control.going else f"{text.PAUSED} {words}".strip()
 
 
-def _facts(view: StaffView, shown: ViewSource) -> list[str]:
+def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
+    """Return what stands beside the call: with the last few calls, or without."""
     world, label = shown.world, shown.world.activity.deck.label
-    before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1])
+    before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1] if last)
     count = f"{len(view.called)} called" if view.called else text.NOTHING_CALLED
     planned = world if isinstance(world, PlannedGame) else None
     patterns = getattr(planned, "patterns", None)

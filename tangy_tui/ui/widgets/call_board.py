@@ -12,6 +12,7 @@ from tangy_profiles.cards import Column, Deck
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, Span, draw
 
+LETTER = "B "
 CELL = 3
 """Columns of the screen that a number takes."""
 
@@ -48,17 +49,20 @@ class CallBoard(Widget):
         """Draw one column of the deck as a line."""
         width = self.size.width
         columns = self._deck.columns
-        return draw(self, self._row(columns[y], width) if y < len(columns) else (), width)
+        row = column_row(columns[y], self._called, width) if y < len(columns) else ()
+        return draw(self, row, width)
 
-    def _row(self, column: Column, width: int) -> Row:
-        numbers = list(range(column.low, column.high + 1))
-        if len(numbers) * CELL + CELL > width:
-            numbers = [n for n in numbers if n in self._called]
-        spans: list[Span] = [(f"{column.letter:<2}", "strong")]
-        for number in numbers:
-            if number not in self._called:
-                spans.append((f"{'·':>{CELL}}", "dim"))
-            else:
-                last = number == self._called[-1]
-                spans.append((f"{number:>{CELL}}", "robot" if last else "text"))
-        return tuple(spans)
+
+def column_row(column: Column, called: Sequence[int], width: int) -> Row:
+    """Write a column of the deck as a line of so many cells: all numbers, or those called."""
+    numbers = list(range(column.low, column.high + 1))
+    if len(numbers) * CELL + len(LETTER) > width:
+        numbers = [n for n in numbers if n in called]
+    spans: list[Span] = [(f"{column.letter:<{len(LETTER)}}", "strong")]
+    for number in numbers:
+        if number not in called:
+            spans.append((f"{'·':>{CELL}}", "dim"))
+        else:
+            last = number == called[-1]
+            spans.append((f"{number:>{CELL}}", "robot" if last else "text"))
+    return tuple(spans)

@@ -17,10 +17,16 @@ LARGE_WIDTH, LARGE_HEIGHT = 56, 22
 """From so many columns and lines on the call is drawn twice as large."""
 BESIDE = 30
 """Columns from which facts stand beside the call, and not below it."""
-SLOT = 36
-"""Columns for one person; where more fit, people stand side by side."""
-NAME = 14
-"""Columns of a person's name."""
+SLOT, NARROW = 36, 26
+"""Columns for one person, and where people do not fit so; they stand side by side."""
+NAME, SHORT_NAME = 14, 10
+"""Columns of a person's name, in either."""
+BOARD = 48
+"""Columns of the board of calls, where it stands here."""
+BOARD_HEIGHT = 9
+"""Lines from which the board stands here; the facts are then below the call."""
+
+HARD = "\N{NO-BREAK SPACE}"
 
 PersonLine = tuple[str, str, str]
 """The name of a person, how they are, and the ink of that."""
@@ -43,14 +49,20 @@ class StaffPanel(RowView, can_focus=True):
         self._call, self._next = "", ""
         self._facts: tuple[str, ...] = ()
         self._people: tuple[PersonLine, ...] = ()
+        self._board: tuple[Row, ...] = ()
 
     def show(
-        self, call: str, next_step: str, facts: Sequence[str], people: Sequence[PersonLine]
+        self,
+        call: str,
+        next_step: str,
+        facts: Sequence[str],
+        people: Sequence[PersonLine],
+        board: Sequence[Row] = (),
     ) -> None:
-        """Show the last call, what comes next, facts beside the call, and people."""
-        new = call, next_step, tuple(facts), tuple(people)
-        if new != (self._call, self._next, self._facts, self._people):
-            self._call, self._next, self._facts, self._people = new
+        """Show the last call, what comes next, facts beside the call, people, and the board."""
+        new = call, next_step, tuple(facts), tuple(people), tuple(board)
+        if new != (self._call, self._next, self._facts, self._people, self._board):
+            self._call, self._next, self._facts, self._people, self._board = new
             self._draw()
 
     def on_resize(self, event: events.Resize) -> None:
@@ -61,7 +73,7 @@ class StaffPanel(RowView, can_focus=True):
         width, height = self._rows.width, self._rows.height
         if not self.is_attached or width < 10:
             return
-        next_lines = wrap(clean(self._next), width)[: 2 if height > 9 else 1]
+        next_lines = wrap(clean(self._next), width)[: 2 if height > 11 else 1]
         rows: list[Row] = [((line, "strong"),) for line in next_lines]
         rows += self._block(width, height)
         rows += self._everybody(width, max(1, height - len(rows)))
@@ -73,6 +85,8 @@ class StaffPanel(RowView, can_focus=True):
         drawn = block_rows(self._call, large) if self._call else [""] * min(5, len(self._facts))
         beside = max((cell_len(row) for row in drawn), default=0)
         facts = [clean(fact) for fact in self._facts if fact]
+        if self._board and height >= BOARD_HEIGHT and width - beside > BOARD:
+            return self._with_board(drawn, beside, facts, width)
         if width - beside < BESIDE:
             below: list[Row] = [((row, "robot"),) for row in drawn]
             return below + [((fact, "text"),) for fact in facts]
@@ -85,9 +99,22 @@ class StaffPanel(RowView, can_focus=True):
             rows.append(((fit(block, beside + 1), "robot"), (shorten(fact, room), "text")))
         return rows
 
+    def _with_board(
+        self, drawn: Sequence[str], beside: int, facts: Sequence[str], width: int
+    ) -> list[Row]:
+        """Draw the board beside the call, and the facts below both."""
+        rows: list[Row] = []
+        for number, row in enumerate(self._board):
+            block = drawn[number] if number < len(drawn) else ""
+            rows.append(((fit(block, beside + 1), "robot"), *row))
+        lines = wrap("  ".join(fact.replace(" ", HARD) for fact in facts), width)
+        return rows + [((line.replace(HARD, " "), "text"),) for line in lines[:2]]
+
     def _everybody(self, width: int, height: int) -> list[Row]:
         """Draw people in as many columns as fit; of too many, the first ones."""
         across = max(1, width // SLOT)
+        if across * height < len(self._people):
+            across = max(1, width // NARROW)
         shown = self._people[: across * height]
         if left := len(self._people) - len(shown):
             shown = (*shown[:-1], (more_words(left + 1), "", "dim"))
@@ -100,7 +127,9 @@ class StaffPanel(RowView, can_focus=True):
     @staticmethod
     def _person(person: PersonLine, width: int) -> Row:
         name, how, ink = person
+        columns = NAME if width >= SLOT else SHORT_NAME
+        how = how if width >= SLOT else how.partition(",")[0]
         return (
-            (fit(clean(name), NAME) + " ", "strong" if ink == "warn" else "text"),
-            (fit(clean(how), width - NAME - 1), ink),
+            (fit(clean(name), columns) + " ", "strong" if ink == "warn" else "text"),
+            (fit(clean(how), width - columns - 1), ink),
         )
