@@ -18,6 +18,9 @@ PRESSING_STRATEGIES = _TOP.words("pressing_strategies")
 QUESTIONS_ACTIVITY = _TOP.text("questions")
 """The name of the activity whose file is written anew for questions that are imported."""
 
+ASK_AGAIN = _TOP.words("ask_again")
+"""The texts with which a person is asked again whose answer was not clear."""
+
 _TOP.close()
 
 TO_BEGIN_WITH = 4

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tangy_hw.robot_process.stop_latch import STAFF
-from tangy_profiles.declared.typed_observations import sayable
+from tangy_profiles.declared.typed_observations import about, sayable
 from tangy_tui.app.game_commands import (
     LONGEST_DRIVE,
     TWISTS,
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
 STOPPED, ENDED = "staff stopped it", "staff ended the game"
+UNCLEAR, UNCLEAR_SURE = "?", 0.5
+"""The end of an answer that staff have not understood clearly, and how sure it is."""
 DRIVE_AGAIN = 0.1  # s from one twist to the next: a robot that hears none stands
 
 
@@ -112,9 +114,13 @@ class RobotControls:
         if not isinstance(robot, DeclaredLiveWorld):
             return StaffNote("nothing to tell")
         said = command.words
-        if not robot.tell(command.person, said):
+        unclear = said.rstrip().endswith(UNCLEAR)
+        if not robot.tell(command.person, said, UNCLEAR_SURE if unclear else 1.0):
             return StaffNote("not told", words=", ".join(sayable(robot.game)))
         self._note(f"staff told of {command.person or 'the group'}: {said}")
+        asked = robot.may_ask_again(command.person or about(robot.game))
+        if unclear and not asked:  # staff are asked in their place
+            return StaffNote("not told", words=", ".join(sayable(robot.game)))
         return StaffNote("told", command.person or "", said)
 
     def _drive(self, robot: LiveWorld, command: Drive) -> StaffNote:

@@ -13,6 +13,7 @@ from tangy_hw.robot_client.declared_live_world import PAUSE_SECONDS, DeclaredLiv
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.typed_observations import TypedObservation
+from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import Outcome
@@ -89,6 +90,27 @@ def test_an_answer_that_is_not_sure_is_not_judged(world: DeclaredLiveWorld) -> N
     world.tell("user1", right(world), certainty=0.5, source="speech")
     assert world.observe().stage == "listen"
     assert world.unsure is not None and world.unsure.told.who == "user1"
+
+
+def test_whoever_answers_unclearly_is_asked_again_as_often_as_the_caps_allow(
+    world: DeclaredLiveWorld, link: FakeLink
+) -> None:
+    asked(world)
+
+    def meanwhile(what: str, time: float) -> None:
+        if what == "wait" and not world.unsure:
+            world.tell("user1", right(world), certainty=0.5, source="speech")
+
+    link.meanwhile = meanwhile
+    for _ in range(4):
+        do(world, "allow time")
+    again = [text for text in link.said if text in {one.format(name="Ann") for one in ASK_AGAIN}]
+    assert len(again) == world.activity.asking.visit
+    assert not world.may_ask_again("user1") and world.observe().stage == "listen"
+    link.meanwhile = lambda what, time: None
+    world.tell("user1", right(world))
+    assert world.observe().stage == "judge"
+    assert world.may_ask_again("user1")
 
 
 def test_the_pause_ends_when_somebody_answers(world: DeclaredLiveWorld, link: FakeLink) -> None:

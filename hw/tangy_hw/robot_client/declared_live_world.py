@@ -22,6 +22,7 @@ from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.speech import with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING
+from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.past_game import NotResumable, PastGame
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import EVERYBODY, FRONT, ActivityState, Outcome, Response
@@ -68,6 +69,7 @@ class DeclaredLiveWorld(LiveWorld):
         self._did: dict[str, str] = {}
         self._told.clear()
         self.unsure = None
+        self._asked_again: dict[str, int] = {}
 
     def resume(self, past: PastGame) -> ActivityState:
         """Refuse: what people did in the game before it was interrupted is known to nobody.
@@ -132,6 +134,9 @@ class DeclaredLiveWorld(LiveWorld):
             if observed.certainty < CERTAIN:
                 self.unsure = observed
                 continue
+            if self.unsure is not None and self.unsure.told.who == who:
+                self.unsure = None
+            self._asked_again.pop(who or "", None)
             if fact == ASKING and who is not None:
                 self.requests.ask_for(who)
             if self.game.observe(fact, who, raw, observed.certainty) and who is not None:
@@ -241,8 +246,30 @@ class DeclaredLiveWorld(LiveWorld):
             while self.link.time < until and self.game.seen() == seen:
                 self.commands.wait(LOOK_SECONDS, asks=True)
                 self._hear()
+                until += self._ask_again()
         except DeviceError:  # what keeps it from waiting is seen by what devices report
             return
+
+    def may_ask_again(self, person: str | None) -> bool:
+        """Whether a person is asked again after an unclear answer, or has been often enough."""
+        return person is not None and self._asked_again.get(person, 0) < self.activity.asking.visit
+
+    def _ask_again(self) -> float:
+        """Ask a person again whose answer was not clear; return how many s that took.
+
+        Raises:
+            DeviceError: it could not be said or shown.
+        """
+        unsure, self.unsure = self.unsure, None
+        person = None if unsure is None else unsure.told.who
+        if person is None or not self.may_ask_again(person):
+            return 0.0
+        began, times = self.link.time, self._asked_again.get(person, 0)
+        self._asked_again[person] = times + 1
+        name = self.name_of(person)
+        text = ASK_AGAIN[times % len(ASK_AGAIN)].replace("{name}", name)
+        self.say(text, Picture(text, asks=name))
+        return self.link.time - began
 
     def _hear(self) -> None:
         """See what people do now, where the robot's time stands still meanwhile as well."""

@@ -1,0 +1,49 @@
+"""What staff type of an answer that they have not understood clearly: the person is asked again."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
+from tangy_profiles.defaults import ASK_AGAIN
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_tui.app.game_commands import Tell
+from tangy_tui.app.robot_controls import RobotControls
+from tests.hw.links import FakeLink
+from tests.support.declared import declared
+
+
+def test_the_robot_asks_again_and_after_the_cap_staff_are_asked() -> None:
+    link, activity = FakeLink(("user1", "user2")), declared("trivia")
+    world = DeclaredLiveWorld(
+        activity,
+        ("user1", "user2"),
+        cast(RobotLink, link),
+        load_robot(),
+        load_room(),
+        seed=1,
+        names={"user1": "Ann", "user2": "Ben"},
+    )
+    world.begin()
+    noted: list[str] = []
+    controls = RobotControls(world, noted.append, lambda: False, paced=False)
+
+    def do(name: str, target: str | None = None) -> None:
+        world.execute(activity.action(activity.behaviour(name), target, None))
+
+    do("welcome everyone")
+    do("ask question", "user1")
+    said = len(link.said)
+    for number in range(activity.asking.visit):
+        assert controls.do(Tell(None, "b?")).kind == "told"
+        do("allow time")
+        text = ASK_AGAIN[number % len(ASK_AGAIN)].replace("{name}", "Ann")
+        assert text in link.said[said:]
+        said = len(link.said)
+    refused = controls.do(Tell(None, "b?"))
+    assert refused.kind == "not told" and refused.words
+    assert world.observe().stage == "listen"
+    assert controls.do(Tell(None, "b")).kind == "told"
+    assert world.observe().stage == "judge"
