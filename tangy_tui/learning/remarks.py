@@ -93,11 +93,14 @@ class Remarks:
         known = self.usual(shown.step.state.situation)
         earlier = self._shown.found(shown)
         self.open = None
-        if earlier is not None:
+        overlooked = self._overlooked(shown, over=True) if over else None
+        if isinstance(overlooked, EndedEarly):  # the game is gone with it: that comes first
+            self.open = overlooked
+        elif earlier is not None:
             own = earlier.teacher == self._teacher
             self.open = Contradicted(shown.number, shown.step, earlier, own)
         elif not known or self._goes(shown):
-            self.open = self._overlooked(shown, over=over)
+            self.open = overlooked if over else self._overlooked(shown, over=False)
         words = self.phrases.wording(shown.step.behaviour)
         if self.open is None and words:
             self.open = NewWording(shown.number, shown.step, words)

@@ -37,7 +37,7 @@ SHOWS = {
     "room": "Show the room",
     "transcript": "Show the steps",
     "policy": "Show the policy",
-    "posteriors": "Show the posteriors",
+    "posteriors": "Show what works with whom",
     "log": "Show the log",
     "faults": "Show the faults of this game",
 }

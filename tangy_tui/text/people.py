@@ -125,6 +125,14 @@ def change_words(change: Event[EventRecord]) -> str:
             return "the method that was chosen"
 
 
+BELIEF_COLUMNS = "worked/asked, mean, P(best)"
+
+
+def what_works(world: str) -> str:
+    """Return the title of the panel that shows what works with whom, in the games of a world."""
+    return f"What works with whom, {world} games" if world else "What works with whom"
+
+
 NOBODY_KNOWN = "Nothing is known of anybody yet."
 
 METHODS: dict[MethodName, str] = {

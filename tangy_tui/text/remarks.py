@@ -75,7 +75,9 @@ def _answer(remark: Remark, answer: RemarkAnswer, activity: Activity) -> str:
     done = activity.behaviour(remark.step.behaviour).question
     match answer:
         case "this":
-            return f"this step: {done}" if isinstance(remark, Contradicted) else "it is right so"
+            return (
+                f"this step: {done}" if isinstance(remark, Contradicted) else "it is right this way"
+            )
         case "earlier" if isinstance(remark, Contradicted):
             return f"the earlier one: {activity.behaviour(remark.earlier.step.behaviour).question}"
         case "both":

@@ -122,6 +122,8 @@ def discard_words(steps: int) -> tuple[str, str]:
     )
 
 
+AFTERWARDS = ("next", "learn", "play")
+"""Words that lead on when a game is over."""
 OVER = "The game is over. Press {next} for another game, or {learn} to let Tangy learn."
 
 

@@ -154,7 +154,7 @@ class TeachingPicture:
         )
         self._now(self._told(text.OVER) if teaching.world.over else self._coach(state))
         if teaching.world.over:
-            self._screen.query_one(SayableList).show(())
+            self._screen.query_one(SayableList).show(text.AFTERWARDS)
         else:
             self._screen.query_one(SayableList).show(teaching.sayable)
         self._screen.query_one(CallBoard).show(teaching.world.scene().called)

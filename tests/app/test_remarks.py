@@ -137,6 +137,15 @@ def test_a_game_that_ends_before_its_end_is_told_with_what_lacks(workspace: Work
     assert not teaching.demonstration.finished
 
 
+def test_that_a_game_ends_early_is_told_before_that_it_contradicts(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    do(teaching, "greet everyone", "call number")
+    situation = teaching.demonstration.steps[-1].state.situation
+    assert teaching.world.observe().situation == situation
+    (remark,) = do(teaching, "say goodbye")
+    assert isinstance(remark, EndedEarly)
+
+
 @pytest.mark.parametrize("seed", range(1, 9))
 @pytest.mark.parametrize("guided", [False, True])
 def test_a_faultless_teacher_hears_nothing(workspace: Workspace, seed: int, guided: bool) -> None:

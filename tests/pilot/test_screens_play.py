@@ -173,7 +173,7 @@ async def test_panels_are_chosen_by_number_where_there_is_no_room(
         for key, title in (
             ("2", "Steps"),
             ("3", "Policy"),
-            ("4", "Posteriors, simulated games"),
+            ("4", "What works with whom, simulated games"),
             ("5", "Log"),
         ):
             await pilot.press(key)

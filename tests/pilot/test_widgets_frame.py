@@ -404,7 +404,7 @@ async def test_every_theme_draws_everything(run: Run, theme: str) -> None:
         app_of(pilot).ansi_color = None
         pilot.app.theme = theme
         await pilot.pause()
-        assert "Posteriors" in pilot.text()
+        assert "What works with whom" in pilot.text()
 
 
 async def test_ansi_writes_the_terminals_own_colours_only(run: Run) -> None:

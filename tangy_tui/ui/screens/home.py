@@ -167,7 +167,7 @@ class Menu(Widget, can_focus=True):
             ("  ", "text"),
             (name, "strong"),
             (" ", "text"),
-            (fit(choice.does, does_width), "dim"),
+            (fit(choice.does, does_width), "text" if here else "dim"),
             (shorten(state, state_width), "text"),
         )
 

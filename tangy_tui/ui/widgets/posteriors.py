@@ -10,7 +10,7 @@ from textual import events
 from textual.binding import Binding, BindingType
 
 from tangy_profiles.beliefs import Beliefs, Beta, leading, probability_best, settled
-from tangy_tui.text.people import NOBODY_KNOWN
+from tangy_tui.text.people import BELIEF_COLUMNS, NOBODY_KNOWN, what_works
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.rows import Row, RowView, Span, fit, shorten
 
@@ -47,10 +47,11 @@ class Posteriors(RowView, can_focus=True):
         Binding("j", "scroll_down", "Down", show=False),
     ]
     HELP = (
-        "What Tangy believes of each person: how probable it is that they do what they are asked "
-        "for, with each way of asking. The curve runs from 0 (left) to 1 (right); 7/9 means done "
-        "7 times of 9; then the mean, and the probability that this way is the best of all. "
-        "It is settled when that is at least .9."
+        "What works with whom: how likely each person is to do what Tangy asks for, with each way "
+        "of asking. 7/9 means that it worked 7 times of 9. A hump on the right means it works, on "
+        "the left it does not, a flat line that Tangy does not know yet. For researchers: "
+        "the curve is the posterior density from 0 to 1; its mean follows, and the probability "
+        "that this way is the best of all. It is settled when that is at least .9."
     )
 
     def __init__(
@@ -71,7 +72,7 @@ class Posteriors(RowView, can_focus=True):
         """
         super().__init__(id=id, classes=classes)
         self._compact_wanted = compact
-        self.border_title = f"Posteriors, {world} games" if world else "Posteriors"
+        self.border_title = what_works(world)
         self._beliefs: dict[str, Beliefs] = {}
         self._names: Mapping[str, str] = {}
         self._highlight: tuple[str, str] | None = None
@@ -101,7 +102,7 @@ class Posteriors(RowView, can_focus=True):
         if not self.is_attached or width <= 0:
             return
         compact = width < LINES_FROM if self._compact_wanted is None else self._compact_wanted
-        self.border_subtitle = "" if compact else "done/asked, mean, P(best)"
+        self.border_subtitle = "" if compact else BELIEF_COLUMNS
         rows: list[Row] = []
         marks: dict[int, str] = {}
         for person, profile in self._beliefs.items():
