@@ -39,13 +39,20 @@ class GameBeginning(EventRecord):
     strength: Sparse[str] = ""
     absent: Sparse[tuple[str, ...]] = ()
     pace: Sparse[float] = 0.0
+    minutes: Sparse[Count] = 0
     """Staff's options for it, as in `GamePlan`; empty if they chose none."""
 
     @property
     def plan(self) -> GamePlan:
         """Staff's options for it."""
         return GamePlan(
-            self.patterns, self.several, self.visits, self.strength, self.absent, self.pace
+            self.patterns,
+            self.several,
+            self.visits,
+            self.strength,
+            self.absent,
+            self.pace,
+            self.minutes,
         )
 
 

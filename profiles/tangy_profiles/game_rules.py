@@ -126,6 +126,8 @@ class GamePlan:
     """Who takes part and has not come yet."""
     pace: float = 0.0
     """From one call to the next, in s; 0: as it is."""
+    minutes: int = 0
+    """How long the session is planned to take; 0: it is left open."""
 
 
 @dataclass

@@ -177,6 +177,7 @@ class SetUp:
             self.strength,
             tuple(sorted(self.away)),
             self.pace,
+            self.minutes,
         )
 
     def carry_out(self, world: LiveWorld) -> None:

@@ -85,7 +85,7 @@ async def play_live(
             world.set_pace(pace)
         supervision = workspace.supervision(policy, seed, asks=True, world=world)
         screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher, past=past)
-        screen.minutes = setup.minutes
+        screen.minutes = setup.minutes if past is None else past.beginning.plan.minutes
         if program.hearing is not None:
             program.hearing.ears.begin()
         await program.push_screen_wait(screen)

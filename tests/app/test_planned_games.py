@@ -281,7 +281,7 @@ def test_a_planned_game_that_was_interrupted_goes_on_as_it_would_have(
 @pytest.mark.parametrize("calls", [0, 4])
 def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, calls: int) -> None:
     planned = Planned(taught)
-    planned.begin(GamePlan(absent=("user3",)))
+    planned.begin(GamePlan(absent=("user3",), minutes=40))
     planned.play(calls=calls)
     assert planned.do(LetWin(several=True)) == ["several"]
     assert planned.do(LetWin(visits=True)) == ["visits"]
@@ -292,12 +292,12 @@ def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, 
     assert planned.do(SetPace(12)) == ["pace"]
     planned.play(calls=calls + 2)
     chosen = planned.world.game_plan
-    assert chosen == GamePlan(several=True, visits=True, absent=("user2",), pace=12)
+    assert chosen == GamePlan(several=True, visits=True, absent=("user2",), pace=12, minutes=40)
     planned.workspace.close()
 
     again = Planned(taught)
     past = interrupted_game(again.workspace.store, "bingo")
-    assert past is not None
+    assert past is not None and past.beginning.plan.minutes == 40
     again.control = scripted_controller(again.supervision, past)
     again.control.begin()
     assert again.world.game_plan == chosen and again.world.away == {"user2"}
