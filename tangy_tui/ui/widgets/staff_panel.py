@@ -17,7 +17,7 @@ LARGE_WIDTH, LARGE_HEIGHT = 56, 22
 """From so many columns and lines on the call is drawn twice as large."""
 BESIDE = 30
 """Columns from which facts stand beside the call, and not below it."""
-SLOT, NARROW = 36, 26
+SLOT, NARROW = 36, 25
 """Columns for one person, and where people do not fit so; they stand side by side."""
 NAME, SHORT_NAME = 14, 10
 """Columns of a person's name, in either."""
@@ -107,7 +107,7 @@ class StaffPanel(RowView, can_focus=True):
         for number, row in enumerate(self._board):
             block = drawn[number] if number < len(drawn) else ""
             rows.append(((fit(block, beside + 1), "robot"), *row))
-        lines = wrap("  ".join(fact.replace(" ", HARD) for fact in facts), width)
+        lines = wrap(", ".join(fact.replace(" ", HARD) for fact in facts), width)
         return rows + [((line.replace(HARD, " "), "text"),) for line in lines[:2]]
 
     def _everybody(self, width: int, height: int) -> list[Row]:
