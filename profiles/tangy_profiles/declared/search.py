@@ -31,8 +31,6 @@ MOST_ASKING = 2
 FEWEST_ROUNDS = 2
 MOST_PLAYERS = 2
 """A search of every game has no more: states grow with every one."""
-MOST_TELLS = 3
-"""With fewer players, most of them are all of them."""
 
 
 def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Event]:
@@ -210,12 +208,6 @@ def _stuck(
     return next((game for node, game in known.items() if node not in can), None)
 
 
-def enough_players(declaration: Declaration) -> int:
-    """Return with how many players everything can come about that conditions tell apart."""
-    most = any(one.quantifier == "most" for one in declaration.conditions)
-    return MOST_TELLS if most else MOST_PLAYERS
-
-
 def search_game(game: DeclaredGame) -> DeclaredGame:
     """Return a game to search: it has no more rounds than conditions can tell apart."""
     most = max(FEWEST_ROUNDS, 1 + game.declaration.most_counted)
@@ -240,12 +232,10 @@ def reach(declaration: Declaration, players: Sequence[str], taught: ShownMoves) 
 
     Args:
         declaration: the activity.
-        players: those who take turns; more than `enough_players` add nothing that is new.
+        players: those who take turns; a search has the first `MOST_PLAYERS`.
         taught: what to do in which situation.
     """
-    game = DeclaredGame(
-        declaration, players[: enough_players(declaration)], range(declaration.items.rounds)
-    )
+    game = DeclaredGame(declaration, players[:MOST_PLAYERS], range(declaration.items.rounds))
 
     def moves(now: DeclaredGame) -> list[Move]:
         move = taught.move(now)
