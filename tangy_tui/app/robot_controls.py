@@ -21,6 +21,7 @@ from tangy_tui.learning.policy import Decision
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
+    from tangy_hw.robot_client.staff_eyes import StaffEyes
 
 STOPPED, ENDED = "staff stopped it", "staff ended the game"
 UNCLEAR, UNCLEAR_SURE = "?", 0.5
@@ -111,9 +112,11 @@ class RobotControls:
         """Let a game that is declared by facts know what a person says or does."""
         from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
 
+        said = command.words
+        if robot.eyes is not None:
+            return self._tell_of_card(robot.eyes, command)
         if not isinstance(robot, DeclaredLiveWorld):
             return StaffNote("nothing to tell")
-        said = command.words
         unclear = said.rstrip().endswith(UNCLEAR)
         if not robot.tell(command.person, said, UNCLEAR_SURE if unclear else 1.0):
             return StaffNote("not told", words=", ".join(sayable(robot.game)))
@@ -122,6 +125,22 @@ class RobotControls:
         if unclear and not asked:  # staff are asked in their place
             return StaffNote("not told", words=", ".join(sayable(robot.game)))
         return StaffNote("told", command.person or "", said)
+
+    def _tell_of_card(self, eyes: StaffEyes, command: Tell) -> StaffNote:
+        """Let a robot that sees no cards know how the one beside it is."""
+        person, said = eyes.asks, command.words
+        if not person:
+            return StaffNote("nothing to tell")
+        if command.person not in (None, person) or not eyes.tell(said):
+            return StaffNote("not told", words=", ".join(eyes.sayable))
+        self._note(f"staff told of {person}: {said}")
+        return StaffNote("told", person, said)
+
+    @property
+    def asks_about(self) -> tuple[str, tuple[str, ...]]:
+        """The person of whose card staff are to tell, and words for it; "" while of none."""
+        eyes = None if self._robot is None else self._robot.eyes
+        return ("", ()) if eyes is None else (eyes.asks, tuple(eyes.sayable))
 
     def _drive(self, robot: LiveWorld, command: Drive) -> StaffNote:
         """Drive by hand for a while; a STOP, which waits for nothing, ends it."""

@@ -15,7 +15,7 @@ from tangy_hw.robot_client.live_world import FACING, PACE_SECONDS, LiveWorld
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.health import Health
-from tangy_profiles.known_devices import driven
+from tangy_profiles.known_devices import driven, reads_cards
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
@@ -141,7 +141,7 @@ def open_bench(
             map=map_,
             stepped=stepped,
             seed=seed,
-            faces=_drawn_people(bench.wires.faces, cancellation),
+            faces=_drawn_people(bench.wires.faces, cancellation) if CAMERA in has else {},
             log=str(folder / LOG),
         )
         linked = _linked(
@@ -261,7 +261,7 @@ def _linked(
             seed=seed,
             names=workspace.names,
             pace=pace,
-            knows_faces=bool(setup.faces),
+            knows_faces=bool(setup.faces) and reads_cards(workspace.robot),
         )
         if book is not None:
             world.commands.diagnosed = _Diagnosis(book, workspace.robot)

@@ -17,6 +17,8 @@ from typing import Any
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_hw.robot_client.response_watch import PATIENCES
+from tangy_hw.robot_client.staff_eyes import ToldCard, told_card
 from tangy_profiles.behaviour import Action
 from tangy_profiles.effects import CORRECTS, DRIVES
 from tangy_profiles.faults import Remedy
@@ -77,11 +79,26 @@ class BenchedWorld(LiveWorld):
         self._chance = Random(f"{seed}/faults").random
         self._to_come = ToCome((), self._chance)
         self.cards.looked = self._check
+        if self.eyes is not None:
+            self.eyes.answer = self._told_by_staff
         self._heard = 0  # of those who said that they would like help
         self._listens = False
         self._tablet: Tablet | None = None
         self._open_tablet()
         return self
+
+    def _told_by_staff(self, person: str) -> ToldCard | None:
+        """Tell, as staff at the table would, how the card of a person is.
+
+        After a request they wait until the card has changed, or the person was given time.
+        """
+        there = self.truth()["people"][person]
+        numbers = self.numbers_on(there["card"]) or ()
+        told = told_card(self.activity, self.called, numbers, there["marked"])
+        assert self.eyes is not None  # noqa: S101 - it is asked for by them
+        waited = self.link.time - self.eyes.began
+        waits = told == self.eyes.before and waited < PATIENCES * self.activity.patience
+        return None if waits else told
 
     def _open_tablet(self) -> None:
         """Open the page of the chest screen, another one after the robot process has begun anew."""

@@ -1,12 +1,9 @@
 """Games with staff at the lines, at any time or by turns.
 
-At any time (`run`): the games run by themselves, and each line may step in. One thread runs the
-games, one reads the lines, and one carries out what has to wait for its turn, so that a STOP waits
-for nothing. At the end of the lines nobody is there any more: a game that goes on is played to its
-end, one that waits for somebody is ended.
+At any time (`run`): each line may step in. One thread runs the games, one reads the lines, and one
+carries out what has to wait for its turn. Without more lines, a game that waits for staff is ended.
 
-By turns (`run_by_turns`): a line is read only where Tangy waits for somebody, so that a script
-answers what is asked, however fast the game is.
+By turns (`run_by_turns`): a line is read only where Tangy waits for somebody, as scripts need it.
 """
 
 from __future__ import annotations
@@ -50,10 +47,11 @@ from tangy_tui.learning.verification import (
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
 from tangy_tui.text.calls import expert_line, waits_line
-from tangy_tui.text.control import going_words, noted_words, proposal_words
+from tangy_tui.text.control import noted_words, proposal_words
 from tangy_tui.text.faults import HALTED
 from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.situations import Name, verification_lines
+from tangy_tui.text.telling import waiting_words
 
 LOOK_SECONDS = 0.1  # between two looks at the devices, and for the next line
 WORKS_SECONDS = 5.0  # for what was still to be done when the last game ended
@@ -98,7 +96,7 @@ class StaffLines:
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._writing = threading.Lock()
         self._write_line = write
-        self._prompted, self._going = "", ("", "")
+        self._prompted, self._going = "", ("", "", ("", tuple[str, ...]()))
         self._calls = 0
         self._alone = self._stopped = self._ended = self._by_turns = False
         self._leaves = False  # staff ended it while no game could begin
@@ -275,12 +273,14 @@ class StaffLines:
                 early.append(line.strip())
 
     def _tell_where_it_goes(self) -> None:
-        """Say that the robot begins to drive: who reads lines does not see it."""
+        """Say where the robot drives, or what it asks of a card: who reads lines sees neither."""
         robot = self._controller.robot
-        if (going := (robot.going, robot.lets)) != self._going:
+        if (going := (robot.going, robot.lets, robot.asks_about)) != self._going:
             self._going = going
-            if words := going_words(going[0], self._name, going[1]):
+            if words := waiting_words(*going, self._game.world.activity.object, self._name):
                 self._write(words)
+        if self._alone and going[2][0]:
+            self._tell([*self._controller.apply(EndGame())])
 
     def _is_due(self, line: str, early: deque[str]) -> bool:
         """Say whether a line may be taken now: a game has begun, and no earlier line waits.

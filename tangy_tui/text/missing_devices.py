@@ -51,3 +51,11 @@ def missing_words(robot: Robot, activity: Activity) -> list[str]:
 def no_camera_words(object: str) -> str:
     """Say that nobody reads what people have before them, but staff."""
     return f"This robot has no camera that sees a {object}: Tangy asks you how each one is."
+
+
+def staff_needed(object: str) -> str:
+    """Say that nobody could look at what people have before them."""
+    return (
+        f"This robot has no camera that sees a {object}, and nobody is here to look instead: play "
+        "with --plain or on the screen, or name a camera's source in the robot's file."
+    )

@@ -2,14 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+
+from tangy_tui.text.control import going_words
 
 TELL = "What did a person answer or do?"
+TELL_HINT = "Press {tell} to tell it."
 TELL_KEYS = "enter tells Tangy   esc goes back"
 TELL_HELP = (
     "Type what a person says or does, as in: b, or with the name: rosa: b. Enter tells Tangy, "
     "esc goes back."
 )
+
+
+def card_question(name: str, object: str) -> str:
+    """Ask how the card of the person beside the robot is."""
+    return f"How is {name}'s {object} now? Give {name} time, look at it, and tell Tangy."
+
+
+def waiting_words(
+    going: str,
+    lets: str,
+    about: tuple[str, Sequence[str]],
+    object: str,
+    name: Callable[[str], str],
+) -> str:
+    """Say in line mode what the robot does or waits for; "" if nothing is to be said.
+
+    Args:
+        going: where it drives to, "" for nowhere.
+        lets: for whom it stands on its way.
+        about: of whose card staff are to tell ("" for nobody's), and words that tell it.
+        object: what the activity calls a card.
+        name: what a person is called.
+    """
+    person, sayable = about
+    if not person:
+        return going_words(going, name, lets)
+    called = name(person)
+    ways = "; ".join(f"{called}: {words}" for words in sayable)
+    return f"{card_question(called, object)} Type one of these: {ways}"
 
 
 def telling_words(waits_for: str, sayable: Sequence[str]) -> str:

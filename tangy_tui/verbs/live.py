@@ -150,9 +150,11 @@ def live(
         past = past_game(workspace, world, resume=resume, discard=discard, asks=screen)
         learnt = recall(workspace, policy, quiet=as_json)
         number = workspace.game_seed(seed) if past is None else past.beginning.seed
+        from tangy_profiles.known_devices import reads_cards
         from tangy_tui.app.dealing import read_dealt
         from tangy_tui.app.robot_opening import check_map, opening_of
         from tangy_tui.text.control import COURTESIES
+        from tangy_tui.text.missing_devices import missing_words, staff_needed
 
         if map_:
             check_map(workspace, map_)
@@ -191,6 +193,10 @@ def live(
                     ),
                 )
             )
+        switched = opening(number)
+        sees = reads_cards(workspace.robot) or not workspace.activity.deck.columns
+        if not (bench or plain_lines or sees):
+            raise TangyError(staff_needed(workspace.activity.object))
         lines = _set_up(workspace, pace) if plain_lines and not begin and past is None else None
         if lines is not None and not lines.run():
             return
@@ -198,9 +204,8 @@ def live(
             print(SWITCHING_ON, file=sys.stderr)
         from tangy_tui.app.live_games import LiveGames
         from tangy_tui.app.switching_on import switched_on
-        from tangy_tui.text.missing_devices import missing_words
 
-        with switched_on(opening(number), stepped=bench and not plain_lines) as there:
+        with switched_on(switched, stepped=bench and not plain_lines) as there:
             if not as_json and (plain_lines or not bench) and there.link.tablet:
                 print(plain(there.link.tablet), file=sys.stderr)
             told_missing = missing_words(workspace.robot, workspace.activity)

@@ -231,7 +231,7 @@ async def test_what_is_still_to_come_can_be_lifted(
 
 
 async def test_all_kinds_can_be_chosen(run: Run) -> None:
-    dialog = InjectDialog((), (), {"camera-occluded": "Camera covered"})
+    dialog = InjectDialog((), (), dict.fromkeys(KINDS, "") | {"camera-occluded": "Camera covered"})
     async with run(size=SMALL) as pilot:
         pilot.app.push_screen(dialog)
         await pilot.pause()

@@ -10,9 +10,12 @@ from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.robot_client.call_order import LAST_CALLS, CallOrder
 from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.commands import Commands
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
 from tangy_profiles.game_records import ChangeKind, GameChange
+from tangy_profiles.health import OK
 from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.robot import Robot
 from tangy_profiles.room import Room
 
 SET_ASIDE: tuple[ChangeKind, ...] = ("others first", "played on", "left")
@@ -29,6 +32,8 @@ class LivePlan(PlannedGame):
     """The part of a live world that staff change; see `LiveWorld`."""
 
     link: RobotLink
+    commands: Commands
+    _robot: Robot
     cards: CardObservations
     calls: CallOrder
     requests: HelpRequestTracker
@@ -38,8 +43,27 @@ class LivePlan(PlannedGame):
     def say(
         self, speech: str, picture: Picture, posture: Posture = None, written: str = ""
     ) -> None:
-        """Say and show something; see `LiveWorld`."""
-        raise NotImplementedError
+        """Say and show something (joints in rad); without a voice the screen shows what is said.
+
+        What is said is `written` otherwise where all can read it, if that is given.
+
+        Raises:
+            DeviceError: neither could be done.
+        """
+        in_words = picture._replace(text=written or speech)
+        if speech and not self._has_voice:
+            self.commands.perform(speech, in_words, posture)
+            return
+        done = self.commands.perform(speech, picture, posture)
+        if speech and not done.get("said"):  # it failed just now, or the robot has no voice
+            self.commands.perform("", in_words)
+
+    @property
+    def _has_voice(self) -> bool:
+        health = self.link.health()
+        if "voice" not in self._robot.devices:
+            return False
+        return all(reading.state == OK for reading in health if reading.device == "voice")
 
     def seat_of(self, person: str | None) -> str:
         """Return what all can read in place of a person's name, "" for nobody's; teams have one."""

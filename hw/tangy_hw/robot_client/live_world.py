@@ -20,9 +20,10 @@ from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
-from tangy_hw.robot_client.live_plan import LivePlan, Posture
+from tangy_hw.robot_client.live_plan import LivePlan
 from tangy_hw.robot_client.recovery_actions import RecoveryActions
 from tangy_hw.robot_client.response_watch import LOOK_SECONDS, watch_response
+from tangy_hw.robot_client.staff_eyes import StaffEyes
 from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.activity import Activity
@@ -30,7 +31,8 @@ from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.effects import DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import LIVE, GameWorld
-from tangy_profiles.health import OK, Health
+from tangy_profiles.health import Health
+from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import Point, Room
@@ -82,6 +84,9 @@ class LiveWorld(LivePlan):
         self.link = link
         self.commands = Commands(link)
         self.cards = CardObservations(activity, self.commands)
+        sees = reads_cards(robot) or not activity.deck.columns
+        self.eyes = None if sees else StaffEyes(activity, self.commands)
+        """Staff, where the robot has no camera that reads cards."""
         self._remedies = RecoveryActions(self)
         self._robot = robot
         self._room = room
@@ -152,7 +157,7 @@ class LiveWorld(LivePlan):
         """
         with suppress(DeviceError):
             place = self.tracker.place
-            if place in self.tracker.queue and not self.over:
+            if place in self.tracker.queue and not self.over and self.eyes is None:
                 self.read_card(place, after=LOOK_SECONDS)
             self.commands.settle()
             self.link.beat()
@@ -190,7 +195,7 @@ class LiveWorld(LivePlan):
             case "draw":
                 return self.calls.next
             case "clear wrong marks" | "set missing marks":
-                return self.cards.asked_about(action.behaviour)
+                return (self.eyes or self.cards).asked_about(action.behaviour)
             case "none" | "bring card closer" | "go to user" | "go to front" | "finish":
                 return ()
             case forgotten:
@@ -201,6 +206,9 @@ class LiveWorld(LivePlan):
         behaviour, tracker = action.behaviour, self.tracker
         if behaviour.effect == "draw":
             self._keep_pace()
+        if behaviour.effect == "bring card closer" and self.eyes is not None:
+            self.read_card(tracker.place)  # nobody is asked to move what no camera looks for
+            return None, True
         self._announce(action, numbers)
         match behaviour.effect:
             case "draw":
@@ -239,31 +247,6 @@ class LiveWorld(LivePlan):
         speech, written = (fill(action.speech, called, numbers) for called in (name, seat))
         self.say(speech, picture, self._robot.postures[action.posture], written)
 
-    def say(
-        self, speech: str, picture: Picture, posture: Posture = None, written: str = ""
-    ) -> None:
-        """Say and show something (joints in rad); without a voice the screen shows what is said.
-
-        What is said is `written` otherwise where all can read it, if that is given.
-
-        Raises:
-            DeviceError: neither could be done.
-        """
-        in_words = picture._replace(text=written or speech)
-        if speech and not self._has_voice:
-            self.commands.perform(speech, in_words, posture)
-            return
-        done = self.commands.perform(speech, picture, posture)
-        if speech and not done.get("said"):  # it failed just now, or the robot has no voice
-            self.commands.perform("", in_words)
-
-    @property
-    def _has_voice(self) -> bool:
-        health = self.link.health()
-        if "voice" not in self._robot.devices:
-            return False
-        return all(reading.state == OK for reading in health if reading.device == "voice")
-
     def name_of(self, person: str | None) -> str:
         """Return what whoever sits at somebody's place is called, "" for nobody."""
         if person is None:
@@ -290,6 +273,8 @@ class LiveWorld(LivePlan):
             return False
         self.tracker.arrive(place)
         self.cards.leave()
+        if self.eyes is not None:
+            self.eyes.leave()
         if place != FRONT and self.knows_faces:
             self._see_who(place)
         if place in self.tracker.queue:
@@ -322,9 +307,15 @@ class LiveWorld(LivePlan):
     def read_card(self, person: str, after: float = 0.0) -> None:
         """Look at the card beside the robot, after so many s, and keep what is seen of it.
 
+        A robot without a camera for that asks staff.
+
         Raises:
             DeviceError: it cannot look.
         """
+        if self.eyes is not None:
+            state = None if person in self.vouched else self.eyes.ask(person, self.called)
+            self.tracker.seen = self.judged(person, state)
+            return
         sitting = self.who(self.tracker.place)
         card = self.cards.look(self.tracker.place, self.called, after, person=sitting)
         self.cards.looked("card", person, card)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.effects import CORRECTS
 from tangy_profiles.state import Response
 
 if TYPE_CHECKING:
@@ -18,6 +19,10 @@ def watch_response(world: LiveWorld, action: Action, numbers: tuple[int, ...]) -
     """Watch what the person beside the robot does about it; None: that cannot be seen."""
     place, patience = world.tracker.place, world.activity.patience
     person = world.who(place)
+    if world.eyes is not None and action.behaviour.effect in CORRECTS:
+        told = world.eyes.response(action, place, person)
+        world.tracker.seen = world.judged(place, world.eyes.state)
+        return told
     began = before = world.link.time
     while True:
         done = _is_done(world, action.behaviour, numbers)

@@ -135,7 +135,7 @@ class LiveScreen(PlayScreen):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave out what cannot be done among people."""
-        none = FACTS_ONLY if self._has_cards else CARDS_ONLY
+        none = CARDS_ONLY if not self._has_cards else () if self.world.eyes else FACTS_ONLY
         return action not in (*NOT_LIVE, *none) and super().check_action(action, parameters)
 
     @property
@@ -285,10 +285,11 @@ class LiveScreen(PlayScreen):
 
     async def _tell_of(self) -> None:
         world, workspace = self.world, self._workspace
-        if not isinstance(world, DeclaredLiveWorld):
-            return
-        person = about(world.game)
-        dialog = TellDialog(workspace.name(person) if person else "", sayable(world.game))
+        if isinstance(world, DeclaredLiveWorld):
+            person, words = about(world.game), tuple(sayable(world.game))
+        else:
+            person, words = self.control.robot.asks_about
+        dialog = TellDialog(workspace.name(person) if person else "", words)
         line = await self.app.push_screen_wait(dialog)
         if line is not None:
             try:
@@ -356,7 +357,12 @@ class LiveScreen(PlayScreen):
         super().show_status()
         going = self.control.going
         self.query_one(KeyLine).show(
-            *live_keys.keys(going=going, over=self.at_rest, cards=self._has_cards)
+            *live_keys.keys(
+                going=going,
+                over=self.at_rest,
+                cards=self._has_cards,
+                tells=self.world.eyes is not None,
+            )
         )
 
     def _note(self) -> str:

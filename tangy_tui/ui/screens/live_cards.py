@@ -14,6 +14,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.cards import KEY_HINT, LEARNT_NEXT, WHOSE, which_words
 from tangy_tui.text.live_news import note_words
+from tangy_tui.text.telling import TELL_HINT, card_question
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.widgets.log_view import Kind
 
@@ -33,7 +34,7 @@ class LiveCards:
         """Prepare; `write` shows a line in a colour by its name."""
         self._workspace = workspace
         self._supervision = supervision
-        self._cards = world.cards
+        self._cards, self._eyes, self._asks = world.cards, world.eyes, ""
         self._write = write
         self._news = CardNews()
 
@@ -43,6 +44,16 @@ class LiveCards:
             self._supervision.note(note.note, BY)
             if words := note_words(note, self._workspace.name):
                 self._write(f"{words} {KEY_HINT}", "warn" if note.doubt else "dim")
+        self._ask()
+
+    def _ask(self) -> None:
+        """Ask staff once how a card is, where the robot sees none."""
+        asks = "" if self._eyes is None else self._eyes.asks
+        if asks and asks != self._asks:
+            object = self._workspace.activity.object
+            question = card_question(self._workspace.name(asks), object)
+            self._write(f"{question} {TELL_HINT}", "warn")
+        self._asks = asks
 
     async def say_whose(self, app: App[Any], control: GameController) -> None:
         """Ask staff who has which card, and keep it.

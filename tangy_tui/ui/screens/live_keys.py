@@ -30,7 +30,8 @@ HELP = (
     "it does next, and Esc lets it go on by itself after all. {drive} drives it with the arrow "
     "keys. {call_again} calls the last number again, {undo} takes it back, {ask_for} asks for "
     "help for a person who cannot, {whose_card} says whose card is whose; in an activity without "
-    "cards {tell} tells Tangy what a person answers or does. {faster} and {slower} "
+    "cards {tell} tells Tangy what a person answers or does, and how a card is if the robot has no "
+    "camera. {faster} and {slower} "
     "change the pace, {claim} checks whether a card wins, {presence} notes who has come or left, "
     "{command} takes all of these and more in words, and {inside} shows how Tangy decides. "
     "{inject} simulates a fault, on the bench. With a microphone, saying stop or stop the robot "
@@ -54,13 +55,16 @@ CARDS_ONLY, FACTS_ONLY = ("call_again", "void_call", "whose_card"), ("tell",)
 """Actions of an activity with cards, and of one that is declared by facts."""
 
 
-def keys(*, going: bool, over: bool = False, cards: bool = True) -> tuple[str | Key, ...]:
+def keys(
+    *, going: bool, over: bool = False, cards: bool = True, tells: bool = False
+) -> tuple[str | Key, ...]:
     """Return the keys and what they do while the game goes on, stands still, or is over."""
     if over:
         return play_keys.keys(going=going, over=True)
     return (
         "pause" if going else "pause:go on", "stop",
-        *(("claim", "slower", "faster") if cards else ("tell",)), "autonomy",
+        *(("tell",) if tells or not cards else ()),
+        *(("claim", "slower", "faster") if cards else ()), "autonomy",
         *(("undo:call back",) if cards else ()), "command", *(("presence",) if cards else ()),
         *(("call_again",) if cards else ()), "ask_for", "take_over", "drive", "why", "inside",
         ("1-7", "show"), "back:end", "help",

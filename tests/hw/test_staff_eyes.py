@@ -1,0 +1,150 @@
+"""A robot without a camera for cards asks staff how they are, and nobody to move one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_hw.robot_client.staff_eyes import ToldCard, read_told, told_card
+from tangy_profiles.activity import load_activity
+from tangy_profiles.behaviour import Action
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tests.hw.links import FakeLink
+from tests.support.robots import robot_without
+
+BINGO = load_activity("bingo")
+PEOPLE = ("user1", "user2", "user3", "user4")
+CALLED = (5, 20, 40)
+
+
+class Staffed:
+    """A world of a robot without a camera, whose staff tell what is in `tells`, one by one."""
+
+    def __init__(self, folder: Path) -> None:
+        self.link = FakeLink(PEOPLE)
+        robot = load_robot(str(robot_without(folder, "camera")))
+        self.world = LiveWorld(
+            BINGO, PEOPLE, cast(RobotLink, self.link), robot, load_room(), seed=1, pace=0.0
+        )
+        self.tells: list[str] = []
+        self.asked: list[str] = []
+        self.link.meanwhile = self._tell
+        self.world.begin()
+
+    def _tell(self, do: str, time: float) -> None:
+        eyes = self.world.eyes
+        if eyes is not None and eyes.asks and do == "wait":
+            self.asked.append(eyes.asks)
+            if self.tells:
+                assert eyes.tell(self.tells.pop(0))
+
+    def do(self, behaviour: str, target: str | None = None) -> object:
+        strategy = "neutral" if BINGO.behaviours[behaviour].persuades else None
+        action = BINGO.action(BINGO.behaviours[behaviour], target, strategy)
+        assert isinstance(action, Action)
+        return self.world.execute(action).response
+
+    def visit(self, *tells: str) -> None:
+        self.tells = list(tells)
+        self.do("greeting")
+        self.world.calls.called.extend(CALLED)
+        self.link.sign(1)
+        self.world.observe()
+        self.do("navigate to user", "user1")
+
+
+@pytest.fixture
+def staffed(tmp_path: Path) -> Staffed:
+    return Staffed(tmp_path)
+
+
+def test_staff_are_asked_on_arrival_and_the_robot_looks_at_no_card(staffed: Staffed) -> None:
+    staffed.visit("missed numbers B-5")
+    state = staffed.world.observe()
+    assert state.situation.user_state == "missing numbers"
+    assert set(staffed.asked) == {"user1"}
+    assert not [do for do, _ in staffed.link.done if do == "card"]
+
+
+def test_a_request_names_the_numbers_that_staff_told_and_is_done_when_they_say_so(
+    staffed: Staffed,
+) -> None:
+    staffed.visit("missed numbers B-5, 20")
+    staffed.tells = ["all correct"]
+    response = staffed.do("mark numbers", "user1")
+    assert "B-5" in staffed.link.said[-1] and "20" in staffed.link.said[-1]
+    assert getattr(response, "followed", None) is True
+    assert staffed.world.observe().situation.user_state == "correctly marked"
+
+
+def test_what_looks_as_before_was_not_followed(staffed: Staffed) -> None:
+    staffed.visit("wrong marks 7")
+    staffed.tells = ["wrong marks B7"]
+    assert getattr(staffed.do("remove markers", "user1"), "followed", None) is False
+
+
+def test_nobody_is_asked_to_move_a_card_that_no_camera_looks_for(staffed: Staffed) -> None:
+    staffed.visit("all correct")
+    said = len(staffed.link.said)
+    staffed.world.tracker.seen = None  # as after a stop while staff were being asked
+    staffed.tells = ["bingo"]
+    staffed.do("move card closer", "user1")
+    assert len(staffed.link.said) == said
+    assert staffed.world.observe().situation.user_state == "bingo"
+
+
+def test_a_stop_ends_the_waiting_and_staff_are_asked_no_more(staffed: Staffed) -> None:
+    staffed.link.breaks["wait"] = "staff stopped it"
+    staffed.visit()
+    assert staffed.world.broken
+    assert staffed.world.eyes is not None and staffed.world.eyes.asks == ""
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("all correct", ToldCard("correctly marked")),
+        ("Correctly  marked", ToldCard("correctly marked")),
+        ("bingo", ToldCard("bingo")),
+        ("wrong marks B-7, o70", ToldCard("incorrectly marked", (7, 70))),
+        ("missed numbers 5 and 20", ToldCard("missing numbers", (5, 20))),
+        ("wrong marks", None),  # of which?
+        ("wrong marks 5", None),  # that was called
+        ("missed numbers 7", None),  # that was not
+        ("missed numbers 5 and 99", None),
+        ("all correct 5", None),
+        ("card not in view", None),  # nobody looks for it
+        ("so so", None),
+    ],
+)
+def test_words_tell_a_state_with_the_numbers_it_needs(words: str, told: ToldCard | None) -> None:
+    assert read_told(BINGO, words, CALLED) == told
+
+
+def test_every_word_that_is_offered_is_understood(staffed: Staffed) -> None:
+    eyes = staffed.world.eyes
+    assert eyes is not None and eyes.sayable == []
+    staffed.visit("all correct")
+    eyes.asks = "user1"
+    assert len(eyes.sayable) == len(BINGO.card_states)
+    assert all(eyes.tell(words) for words in eyes.sayable)
+
+
+def test_who_sees_a_card_tells_what_can_be_told() -> None:
+    face = BINGO.deck.deal(iter([i / 60 for i in range(60)]).__next__)
+    called = [face[0]]
+    assert told_card(BINGO, called, face, 0).numbers == (face[0],)
+    assert told_card(BINGO, called, face, 0b11).state == "incorrectly marked"
+
+
+def test_a_robot_with_a_camera_asks_staff_nothing() -> None:
+    link = FakeLink(PEOPLE)
+    world = LiveWorld(
+        BINGO, PEOPLE, cast(RobotLink, link), load_robot(), load_room(), seed=1, pace=0.0
+    )
+    assert world.eyes is None
