@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, read_inquiry
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.learning.verification import NO_QUESTION, answer_help
 from tangy_tui.text.changes import patterns_line
 from tangy_tui.text.control import going_words
 from tangy_tui.text.faults import advice_lines, list_lines
 from tangy_tui.text.games import Demonstrations, why_lines
+from tangy_tui.text.questions import NO_QUESTION, answer_help
 from tangy_tui.text.situations import Name, state_words
 from tangy_tui.text.staff_lines import ANSWER_IN_WORDS, NOTHING_WRONG, SAY_IN_WORDS, nothing_to
 

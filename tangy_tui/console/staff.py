@@ -37,7 +37,6 @@ from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
 from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.learning.verification import (
-    ANSWER_HELP,
     NotUnderstood,
     Reply,
     Say,
@@ -50,6 +49,7 @@ from tangy_tui.text.calls import expert_line, waits_line
 from tangy_tui.text.control import noted_words, proposal_words
 from tangy_tui.text.faults import HALTED
 from tangy_tui.text.games import belief_lines, game_lines
+from tangy_tui.text.questions import ANSWER_HELP
 from tangy_tui.text.situations import Name, verification_lines
 from tangy_tui.text.telling import waiting_words
 

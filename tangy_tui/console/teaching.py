@@ -38,19 +38,17 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import (
-    ANSWER_HELP,
-    NO_QUESTION,
-    WHICH,
     Asked,
     Offered,
     Reply,
     Say,
     StopCommand,
-    answer_help,
 )
 from tangy_tui.speech.input import Heard, SpeechInput
 from tangy_tui.text.coach import SAYABLE, coach_words, sayable_now
 from tangy_tui.text.hearing import hearing_words
+from tangy_tui.text.questions import ANSWER_HELP, NO_QUESTION, answer_help
+from tangy_tui.text.refusals import WHICH
 from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
 from tangy_tui.text.teaching_commands import (

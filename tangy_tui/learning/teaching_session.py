@@ -71,8 +71,6 @@ from tangy_tui.world import World
 
 _LOG = logging.getLogger(__name__)
 
-NO_REMARK = "There is nothing to settle: the last step raised no question."
-ANOTHER_SIMULATOR = "The unfinished game was made with another simulator; a new one begins."
 NOTHING_SAID = "(nothing: there are no numbers to say)"
 
 
@@ -174,7 +172,7 @@ class TeachingSession:
             return self._begin_new()
         kept = entry.demonstration
         if (replay := self._replay(kept)) is None:
-            return [Refused(ANOTHER_SIMULATOR), *self._begin_new()]
+            return [Refused("another simulator"), *self._begin_new()]
         self._enter(kept, replay)
         self._undone = list(entry.undone)
         self._logged = True
@@ -183,10 +181,7 @@ class TeachingSession:
 
     def check(self) -> list[TeachingEvent]:
         """Check the steps to show again, before a screen opens; raises TangyError if impossible."""
-        events = self._begin_again(self._first) if self._first is not None else []
-        if events and isinstance(events[0], Refused):
-            raise TangyError(events[0].reason)
-        return events
+        return self._begin_again(self._first) if self._first is not None else []
 
     def apply(self, command: TeacherCommand) -> list[TeachingEvent]:
         """Carry out one command of the teacher and return what followed."""
@@ -215,7 +210,7 @@ class TeachingSession:
                 self._remarks.open = None  # put off
                 if self.demonstration.finished:
                     return self._begin_new()
-                return [Refused("This demonstration is not finished yet.")]
+                return [Refused("not finished")]
             case Discard():
                 return self._discard()
             case Finish():
@@ -223,7 +218,10 @@ class TeachingSession:
             case Again(id, kept) if id == self.demonstration.id:
                 return self._go_back(kept)
             case Again():
-                return self._begin_again(command)
+                try:
+                    return self._begin_again(command)
+                except TangyError as error:
+                    return [Refused("not possible", about=str(error))]
 
     def _begin_new(self) -> list[TeachingEvent]:
         who, of = tuple(self._names), self.activity.name
@@ -252,7 +250,7 @@ class TeachingSession:
         """Undo the last steps of the present demonstration, all of them or none."""
         steps = len(self.demonstration.steps)
         if not 0 <= kept < steps:
-            return [Refused(f"There is no step {kept + 1} to show again.")]
+            return [Refused("no step to show again", number=kept + 1)]
         before = (self.demonstration, ReplayedGame(self.world, self.numbers))
         undone, logged = self._undone, self._logged
         try:
@@ -265,12 +263,9 @@ class TeachingSession:
 
     def _begin_again(self, again: Again) -> list[TeachingEvent]:
         library = read_library(self._store, self.activity.name)
-        try:
-            new = shown_again(library, again, self.teacher)
-        except TangyError as error:
-            return [Refused(str(error))]
+        new = shown_again(library, again, self.teacher)
         if (replay := self._replay(new)) is None:
-            return [Refused("It was made with another simulator: show the whole game anew.")]
+            raise NotPossible("It was made with another simulator: show the whole game anew.")
         self._enter(new, replay)
         self._logged = False
         return [Begun(new, resumed=False)]
@@ -288,7 +283,7 @@ class TeachingSession:
 
     def _say(self, said: Say) -> list[TeachingEvent]:
         if self.demonstration.finished:
-            return [Refused("This game is over. Begin the next demonstration, or undo a step.")]
+            return [Refused("game over")]
         return self._told(self._remarks.phrases.followed(said, self._verifier.say(said)))
 
     def _told(self, verification: Verification) -> list[TeachingEvent]:
@@ -346,7 +341,7 @@ class TeachingSession:
         settled = self._remarks.answer(answer)
         if settled is not None and settled.answer == "keep":
             self._enter(self.demonstration, ReplayedGame(self.world, self.numbers))
-        return [Refused(NO_REMARK)] if settled is None else [settled]
+        return [Refused("nothing to settle")] if settled is None else [settled]
 
     def _log_beginning(self) -> None:
         """Log the demonstration with its first step, so that looking in leaves no empty one."""
@@ -356,13 +351,13 @@ class TeachingSession:
 
     def _undo(self) -> list[TeachingEvent]:
         if not self.demonstration.steps:
-            return [Refused("There is no step to undo.")]
+            return [Refused("no step to undo")]
         if (rule := self._rules.take_back(self.demonstration)) is not None:
             return [rule]
         last, number = self.demonstration.steps[-1], len(self.demonstration.steps)
         shorter = self.demonstration.without_last()
         if (replay := self._replay(shorter)) is None:
-            return [Refused("This step cannot be undone: the simulator has changed since.")]
+            return [Refused("undo came out otherwise")]
         with self._store.transaction():
             self._log_beginning()
             self._store.append(DemonstrationStepUndone(demonstration=shorter.id, step=number))
@@ -375,9 +370,9 @@ class TeachingSession:
 
     def _redo(self) -> list[TeachingEvent]:
         if not self._undone:
-            return [Refused("There is no step to do again.")]
+            return [Refused("no step to redo")]
         if self.question is not None:
-            return [Refused("Answer the question first.")]
+            return [Refused("answer first")]
         step = self._undone[-1]
         behaviour = self.activity.behaviour(step.behaviour)
 
@@ -390,7 +385,7 @@ class TeachingSession:
         try:
             events = self._carry_out(behaviour, step.target, log)
         except NotAsBefore:
-            return [Refused("This step cannot be done again: the simulator has changed since.")]
+            return [Refused("redo came out otherwise")]
         self._undone.pop()
         self._remarks.open = None  # it was said when the step was shown first
         return events

@@ -6,8 +6,8 @@ Teachers use it while they demonstrate, and when Tangy asks them in a game.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import EVERYBODY, FRONT, ActivityState
@@ -18,15 +18,27 @@ if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.behaviour import Behaviour
 
-ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
-LEAVE = "leave without executing it"
-WHICH = "Please say which: type its number, or N for a new command."
-ANSWER_MEANINGS = (
-    ("y", "yes, execute it"),
-    ("n", "no, do nothing; give a new command"),
-    ("quit", LEAVE),
-)
-NO_QUESTION = "There is no question open: give a command."
+RefusalKind: TypeAlias = Literal[
+    "no question",
+    "no such choice",
+    "say which",
+    "nobody asks",
+    "nobody to do it for",
+    "not with them",
+    "no such person",
+    "not finished",
+    "another simulator",
+    "no step to show again",
+    "game over",
+    "nothing to settle",
+    "no step to undo",
+    "undo came out otherwise",
+    "no step to redo",
+    "answer first",
+    "redo came out otherwise",
+    "not possible",
+]
+"""Why something cannot be done now; `not possible` carries the reason of an error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,10 +104,21 @@ class NotUnderstood:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """Something that cannot be done now, and why; `heard` goes back to the teacher."""
+    """Something that cannot be done now, and why; `heard` goes back to the teacher.
 
-    reason: str
+    Args:
+        why: what stands in its way.
+        heard: the words of the command.
+        about: a person's name, what was called a person, a phrase to say, or another reason.
+        number: of a choice or a step.
+        people: the names of all who take part.
+    """
+
+    why: RefusalKind
     heard: str = ""
+    about: str = ""
+    number: int = 0
+    people: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +170,8 @@ class Verifier:
         if not commands:
             stranger = self._phrasebook.stranger(said.text)
             if stranger is not None:
-                return Refused(self._nobody(stranger), said.text)
+                people = tuple(self._name(person) for person in self._phrasebook.people)
+                return Refused("no such person", said.text, stranger, people=people)
             heard = said.commands is not None  # speech that asks for nothing suggests nothing
             return NotUnderstood(
                 said.text, () if heard else self._phrasebook.suggestions(said.text)
@@ -188,11 +212,11 @@ class Verifier:
         """Take the answer to the open question."""
         question, self.question = self.question, None
         if question is None:
-            return Refused("There is no question to answer: give a command first.")
+            return Refused("no question")
         if reply.alternative is not None:
             if not 1 <= reply.alternative <= len(question.alternatives):
                 self.question = question
-                return Refused(f"There is no choice {reply.alternative}.")
+                return Refused("no such choice", number=reply.alternative)
             chosen = self._others[reply.alternative - 1]
             rest = tuple(other for other in self._others if other != chosen)
             if isinstance(question, Asked):
@@ -202,7 +226,7 @@ class Verifier:
             return Rejected(question.heard)
         if isinstance(question, Offered):
             self.question = question
-            return Refused(WHICH)
+            return Refused("say which")
         behaviour = self._activity.behaviour(question.behaviour)
         return Verified(behaviour, question.target, question.heard, question.confidence)
 
@@ -218,9 +242,8 @@ class Verifier:
     def _ask(self, command: Command, others: tuple[Command, ...]) -> Verification:
         behaviour = self._activity.behaviour(command.behaviour)
         target = self._target(command)
-        reason = self._obstacle(behaviour, target)
-        if reason is not None:
-            return Refused(reason, command.heard)
+        if (obstacle := self._obstacle(behaviour, target)) is not None:
+            return replace(obstacle, heard=command.heard)
         self._asked, self._others = command, others[:MOST_ALTERNATIVES]
         names = tuple(other.behaviour for other in self._others)
         self.question = Asked(
@@ -265,41 +288,21 @@ class Verifier:
         question = self._activity.behaviour(command.behaviour).question
         return question if target is None else f"{question} ({self._name(target)})"
 
-    def _obstacle(self, behaviour: Behaviour, target: str | None) -> str | None:
+    def _obstacle(self, behaviour: Behaviour, target: str | None) -> Refused | None:
         """Return why a behaviour for one person cannot be done now, or None."""
         if not behaviour.attends:
             return None
         goes = behaviour.effect == "go to user"
-        nobody = "nobody asks for help"
+        nobody: RefusalKind = "nobody asks"
         if behaviour.to:
             if target is not None or EVERYBODY in behaviour.to:
                 return None
-            nobody = "there is nobody to do it for"
+            nobody = "nobody to do it for"
         if target is None:
-            way = f" Say whom to go to, for example: {behaviour.phrases[0]} 1." if goes else ""
-            return f"That cannot be done now: {nobody}.{way}"
+            return Refused(nobody, about=f"{behaviour.phrases[0]} 1" if goes else "")
         if not goes and self._observe().place != target:
-            return f"Tangy is not with {self._name(target)} yet: it has to go there first."
+            return Refused("not with them", about=self._name(target))
         return None
-
-    def _nobody(self, stranger: str) -> str:
-        """Say that there is nobody of that name or number, and who there is."""
-        *others, last = [self._name(person) for person in self._phrasebook.people]
-        who = f"{', '.join(others)} and {last} take part" if others else f"{last} takes part"
-        there = "There is no" if " " in stranger else "There is nobody called"
-        return f"{there} {stranger}: {who}."
 
     def _name(self, person: str) -> str:
         return self._names.get(person, person)
-
-
-def answer_help(question: Asked | Offered) -> list[str]:
-    """Say what can be answered to an open question, a line each."""
-    if isinstance(question, Offered):
-        return [WHICH, "  n: none of these; give a new command", f"  quit: {LEAVE}"]
-    alternatives = len(question.alternatives)
-    lines = [ANSWER_HELP, *(f"  {word}: {meaning}" for word, meaning in ANSWER_MEANINGS)]
-    if alternatives:
-        numbers = "1" if alternatives == 1 else f"1 to {alternatives}"
-        lines.insert(3, f"  {numbers}: not that, but what stands beside the number")
-    return lines

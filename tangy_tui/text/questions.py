@@ -6,15 +6,25 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.refusals import WHICH
 from tangy_tui.text.situations import ALL_RIGHT
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_tui.learning.explanation import Why
+    from tangy_tui.learning.verification import Asked, Offered
 
 SAID_TOO_EARLY = "You said that before the question was on the screen."
 TOO_EARLY = "Too early: please answer again."
 DID_YOU_SAY = "Did you say: "
+NO_QUESTION = "There is no question open: give a command."
+ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
+LEAVE = "leave without executing it"
+ANSWER_MEANINGS = (
+    ("y", "yes, execute it"),
+    ("n", "no, do nothing; give a new command"),
+    ("quit", LEAVE),
+)
 DID_YOU_MEAN = "Did you mean"
 OR_DID_YOU_MEAN = "Or did you mean"
 
@@ -56,3 +66,17 @@ def given_words(activity: Activity, why: Why) -> str:
         for behaviour, teachers in given.items()
     ]
     return f"Shown so far: {', '.join(parts)}." if parts else ""
+
+
+def answer_help(question: Asked | Offered) -> list[str]:
+    """Say what can be answered to an open question, a line each."""
+    from tangy_tui.learning.verification import Offered
+
+    if isinstance(question, Offered):
+        return [WHICH, "  n: none of these; give a new command", f"  quit: {LEAVE}"]
+    alternatives = len(question.alternatives)
+    lines = [ANSWER_HELP, *(f"  {word}: {meaning}" for word, meaning in ANSWER_MEANINGS)]
+    if alternatives:
+        numbers = "1" if alternatives == 1 else f"1 to {alternatives}"
+        lines.insert(3, f"  {numbers}: not that, but what stands beside the number")
+    return lines

@@ -18,6 +18,7 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.text.activities import facts_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.refusals import refused_words
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -123,8 +124,8 @@ def verification_lines(said: Verification, yes: str = "Y") -> list[str]:
         case NotUnderstood(heard, suggestions):
             near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
             return [f"I do not know what {plain(heard)!r} means.{near} Type help for all commands."]
-        case Refused(reason, _):
-            return [reason]
+        case Refused():
+            return [refused_words(said)]
         case Rejected(heard):
             return [f"Not done: {plain(heard)}. Give a new command."]
         case _:

@@ -210,7 +210,7 @@ class TestKeeping:
             Begun: Begun(game, resumed=False),
             StepUndone: StepUndone(1, game.steps[0]),
             NotUnderstood: NotUnderstood("banana", ()),
-            Refused: Refused("Nobody asks for help.", "tell a joke"),
+            Refused: Refused("nobody asks", "tell a joke"),
         }
         recorder.heard(SOUND, spoken("tell a joke"))
         recorder.follow([events[again]])

@@ -15,8 +15,6 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.language.commands import Command, Phrasebook
 from tangy_tui.learning.verification import (
-    NO_QUESTION,
-    WHICH,
     Asked,
     Offered,
     Refused,
@@ -26,9 +24,10 @@ from tangy_tui.learning.verification import (
     StopCommand,
     Verified,
     Verifier,
-    answer_help,
 )
 from tangy_tui.speech.input import Heard
+from tangy_tui.text.questions import NO_QUESTION, answer_help
+from tangy_tui.text.refusals import WHICH
 from tangy_tui.text.teaching_commands import STOPPED
 from tangy_tui.text.voice import OR_SAY_YES
 

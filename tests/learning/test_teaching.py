@@ -21,6 +21,7 @@ from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Begun, Executed, Finished, Next, StepUndone, Undo
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, NotUnderstood, Refused, Rejected, Reply, Say
+from tangy_tui.text.refusals import refused_words
 from tangy_tui.world import World
 
 BINGO = load_activity("bingo")
@@ -162,7 +163,7 @@ def test_behaviours_for_somebody_are_refused_while_nobody_asks(store: Store) -> 
     for phrase in ("encourage", "remove markers", "go to user", "celebrate"):
         refused = teaching.apply(Say(phrase))[0]
         assert isinstance(refused, Refused)
-        assert refused.reason.startswith("That cannot be done now: nobody asks for help.")
+        assert refused.why == "nobody asks"
     assert teaching.question is None
 
 
@@ -179,15 +180,18 @@ def test_the_robot_can_be_sent_to_a_person_who_takes_part_by_number_or_name(stor
 @pytest.mark.parametrize("phrase", ["go to user 7", "Go to user seven, please", "go to 7"])
 def test_who_is_not_there_is_said_with_those_who_are(store: Store, phrase: str) -> None:
     refused = begun(store).apply(Say(phrase))[0]
-    everybody = "User 1, User 2, User 3 and User 4 take part."
-    assert refused == Refused(f"There is no user 7: {everybody}", phrase)
+    everybody = ("User 1", "User 2", "User 3", "User 4")
+    assert refused == Refused("no such person", phrase, "user 7", people=everybody)
+    assert refused_words(refused) == (
+        "There is no user 7: User 1, User 2, User 3 and User 4 take part."
+    )
 
 
 def test_a_name_that_is_nobodys_is_said_as_well(store: Store) -> None:
     teaching = begun(store)
     refused = teaching.apply(Say("go to Zorro"))[0]
     assert isinstance(refused, Refused)
-    assert refused.reason.startswith("There is nobody called zorro: User 1, ")
+    assert refused_words(refused).startswith("There is nobody called zorro: User 1, ")
 
 
 def test_after_the_game_only_the_next_one_or_undo_is_possible(store: Store) -> None:
@@ -273,7 +277,7 @@ def test_what_another_simulator_made_is_kept_but_not_gone_on_with(
     monkeypatch.setitem(BINGO.__dict__, "behaviours", behaviours)
     refused, new = session(store, seed=2).begin()
     assert isinstance(refused, Refused)
-    assert "another simulator" in refused.reason
+    assert refused.why == "another simulator"
     assert isinstance(new, Begun)
     assert logged(store) == [first.demonstration]
 

@@ -14,13 +14,14 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_tui.learning.verification import WHICH, Asked, Offered, Reply
+from tangy_tui.learning.verification import Asked, Offered, Reply
 from tangy_tui.text.questions import (
     DID_YOU_MEAN,
     DID_YOU_SAY,
     OR_DID_YOU_MEAN,
     SAID_TOO_EARLY,
     TOO_EARLY,
+    WHICH,
     yes_words,
 )
 from tangy_tui.ui.base import Dialog

@@ -42,6 +42,7 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.text import questions as text
 from tangy_tui.text.keys import with_keys
+from tangy_tui.text.refusals import refused_words
 from tangy_tui.text.situations import ALL_RIGHT
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -319,8 +320,8 @@ class AskingPanel(Vertical):
                 self._return(heard, text.not_understood_words(heard, suggestions))
             case Rejected(heard):
                 self._return(heard, text.STOPPED_FIRST if self._held else text.REJECTED)
-            case Refused(reason, heard):
-                self._return(heard, reason)
+            case Refused():
+                self._return(said.heard, refused_words(said))
             case Verified():
                 self._settle(said)
             case StaffNote():

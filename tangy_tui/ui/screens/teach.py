@@ -41,6 +41,7 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.text import teaching as text
 from tangy_tui.text.questions import REJECTED, not_understood_words
+from tangy_tui.text.refusals import refused_words
 from tangy_tui.text.who import renamed_teacher
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -353,10 +354,10 @@ class TeachScreen(TangyScreen[bool]):
                 case Rejected(heard):
                     self._log.write(REJECTED, "dim")
                     self._listener.give_back(heard)
-                case Refused(reason, heard):
-                    self._log.write(reason, "warn")
-                    if heard:
-                        self._listener.give_back(heard)
+                case Refused():
+                    self._log.write(refused_words(event), "warn")
+                    if event.heard:
+                        self._listener.give_back(event.heard)
                 case Executed():
                     preference = preference_of(self._workspace, event.action.target)
                     speaker_of(self.app).interject(event.speech, preference)
