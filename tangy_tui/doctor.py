@@ -25,6 +25,7 @@ from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.log_check import log_problems
 from tangy_tui.text import machine
+from tangy_tui.text.store import problem_words
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import Sources
@@ -249,7 +250,7 @@ def _store(folder: Path) -> Finding:
     if not problem:
         try:
             with Store.open(folder, write=False) as store:
-                problems = log_problems(store)
+                problems = problem_words(log_problems(store))
         except TangyError as error:
             problem = str(error)
         else:

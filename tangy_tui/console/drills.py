@@ -16,7 +16,10 @@ from tangy_tui.text.drills import (
     HELP,
     NOTHING_MOVES,
     WELCOME,
+    asked_words,
     left_words,
+    note_words,
+    option_words,
     question_words,
     round_parts,
     sheet_lines,
@@ -45,7 +48,7 @@ def drill_by_lines(drill: Drill, write: Write, read: Read, *, strict: bool = Fal
         KeyboardInterrupt: passed on, after what was answered before was kept and told.
     """
     if drill.note:
-        write(drill.note)
+        write(note_words(drill.note))
     write(WELCOME)
     try:
         _go_through(drill, write, read, strict)
@@ -88,7 +91,7 @@ def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: 
             asked = question
             write(question_words(question, shown))
             for choice in question.choices:
-                write(f"  {choice.key}  {choice.words}")
+                write(f"  {choice.key}  {option_words(question, choice)}")
         line = read()
         word = "quit" if line is None else line.strip().lower()
         if not word or word.startswith("#"):
@@ -104,7 +107,7 @@ def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: 
         if word not in question.keys:
             if strict:
                 drill.leave()
-                wrong = f"Round {shown.number}, {question.text}"
+                wrong = f"Round {shown.number}, {asked_words(question.kind)}"
                 wrong = f"{wrong} {word!r}: {nearest(word, question.keys)} {left_words(drill)}"
                 raise TangyError(plain(wrong))
             write(HELP)

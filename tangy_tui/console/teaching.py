@@ -25,7 +25,6 @@ from tangy_tui.app.command_grammar import (
 from tangy_tui.app.tour import Tour
 from tangy_tui.console.after_teaching import AfterTeaching
 from tangy_tui.console.typed_yes import TypedYes
-from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -47,6 +46,7 @@ from tangy_tui.learning.verification import (
 from tangy_tui.speech.input import Heard, SpeechInput
 from tangy_tui.text.coach import SAYABLE, coach_words, sayable_now
 from tangy_tui.text.hearing import hearing_words
+from tangy_tui.text.learnt import NOT_SHOWN
 from tangy_tui.text.questions import ANSWER_HELP, NO_QUESTION, answer_help
 from tangy_tui.text.refusals import WHICH
 from tangy_tui.text.situations import state_words

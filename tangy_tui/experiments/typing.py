@@ -28,9 +28,9 @@ from tangy_tui.experiments.published import USERS
 from tangy_tui.experiments.screen import Screen
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
 from tangy_tui.experiments.terminal import Terminal
+from tangy_tui.text.questions import DID_YOU_SAY
 
 UP, ENTER = "\x1b[A", "\r"
-QUESTION = "Did you say: "
 PROMPT = "> "
 AGAIN = 1.0
 """Seconds after which somebody presses y again whose question is still there."""
@@ -104,7 +104,7 @@ def teach_by_typing(settings: Settings, case: Case) -> dict[str, Any]:
 def _ready(screen: Screen) -> bool:
     """Whether the command line takes keys: its prompt stands at the bottom, and no question."""
     return any(line.startswith(PROMPT) for line in screen.lines[-3:]) and (
-        QUESTION not in screen.text
+        DID_YOU_SAY not in screen.text
     )
 
 
@@ -144,12 +144,12 @@ class _Typist:
         terminal.watch(self._pace.look)
         self._command(behaviour)
         asked = behaviour.question + (f" ({self._names[target]})" if target else "")
-        begins = QUESTION + asked[:BEGINNING]
+        begins = DID_YOU_SAY + asked[:BEGINNING]
         terminal.until(lambda screen: begins in screen.text, f"the question {begins!r}")
         terminal.watch(self._pace.read)
         self._press("y")
         for _ in range(MOST_AGAIN):
-            if terminal.sees(lambda screen: QUESTION not in screen.text, AGAIN):
+            if terminal.sees(lambda screen: DID_YOU_SAY not in screen.text, AGAIN):
                 break
             self._press("y")  # it came too early: the program takes none in its first moment
         self.world.execute(activity.action(behaviour, target, None))

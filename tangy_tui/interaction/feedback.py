@@ -124,8 +124,9 @@ class Feedback:
         if of is not None:
             request = self._at(person, of)
             if request.strategy != strategy:
-                wrong = f"That request was put with {request.strategy}, not with {strategy}."
-                raise TangyError(plain(wrong))
+                raise TangyError(
+                    plain(f"That request was put with {request.strategy}, not with {strategy}.")
+                )
             if not request.open:
                 raise TangyError(
                     "That request has its answer already, and none counts twice: "

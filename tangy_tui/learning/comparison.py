@@ -13,7 +13,7 @@ from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import shown_steps
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policies import load_policy, place_of, stored_policies
+from tangy_tui.learning.policies import PolicyNotice, load_policy, place_of, stored_policies
 from tangy_tui.learning.policy import Decision, Policy, learn_policy
 
 
@@ -45,7 +45,7 @@ def choices(store: Store, activity: Activity) -> list[str]:
     return list(dict.fromkeys([*names, *teachers]))
 
 
-def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, list[str]]:
+def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, list[PolicyNotice]]:
     """Return the policy that a word means, and what must be said of it.
 
     It means, the first that fits: `last` or `last~N` (the last policy learnt, or the N-th before

@@ -40,10 +40,6 @@ def coverage(activity: Activity, demonstrations: Iterable[Demonstration]) -> Cov
     return Coverage({situation: counts[situation] for situation in activity.situations})
 
 
-NOT_SHOWN = "Not shown to Tangy yet:"
-"""Stands before what `missing_words` gives: it is about what was shown, not about the room."""
-
-
 def missing_words(activity: Activity, found: Coverage) -> list[str]:
     """Say in plain words, a line each, what Tangy has not been shown yet."""
     return [activity.not_yet(situation) for situation in found.missing]

@@ -150,9 +150,12 @@ class Library:
             return found[0]
         if not entries:
             raise NoDemonstration("There are no demonstrations yet: begin with `tangy teach`.")
-        problem = "More than one" if found else "No"
         choice = f"choose from 1 to {len(entries)}" if len(entries) > 1 else "there is only 1"
-        raise NoDemonstration(plain(f"{problem} demonstration is called {wanted!r}: {choice}."))
+        if found:
+            raise NoDemonstration(
+                plain(f"More than one demonstration is called {wanted!r}: {choice}.")
+            )
+        raise NoDemonstration(plain(f"No demonstration is called {wanted!r}: {choice}."))
 
     def repeats(self, entry: LibraryEntry) -> bool:
         """Say whether a demonstration was shown again by one that is complete and in use."""

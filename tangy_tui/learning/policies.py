@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
@@ -32,10 +32,6 @@ RESERVED = ("last", "policy", "teacher")
 """Words that a name must not begin with: they say which policy is meant."""
 
 
-class NoPolicy(TangyError):
-    """Nothing has been learnt yet for this activity, or not what was asked for."""
-
-
 @dataclass(frozen=True, slots=True)
 class Change:
     """A situation that a policy learnt again answers otherwise than it did."""
@@ -43,6 +39,40 @@ class Change:
     situation: Situation
     before: str
     after: str
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A step `number` of a demonstration that an activity, by its title, does not know."""
+
+    demonstration: str
+    number: int
+    behaviour: str
+    situation: Situation
+    activity: str
+
+
+@dataclass(frozen=True, slots=True)
+class NotAsKept:
+    """A policy that does not come out as it was kept.
+
+    Args:
+        policy: its name.
+        versions: of a part, what it was and what it is now; none: its demonstrations have changed.
+        changes: what it does otherwise; none: only the votes differ.
+    """
+
+    policy: str
+    versions: tuple[tuple[str, str | None, str], ...]
+    changes: tuple[Change, ...]
+
+
+PolicyNotice: TypeAlias = LeftOut | NotAsKept
+"""What a person must be told of a policy before it is used."""
+
+
+class NoPolicy(TangyError):
+    """Nothing has been learnt yet for this activity, or not what was asked for."""
 
 
 def keep_policy(store: Store, policy: Policy) -> None:
@@ -123,7 +153,9 @@ def unused_name(store: Store, policy: Policy) -> Policy:
     return policy if name == policy.name else replace(policy, name=name)
 
 
-def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Policy, list[str]]:
+def load_policy(
+    store: Store, activity: Activity, wanted: str = ""
+) -> tuple[Policy, list[PolicyNotice]]:
     """Learn a kept policy again from its demonstrations (see `need_policy`).
 
     Returns:
@@ -142,7 +174,7 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
             "this data folder: run `tangy learn` again."
         )
     cache = ForestCache(store.folder)
-    used, notices = without_strange_steps(
+    used, left_out = without_strange_steps(
         activity, [entries[id].demonstration for id in kept.demonstrations]
     )
 
@@ -160,29 +192,27 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
     if policy.digest != kept.digest:
         policy = again(cache.afresh)  # the cache may be wrong; a policy learnt again is not
     if policy.digest != kept.digest:
-        notices += _explain(kept, policy)
-    return policy, notices
+        return policy, [*left_out, _explain(kept, policy)]
+    return policy, [*left_out]
 
 
 def without_strange_steps(
     activity: Activity, demonstrations: Sequence[Demonstration]
-) -> tuple[list[Demonstration], list[str]]:
+) -> tuple[list[Demonstration], list[LeftOut]]:
     """Leave out single steps that the activity does not know, and name them: bad rows of a log.
 
     Where they are many the activity was changed, and all of them are left as they are.
     """
     situations = frozenset(all_situations(activity))
-    kept, notices, count = list[Demonstration](), list[str](), 0
+    kept, notices, count = list[Demonstration](), list[LeftOut](), 0
     for one in demonstrations:
         known = []
         for number, step in enumerate(one.steps, 1):
             if step.behaviour in activity.behaviours and step.state.situation in situations:
                 known.append(step)
                 continue
-            where = f"{' / '.join(step.state.situation)} -> {step.behaviour}"
-            notices.append(
-                plain(f"Step {number} of {one.id} is left out: {activity.title} has no {where}.")
-            )
+            where = step.state.situation
+            notices.append(LeftOut(one.id, number, step.behaviour, where, activity.title))
         count += len(one.steps)
         kept.append(one if len(known) == len(one.steps) else replace(one, steps=tuple(known)))
     if len(notices) * MANY > count:
@@ -212,17 +242,7 @@ def does(decision: Decision) -> str:
     return decision.behaviour if decision.sure else ASKS
 
 
-def _explain(kept: PolicyLearnt, policy: Policy) -> list[str]:
+def _explain(kept: PolicyLearnt, policy: Policy) -> NotAsKept:
     was, now = dict(kept.versions), dict(policy.versions)
-    moved = [f"{part} {was.get(part)} -> {now[part]}" for part in now if was.get(part) != now[part]]
-    why = f" ({', '.join(moved)})" if moved else " (its demonstrations have changed since)"
-    notices = [f"The policy {policy.name!r} does not come out as it was kept{why}."]
-    different = changes(kept, policy)
-    if not different:
-        notices.append("It does the same everywhere; only the votes differ.")
-    for change in different:
-        notices.append(
-            f"{' / '.join(change.situation)}: was {change.before}, is now {change.after}."
-        )
-    notices.append("Look at it with `tangy policy`, and keep it with `tangy learn`.")
-    return notices
+    moved = [(part, was.get(part), now[part]) for part in now if was.get(part) != now[part]]
+    return NotAsKept(policy.name, tuple(moved), tuple(changes(kept, policy)))

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from random import Random
 from time import monotonic
-from types import MappingProxyType
+from typing import Literal, TypeAlias, get_args
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.drill_sheet import AnsweredRound, Sheet
@@ -20,47 +20,44 @@ from tangy_profiles.game_records import DrillHeld
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.drill_log import read_sheets
-from tangy_tui.monitoring.drill_policy import policy_for_drill
+from tangy_tui.monitoring.drill_policy import DrillNote, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop, draw_rounds
 
 ROUNDS, MOST_ROUNDS = 6, 50
 
-WHAT, DO, CLEAR = "what", "do", "clear"
+DrillAsks: TypeAlias = Literal["what", "do", "clear"]
+WHAT: DrillAsks = "what"
+DO: DrillAsks = "do"
+CLEAR: DrillAsks = "clear"
 """The three questions of a round; the last one only after a critical fault."""
+
+StaffDoes: TypeAlias = Literal["continue", "user", "teacher", "expert"]
+"""What staff can do, by the recovery that it is."""
 
 NOTHING = "0"
 """The key for: nothing is wrong."""
 
-ACTIONS: Mapping[str, str] = MappingProxyType(
-    {
-        "continue": "Let Tangy go on by itself",
-        "user": "Help it: do what it asks for",
-        "teacher": "Say what Tangy should do",
-        "expert": "Keep people away, call the expert, then clear",
-    }
-)
-"""Actions of staff by recovery, in their words."""
-
-ASKED: Mapping[str, str] = MappingProxyType(
-    {WHAT: "What is it?", DO: "What do you do?", CLEAR: "May Tangy be cleared now?"}
-)
+ACTIONS: tuple[StaffDoes, ...] = get_args(StaffDoes)
 
 
 @dataclass(frozen=True, slots=True)
 class DrillOption:
-    """An answer that can be given: by which key, in words, and what it stands for."""
+    """An answer that can be given: by which key, and what it stands for.
+
+    `value` is the code of a fault ("": nothing is wrong), a `StaffDoes`, or "yes" or "no"; `name`
+    is the fault's.
+    """
 
     key: str
-    words: str
     value: str
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """A question of a round, with its answers; `kind` is one of WHAT, DO, CLEAR."""
+    """A question of a round, with its answers."""
 
-    kind: str
-    text: str
+    kind: DrillAsks
     choices: tuple[DrillOption, ...]
 
     @property
@@ -81,7 +78,7 @@ class Drill:
         seed: int | None = None,
         rounds: int = ROUNDS,
         clock: Callable[[], float] = monotonic,
-        note: str = "",
+        note: DrillNote | None = None,
     ) -> None:
         """Prepare a drill.
 
@@ -92,7 +89,7 @@ class Drill:
             seed: the same one draws the same rounds (default: one that no drill has had).
             rounds: how many.
             clock: gives seconds; its beginning does not matter.
-            note: a message to show before it begins.
+            note: why it goes by something else than what Tangy has learnt, if it does.
 
         Raises:
             TangyError: there are too few rounds, or too many.
@@ -242,18 +239,17 @@ class Drill:
         cleared = self._given[CLEAR] == "yes"
         return replace(answered, may_clear=shown.release.right, cleared=cleared)
 
-    def _ask(self, kind: str) -> None:
+    def _ask(self, kind: DrillAsks) -> None:
         if kind == WHAT and self.round is not None:
             choices = [
-                DrillOption(str(number), self.tabletop.rule_name(code), code)
+                DrillOption(str(number), code, self.tabletop.rule_name(code))
                 for number, code in enumerate(self.round.choices, 1)
             ]
-            choices.append(DrillOption(NOTHING, "Nothing is wrong", ""))
+            choices.append(DrillOption(NOTHING, ""))
         elif kind == DO:
             choices = [
-                DrillOption(str(number), words, recovery)
-                for number, (recovery, words) in enumerate(ACTIONS.items(), 1)
+                DrillOption(str(number), recovery) for number, recovery in enumerate(ACTIONS, 1)
             ]
         else:
-            choices = [DrillOption("y", "Yes", "yes"), DrillOption("n", "No", "no")]
-        self.question = Question(kind, ASKED[kind], tuple(choices))
+            choices = [DrillOption("y", "yes"), DrillOption("n", "no")]
+        self.question = Question(kind, tuple(choices))

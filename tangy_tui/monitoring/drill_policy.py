@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
@@ -23,12 +23,16 @@ MOST_GAMES = 4
 PEOPLE = tuple(f"person{number}" for number in range(1, 5))
 
 
+DrillNote: TypeAlias = Literal["nothing learnt", "unusable", "changed", "gaps"]
+"""Why a drill goes by what a scripted teacher has shown, and not by what Tangy has learnt."""
+
+
 class DrillPolicy(NamedTuple):
-    """A policy, the effects it expects, and a sentence on where they come from ("": learnt)."""
+    """A policy, the effects it expects, and why it is not what Tangy has learnt (None: it is)."""
 
     policy: Policy
     effects: Effects
-    note: str = ""
+    note: DrillNote | None = None
 
 
 def policy_for_drill(store: Store, activity: Activity) -> DrillPolicy:
@@ -39,23 +43,21 @@ def policy_for_drill(store: Store, activity: Activity) -> DrillPolicy:
     Raises:
         TangyError: neither exists, and the activity does not declare the expected behaviours.
     """
-    why = "Tangy has learnt nothing yet"
+    why: DrillNote = "nothing learnt"
     if last_policy(store, activity.name) is not None:
         try:
             policy, notices = load_policy(store, activity)
         except TangyError:
-            why = "What Tangy has learnt cannot be used"
+            why = "unusable"
         else:
             sure = all(policy.decide(situation).sure for situation in activity.situations)
             if sure and not notices:
                 return DrillPolicy(policy, expected_effects(store, activity, policy))
-            why = f"What Tangy has learnt {'has changed' if sure else 'has gaps'}"
+            why = "changed" if sure else "gaps"
     if not activity.expected:
-        raise TangyError(f"{why}: teach it {activity.title} first, then rehearse.")
+        raise TangyError(f"Teach Tangy {activity.title} first, then rehearse.")
     policy, effects = _taught_quickly(activity)
-    return DrillPolicy(
-        policy, effects, f"{why}: for this drill a scripted teacher has shown the game."
-    )
+    return DrillPolicy(policy, effects, why)
 
 
 def _taught_quickly(activity: Activity) -> tuple[Policy, Effects]:

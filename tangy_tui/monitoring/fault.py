@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.codec import written
 from tangy_profiles.events import EventRecord
@@ -18,8 +18,12 @@ from tangy_profiles.store import Event, Store
 
 SOMEBODY = "somebody"
 
-OPEN, BORNE, OVER = "open", "borne", "over"
+FaultStatus: TypeAlias = Literal["open", "borne", "over"]
 """Status of a fault: open; tolerated, so that Tangy goes on; over."""
+
+OPEN: FaultStatus = "open"
+BORNE: FaultStatus = "borne"
+OVER: FaultStatus = "over"
 
 ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended", "left"))
 """The moves after which a fault is over."""
@@ -52,7 +56,7 @@ class Fault:
     moves: list[RecoveryEvent] = field(default_factory=list)
     at: str = ""
     """When it was logged (ISO 8601, UTC)."""
-    status: str = OPEN
+    status: FaultStatus = OPEN
     """Whether it is open, borne or over."""
 
     def add(self, move: RecoveryEvent) -> None:

@@ -27,7 +27,6 @@ from tangy_tui.monitoring.fault import OPEN, Fault, read_faults
 SHORTEST = 4
 """Characters of an id that are enough to name a game."""
 LAST, ALL = "last", "all"
-NONE_YET = "No game was played yet: begin with `tangy play`."
 TO_ITS_END = "played to its end"
 BROKEN_OFF = "it has no end in the log: it is still going on, or the program was broken off"
 
@@ -192,7 +191,7 @@ def find_games(games: Sequence[Game], wanted: str) -> list[Game]:
     """
     word = wanted.strip().casefold()
     if not games:
-        raise TangyError(NONE_YET)
+        raise TangyError("No game was played yet: begin with `tangy play`.")
     if word == ALL:
         return list(games)
     if word == LAST:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeAlias
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.errors import ProfileError
@@ -19,28 +20,32 @@ from tangy_profiles.teaching_records import (
     PolicyLearnt,
 )
 from tangy_tui.learning import library
-from tangy_tui.learning.policies import MANY, without_strange_steps
+from tangy_tui.learning.policies import MANY, LeftOut, without_strange_steps
+
+LogProblem: TypeAlias = str | LeftOut
+"""What is wrong with a log: a sentence of its reader, or a step that nothing is learnt from."""
 
 
-def log_problems(store: Store) -> list[str]:
-    """Read a whole log and return its problems, a sentence each; [] if there are none."""
+def log_problems(store: Store) -> list[LogProblem]:
+    """Read a whole log and return its problems; [] if there are none."""
     wrong = store.check()
     known = set(store.aside)
-    strange = list(_strange_people(store))
+    strange: list[LogProblem] = list(_strange_people(store))
     for activity in _activities(store):
         strange += _strange_steps(store, activity)
     out_of_place = [store.aside[seq] for seq in sorted(store.aside.keys() - known)]
-    return wrong + out_of_place + strange + unknown_kinds(store)
+    return [*wrong, *out_of_place, *strange, *unknown_kinds(store)]
 
 
-def _strange_steps(store: Store, name: str) -> list[str]:
+def _strange_steps(store: Store, name: str) -> list[LogProblem]:
     """Name the steps of an activity's demonstrations and games that the activity does not know."""
     demonstrations = library.read_demonstrations(store, name)
     try:
         activity = load_activity(name)
     except ProfileError:  # it is not here, so that nobody can tell
         return []
-    return without_strange_steps(activity, demonstrations)[1] + _strange_game_steps(store, activity)
+    strange = without_strange_steps(activity, demonstrations)[1]
+    return [*strange, *_strange_game_steps(store, activity)]
 
 
 def _strange_game_steps(store: Store, activity: Activity) -> list[str]:

@@ -6,24 +6,20 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.persuading import PAPER
-from tangy_profiles.reading import plain
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.memory import PersonModel, PersonModels, counted, replayed
 from tangy_tui.interaction.tally import TallyRow
-from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Diagnosed, Fault
+from tangy_tui.monitoring.fault import BORNE, OPEN, Diagnosed, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.replay import GameReplay, Noted, read_replays
-
-STATUS_WORDS = {OPEN: "left open", BORNE: "Tangy goes on with it", OVER: "over"}
-"""Outcomes of faults, in words."""
 
 RESULTS = (
     ("complied", "complied"),
@@ -106,6 +102,20 @@ def result_words(counts: Mapping[str, int]) -> str:
     return ", ".join(f"{counts[what]} {words}" for what, words in RESULTS if counts[what])
 
 
+NoteKind: TypeAlias = Literal["unknown activity", "no times", "brought about"]
+
+
+@dataclass(frozen=True, slots=True)
+class SessionNote:
+    """A limit of a report: an activity that is not here, games without times, or faults by request.
+
+    `about` is the activity's name, or what was asked for.
+    """
+
+    kind: NoteKind
+    about: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Session:
     """The contents of a session's report. `title` is the activity's."""
@@ -114,7 +124,7 @@ class Session:
     title: str
     rows: tuple[TallyRow, ...]
     people: tuple[Progress, ...]
-    notes: tuple[str, ...]
+    notes: tuple[SessionNote, ...]
     """Notes for the reader about the sources of the report."""
     names: Mapping[str, str]
     reads: frozenset[str] = frozenset()
@@ -173,7 +183,7 @@ class Session:
         return all(replay.timed for replay in self.replays)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the document that `--json` prints."""
+        """Return the document that `--json` prints, but for the words of its notes."""
         return {
             "title": self.title,
             "seconds": self.seconds if self.timed else None,
@@ -208,7 +218,6 @@ class Session:
                 {"fault": f.id, "name": f.name, "status": f.status, "advice": list(f.advice)}
                 for f in self.look_after
             ],
-            "notes": list(self.notes),
         }
 
 
@@ -229,13 +238,13 @@ def read_session(
     replays = tuple(read_replays(store, games, activities, names))
     activity = next((activities[g.activity] for g in games if g.activity in activities), None)
     unknown = sorted({g.activity for g in games if g.activity not in activities})
-    notes = [unknown_words(name) for name in unknown]
+    notes = [SessionNote("unknown activity", name) for name in unknown]
     if not all(replay.timed for replay in replays):
-        notes.append("An older Tangy kept no times within a game: those games are drawn by steps.")
+        notes.append(SessionNote("no times"))
     noted = [m.what.what for r in replays for m in r.moments if isinstance(m.what, Noted)]
     on_purpose = dict.fromkeys(what for what in noted if "brought about" in what)
     if on_purpose:
-        notes.append(f"Not all of this went wrong by itself: {'; '.join(on_purpose)}.")
+        notes.append(SessionNote("brought about", "; ".join(on_purpose)))
     titles = {activities[g.activity].title if g.activity in activities else g.activity
               for g in games}  # fmt: skip
     return Session(
@@ -249,14 +258,6 @@ def read_session(
         if activity
         else frozenset(),
         activity=activity,
-    )
-
-
-def unknown_words(activity: str) -> str:
-    """Say that an activity is unknown, and which details are missing for that reason."""
-    return plain(
-        f"There is no activity {activity!r} here any more: what was said is not told, and a "
-        "behaviour counts as a success if it could be carried out."
     )
 
 

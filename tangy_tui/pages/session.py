@@ -9,7 +9,7 @@ from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import GameReplay
-from tangy_tui.monitoring.session import RESULTS, STATUS_WORDS, Progress, Session
+from tangy_tui.monitoring.session import RESULTS, Progress, Session
 from tangy_tui.pages.beliefs import belief_drawing, interval
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
 from tangy_tui.pages.staff_parts import STYLE as PARTS_STYLE
@@ -19,6 +19,7 @@ from tangy_tui.text import session_page as say
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.report import WORLD_WORDS, care_lines
+from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 MOST_DRAWN = 24
@@ -188,7 +189,7 @@ def _care(session: Session) -> Iterator[str]:
         number = f"{numbers[fault.id]}. " if fault.id in numbers else ""
         yield (
             f'<div class="care{" critical" if fault.critical else ""}">'
-            f"<h3>{escape(number + fault.name)} ({STATUS_WORDS[fault.status]})</h3>"
+            f"<h3>{escape(number + fault.name)} ({status_words(fault.status)})</h3>"
             f"<p>{escape(fault.console)}</p><ul>{steps}</ul></div>"
         )
 
@@ -285,7 +286,7 @@ def _faults(session: Session) -> Iterator[str]:
 
 def _last_words(fault: Fault) -> str:
     told = [move_words(move) for move in fault.moves]
-    return told[-1] if told else STATUS_WORDS[fault.status]
+    return told[-1] if told else status_words(fault.status)
 
 
 def _fault(fault: Fault, number: int, replay: GameReplay, many: bool) -> str:
@@ -299,7 +300,7 @@ def _fault(fault: Fault, number: int, replay: GameReplay, many: bool) -> str:
     return (
         f'<div class="fault-told"><h3>{number}. {escape(fault.name)} '
         f'<span class="tag {kind}">{"critical" if fault.critical else "not critical"}</span> '
-        f'<span class="dim">{STATUS_WORDS[fault.status]}</span></h3>'
+        f'<span class="dim">{status_words(fault.status)}</span></h3>'
         f"<p>{escape(fault.console)}</p>"
         f'<p class="dim">{escape(facts)} Evidence: {escape(fault.why)}.</p>'
         f'<ul class="moves">{moves}</ul></div>'
@@ -346,7 +347,7 @@ def _share(success: float | None) -> str:
 
 def _notes(session: Session) -> Iterator[str]:
     for note in session.notes:
-        yield f'<p class="dim">{escape(note)}</p>'
+        yield f'<p class="dim">{escape(note_words(note))}</p>'
 
 
 def _numbers(session: Session) -> dict[str, int]:

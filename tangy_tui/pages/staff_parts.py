@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from html import escape
 
 from tangy_tui.monitoring.attention import attention, calls_in
-from tangy_tui.monitoring.session import STATUS_WORDS, Session
+from tangy_tui.monitoring.session import Session
 from tangy_tui.pages.page import heading, paragraph, table
 from tangy_tui.text import report as say
+from tangy_tui.text.sessions import status_words
 from tangy_tui.text.times import day_and_time, time_of_day
 
 STYLE = """
@@ -76,7 +77,7 @@ def staff_part(session: Session) -> Iterator[str]:
 def faults_part(session: Session) -> Iterator[str]:
     """Tell each fault in a line: when, what, and what came of it."""
     rows = [
-        (time_of_day(at), fault.name, say.fault_outcome(fault, STATUS_WORDS[fault.status]))
+        (time_of_day(at), fault.name, say.fault_outcome(fault, status_words(fault.status)))
         for at, fault in session.timed_faults
     ]
     if rows:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from tangy_tui.monitoring.fault import ENDINGS, OVER, Fault, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay
-from tangy_tui.monitoring.session import STATUS_WORDS
+from tangy_tui.text.sessions import status_words
 
 WIDTH, LEFT, RIGHT = 1000, 118, 18
 """Of the drawing, in its own units; the lanes' names stand left of the lanes."""
@@ -277,7 +277,7 @@ def _fault(fault: Fault, number: int, x: float, end: float, y: float) -> Iterato
         yield (
             f'<line class="mend {kind}" x1="{end:.1f}" x2="{end:.1f}" y1="{y - 6}" y2="{y + 6}"/>'
         )
-    words = f"{number}. {fault.name} ({STATUS_WORDS[fault.status]})"
+    words = f"{number}. {fault.name} ({status_words(fault.status)})"
     shape = (
         f'<path d="M{x:.1f} {y - 13}L{x + 13:.1f} {y}L{x:.1f} {y + 13}L{x - 13:.1f} {y}Z"/>'
         if fault.critical

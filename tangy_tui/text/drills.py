@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.health import OK
 from tangy_profiles.reading import plain
-from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
+from tangy_tui.monitoring.drill import ACTIONS, Drill, DrillAsks, DrillOption, Question, StaffDoes
 from tangy_tui.monitoring.evidence import STATES
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import state_words
 
 if TYPE_CHECKING:
     from tangy_profiles.drill_sheet import AnsweredRound, Sheet
+    from tangy_tui.monitoring.drill_policy import DrillNote
     from tangy_tui.monitoring.drill_rounds import Round, Tabletop
 
 Told = tuple[str, str]
@@ -47,6 +48,62 @@ _QUIET = {
     "asks": "People who ask for help wait their turn; Tangy comes by itself.",
     "reading": "That is how it should be.",
 }
+
+
+def note_words(note: DrillNote) -> str:
+    """Say why a drill does not go by what Tangy has learnt, and by what it goes instead."""
+    return f"{_instead(note)}: for this drill a scripted teacher has shown the game."
+
+
+def _instead(note: DrillNote) -> str:
+    match note:
+        case "nothing learnt":
+            return "Tangy has learnt nothing yet"
+        case "unusable":
+            return "What Tangy has learnt cannot be used"
+        case "changed":
+            return "What Tangy has learnt has changed"
+        case "gaps":
+            return "What Tangy has learnt has gaps"
+        case forgotten:
+            assert_never(forgotten)
+
+
+def action_words(action: StaffDoes) -> str:
+    """Say what staff do, as they would say it."""
+    match action:
+        case "continue":
+            return "Let Tangy go on by itself"
+        case "user":
+            return "Help it: do what it asks for"
+        case "teacher":
+            return "Say what Tangy should do"
+        case "expert":
+            return "Keep people away, call the expert, then clear"
+        case forgotten:
+            assert_never(forgotten)
+
+
+def option_words(question: Question, option: DrillOption) -> str:
+    """Say what an answer to a question stands for."""
+    if question.kind == "what":
+        return option.name if option.value else "Nothing is wrong"
+    if question.kind == "do":
+        return _done(option.value)
+    return option.value.capitalize()
+
+
+def asked_words(kind: DrillAsks) -> str:
+    """Ask a question of a round."""
+    match kind:
+        case "what":
+            return "What is it?"
+        case "do":
+            return "What do you do?"
+        case "clear":
+            return "May Tangy be cleared now?"
+        case forgotten:
+            assert_never(forgotten)
 
 
 def round_parts(table: Tabletop, shown: Round) -> list[tuple[str, str]]:
@@ -88,8 +145,8 @@ def device_words(devices: Sequence[tuple[str, str]]) -> str:
 def question_words(question: Question, shown: Round) -> str:
     """Return the question, with what is seen then where it is about clearing."""
     if question.kind == "clear" and shown.release is not None:
-        return f"{RELEASE.format(seen=shown.release.seen)} {question.text}"
-    return question.text
+        return f"{RELEASE.format(seen=shown.release.seen)} {asked_words(question.kind)}"
+    return asked_words(question.kind)
 
 
 def told_lines(table: Tabletop, shown: Round, answered: AnsweredRound) -> list[Told]:
@@ -129,8 +186,12 @@ def _named(table: Tabletop, code: str) -> str:
 
 
 def _action(recovery: str) -> str:
-    words = ACTIONS[recovery]
+    words = _done(recovery)
     return words[0].lower() + words[1:]
+
+
+def _done(recovery: str) -> str:
+    return next(action_words(action) for action in ACTIONS if action == recovery)
 
 
 def sheet_lines(sheet: Sheet, width: int = 80, before: Sheet | None = None) -> list[Told]:

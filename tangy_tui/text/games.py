@@ -148,6 +148,7 @@ STOPPED = "The game stopped"
 LEADS_HOME = "Esc leads home, where you can teach; {next} plays another game."
 GOES_ON, PLAYS_AGAIN = "{pause} goes on", "{next} plays again"
 TRIES_AGAIN = "{pause} tries again; esc leads home."
+NONE_YET = "No game was played yet: begin with `tangy play`."
 NOTHING_DECIDED = "Nothing has been decided yet."
 NO_UNSEEN_FAULT = "No fault that nobody has seen."
 

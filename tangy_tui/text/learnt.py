@@ -48,6 +48,9 @@ EFFECTS: Mapping[tuple[str, str], str] = {
 }
 """Words for the effects of a behaviour, by variable and value."""
 
+NOT_SHOWN = "Not shown to Tangy yet:"
+"""Stands before what `missing_words` gives: it is about what was shown, not about the room."""
+
 
 def effects_words(variables: Mapping[str, Iterable[str]]) -> str:
     """Describe the effects of a behaviour; several values of a variable are joined by "or"."""

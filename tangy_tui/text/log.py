@@ -10,10 +10,11 @@ from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted
-from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
+from tangy_tui.monitoring.session import Progress, Session
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ def session_lines(session: Session) -> Iterator[str]:
         where = f"game {numbers[fault.game]}, " if len(numbers) > 1 else ""
         yield (
             f"  {number}. {where}{clock(fault.seconds)}, step {fault.step}: {fault.name} "
-            f"({kind}{STATUS_WORDS[fault.status]})"
+            f"({kind}{status_words(fault.status)})"
         )
     for row in fault_rows(session.faults):
         if row["instances"]:
@@ -142,7 +143,7 @@ def session_lines(session: Session) -> Iterator[str]:
         for told in dict.fromkeys((fault.console, fault.advice) for fault in session.look_after):
             yield f"  {told[0]}"
             yield from (f"    - {step}" for step in told[1])
-    yield from session.notes
+    yield from map(note_words, session.notes)
 
 
 def limits_lines(games: Sequence[Game]) -> Iterator[str]:

@@ -2,6 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from tangy_tui.text.policies import left_out_words
+
+if TYPE_CHECKING:
+    from tangy_tui.monitoring.log_check import LogProblem
+
 from tangy_tui.text.numbers import counted
 
 
@@ -14,3 +22,8 @@ def log_checked(folder: str, events: int, problems: int) -> str:
 def accepted(losses: int) -> str:
     """Say what became of losses that staff accepted."""
     return "Accepted: Tangy no longer says so." if losses else "There is nothing to accept."
+
+
+def problem_words(problems: Iterable[LogProblem]) -> list[str]:
+    """Say what is wrong with a log, a sentence each."""
+    return [one if isinstance(one, str) else left_out_words(one) for one in problems]

@@ -12,7 +12,8 @@ from rich.text import Text
 
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN
 from tangy_profiles.reading import plain
-from tangy_tui.monitoring.games import NONE_YET, Game
+from tangy_tui.monitoring.games import Game
+from tangy_tui.text.games import NONE_YET
 from tangy_tui.text.log import HOW_TO_GO_ON
 from tangy_tui.text.times import local_time
 

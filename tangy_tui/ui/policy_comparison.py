@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tangy_tui.text import program as text
+from tangy_tui.text.policies import notice_words
 
 if TYPE_CHECKING:
     from tangy_tui.ui.program import Program
@@ -25,4 +26,4 @@ async def compare_policies(program: Program, first: str | None) -> None:
     )
     if found is not None:
         (a, of_a), (b, of_b) = found
-        await program.push_screen(CompareScreen(workspace, a, b, [*of_a, *of_b]))
+        await program.push_screen(CompareScreen(workspace, a, b, notice_words([*of_a, *of_b])))

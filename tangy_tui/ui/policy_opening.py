@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tangy_tui.text import program as text
+from tangy_tui.text.policies import notice_words
 
 if TYPE_CHECKING:
     from tangy_tui.learning.policy import Policy
@@ -33,7 +34,11 @@ async def load_policy(program: Program, wanted: str) -> Policy | None:
     if loaded is None:
         return None
     policy, notices = loaded
-    return policy if not notices or await _accept(program, policy, notices[0], wanted) else None
+    return (
+        policy
+        if not notices or await _accept(program, policy, notice_words(notices)[0], wanted)
+        else None
+    )
 
 
 async def _accept(program: Program, policy: Policy, notice: str, wanted: str) -> bool:

@@ -10,6 +10,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.text.learnt import changed_lines, grounds, learnt_lines, only_unfinished
+from tangy_tui.text.policies import notice_words
 from tangy_tui.text.settling import LEFT_OPEN, WHICH_IS_RIGHT, how_to_settle
 from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace, say_notices
@@ -41,7 +42,6 @@ def learn(
     """Learn a policy from the demonstrations, after settling what they disagree about."""
     from dataclasses import replace
 
-    from tangy_tui.learning.coverage import NOT_SHOWN
     from tangy_tui.learning.forest_cache import ForestCache
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policies import (
@@ -54,6 +54,7 @@ def learn(
     )
     from tangy_tui.learning.policy import FORESTS, learn_policy
     from tangy_tui.text.documents import policy_document
+    from tangy_tui.text.learnt import NOT_SHOWN
 
     if forest not in FORESTS:
         raise TangyError(f"--forest {plain(forest)}: {nearest(forest, FORESTS)}")
@@ -71,7 +72,7 @@ def learn(
             raise TangyError(only_unfinished(sum(len(d.steps) for d in left_out)))
         before = last_policy(workspace.store, workspace.activity.name)
         used, notices = without_strange_steps(workspace.activity, used)
-        say_notices(notices)
+        say_notices(notice_words(notices))
         policy = learn_policy(
             workspace.activity,
             used,
@@ -179,7 +180,7 @@ def _find(workspace: Workspace, name: str) -> Policy:
 
     need_policy(workspace.store, workspace.activity)
     found, notices = find_policy(workspace.store, workspace.activity, name)
-    say_notices(notices)
+    say_notices(notice_words(notices))
     return found
 
 
@@ -216,7 +217,7 @@ def _compare(workspace: Workspace, a: str, b: str, as_json: bool) -> None:
 
     first, notices = find_policy(workspace.store, workspace.activity, a)
     second, more = find_policy(workspace.store, workspace.activity, b)
-    say_notices([*notices, *more])
+    say_notices(notice_words([*notices, *more]))
     rows = compare(workspace.activity, first, second)
     if as_json:
         print_json(comparison_document(workspace, first, second, rows))

@@ -15,6 +15,7 @@ from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import SWITCHING_ON
 from tangy_tui.text.outcomes import faults_logged, score_lines
+from tangy_tui.text.tablet import screen_words
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import HandsFree, Listening, Mic, Mode, SpokenAnswers
 from tangy_tui.verbs.opening import full_screen, open_workspace
@@ -206,8 +207,8 @@ def live(
         from tangy_tui.app.switching_on import switched_on
 
         with switched_on(switched, stepped=bench and not plain_lines) as there:
-            if not as_json and (plain_lines or not bench) and there.link.tablet:
-                print(plain(there.link.tablet), file=sys.stderr)
+            if not as_json and (plain_lines or not bench) and there.link.screen:
+                print(plain(screen_words(there.link.screen, there.link.code)), file=sys.stderr)
             told_missing = missing_words(workspace.robot, workspace.activity)
             for told in [] if as_json or lines is not None else told_missing:
                 print(plain(told), file=sys.stderr)  # the lines of the set-up have told it

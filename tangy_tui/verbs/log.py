@@ -190,7 +190,7 @@ def known_activities_of(games: Sequence[Game], file: str) -> dict[str, Activity]
 
 
 def _say_unknown(games: Sequence[Game], known: dict[str, Activity]) -> None:
-    from tangy_tui.monitoring.session import unknown_words
+    from tangy_tui.text.sessions import unknown_words
 
     say_notices([unknown_words(name) for name in sorted({g.activity for g in games} - set(known))])
 

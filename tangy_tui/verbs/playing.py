@@ -11,6 +11,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.outcomes import fault_left, injecting_words
+from tangy_tui.text.policies import notice_words
 from tangy_tui.verbs.common import print_json, print_line
 from tangy_tui.verbs.opening import say_notices
 
@@ -78,9 +79,10 @@ def recall(workspace: Workspace, wanted: str, *, quiet: bool) -> Policy:
 
     learnt, notices = load_policy(workspace.store, workspace.activity, wanted)
     left = None if quiet else uncleared(workspace.store)
+    told = notice_words(notices)
     if left is not None:
-        notices = [*notices, fault_left(left.name)]
-    say_notices(notices)
+        told.append(fault_left(left.name))
+    say_notices(told)
     return learnt
 
 

@@ -81,7 +81,9 @@ def report_session(
 
         page.write(html, session_page(session, full=full), "--html")
     if as_json:
-        print_json(session.to_json())
+        from tangy_tui.text.sessions import session_document
+
+        print_json(session_document(session))
     elif html is not None:
         print_line(plain(report_in(html)))
     else:
@@ -204,8 +206,9 @@ def _read(data: Path | None, also: Sequence[Path] | None, activity: str) -> list
         TangyError: a folder that was named holds no log, or no game was played.
     """
     from tangy_profiles.log_file import FILE
-    from tangy_tui.monitoring.games import NONE_YET, read_games
+    from tangy_tui.monitoring.games import read_games
     from tangy_tui.monitoring.house import read_log
+    from tangy_tui.text.games import NONE_YET
     from tangy_tui.text.house import NOT_THERE
 
     logs = []

@@ -18,12 +18,13 @@ def store_check(data: Data = None, as_json: Json = False) -> None:
     from tangy_profiles.store import Store
     from tangy_tui.app.workspace import data_folder
     from tangy_tui.monitoring.log_check import log_problems
+    from tangy_tui.text.store import problem_words
 
     folder = data_folder(data)
     problems, events = [], 0
     try:
         with Store.open(folder, write=False) as store:
-            problems = list(dict.fromkeys([*store.notices, *log_problems(store)]))
+            problems = list(dict.fromkeys([*store.notices, *problem_words(log_problems(store))]))
             events = sum(store.kinds().values())
     except StoreError as error:
         problems.append(str(error))

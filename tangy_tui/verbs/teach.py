@@ -200,9 +200,8 @@ def _teach_by_lines(
 def _learn(workspace: Workspace) -> list[str]:
     """Learn from what was shown to its end, and say what was learnt."""
     from tangy_tui.app.training import learn
-    from tangy_tui.learning.coverage import NOT_SHOWN
     from tangy_tui.learning.library import read_library
-    from tangy_tui.text.learnt import learnt_lines
+    from tangy_tui.text.learnt import NOT_SHOWN, learnt_lines
 
     policy = learn(workspace)
     library = read_library(workspace.store, workspace.activity.name)

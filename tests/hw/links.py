@@ -51,7 +51,7 @@ class FakeLink:
         self.done: list[tuple[str, dict[str, Any]]] = []
         self.told: list[str] = []
         self.silent = ""
-        self.tablet = self.tablet_page = ""
+        self.screen = self.code = self.tablet_page = ""
         self.cards: dict[str, LaidCard] = {}
         self.faces: dict[str, str | None] = {}
         self.place = "front"

@@ -27,6 +27,7 @@ from tangy_tui.learning.policies import (
     GONE,
     Change,
     NoPolicy,
+    NotAsKept,
     changes,
     check_name,
     keep_policy,
@@ -34,6 +35,7 @@ from tangy_tui.learning.policies import (
     unused_name,
 )
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
+from tangy_tui.text.policies import notice_words
 from tests.shown import log_demonstration
 from tests.support.append_body import append_body
 
@@ -158,9 +160,8 @@ def test_another_version_that_votes_alike_is_said(
     versions = {**policy.versions, "scikit-learn": "0.1"}
     with_kept(store, {"digest": "other", "versions": versions})
     _, notices = load_policy(store, activity)
-    assert f"scikit-learn 0.1 -> {policy.versions['scikit-learn']}" in notices[0]
-    assert notices[1] == "It does the same everywhere; only the votes differ."
-    assert "tangy learn" in notices[-1]
+    moved = (("scikit-learn", "0.1", policy.versions["scikit-learn"]),)
+    assert notices == [NotAsKept(policy.name, moved, ())]
 
 
 def test_a_decision_that_changed_is_said_row_by_row(
@@ -172,8 +173,10 @@ def test_a_decision_that_changed_is_said_row_by_row(
     rows[0][3] = "juggle"
     with_kept(store, {"digest": "other", "rows": rows})
     _, notices = load_policy(store, activity)
-    assert "its demonstrations have changed since" in notices[0]
-    assert f"{' / '.join(where)}: was juggle, is now {was}." in notices
+    assert notices == [NotAsKept(policy.name, (), (Change(where, "juggle", was),))]
+    told = notice_words(notices)
+    assert "its demonstrations have changed since" in told[0]
+    assert f"{' / '.join(where)}: was juggle, is now {was}." in told
 
 
 def test_a_step_undone_after_learning_is_said(
@@ -184,7 +187,9 @@ def test_a_step_undone_after_learning_is_said(
         store, DemonstrationStepUndone, {"demonstration": shown[0].id, "step": len(shown[0].steps)}
     )
     _, notices = load_policy(store, activity)
-    assert "its demonstrations have changed since" in notices[0]
+    (notice,) = notices
+    assert isinstance(notice, NotAsKept)
+    assert notice.versions == ()
 
 
 def test_policies_are_compared_by_what_they_do(

@@ -21,7 +21,7 @@ from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
 from tangy_tui.monitoring.fault_table import ROWS, fault_rows
 from tangy_tui.monitoring.games import BROKEN_OFF, find_game, find_games, read_games
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted, read_replays
-from tangy_tui.monitoring.session import RESULTS, Session, read_session
+from tangy_tui.monitoring.session import RESULTS, Session, SessionNote, read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.log import MOST_TOLD, replay_lines, session_lines
 from tests.monitoring.conftest import Supervise
@@ -268,7 +268,7 @@ def test_a_game_whose_activity_is_gone_is_told_with_less(
 ) -> None:
     play(supervise())
     session = read_session(workspace.store, read_games(workspace.store), {}, workspace.names)
-    assert "There is no activity" in session.notes[0]
+    assert session.notes[0] == SessionNote("unknown activity", "bingo")
     assert session.games[0].steps == sum(row.instances for row in session.rows)
     assert [p.interactions for p in session.people] == [
         p.interactions for p in told(workspace).people
@@ -382,4 +382,4 @@ def test_what_was_brought_about_on_purpose_is_told_as_that(
     ]
     assert "*  STOP, by Ada." in "\n".join(replay_lines(replay, workspace.activity, str))
     session = read_session(workspace.store, [played], activities, {})
-    assert any("voice-dead@2" in note for note in session.notes)
+    assert any("voice-dead@2" in note.about for note in session.notes)

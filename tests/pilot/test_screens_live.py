@@ -21,6 +21,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import StopCommand
 from tangy_tui.text.live_games import LOOKS_ROUND
+from tangy_tui.text.tablet import screen_words
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.program import Program
@@ -81,11 +82,11 @@ async def test_staff_see_where_the_robot_is_and_where_it_goes(
 async def test_staff_see_where_tablets_open_the_chest_screen_and_by_which_code(
     run: Run, program: Program, link: HeldLink
 ) -> None:
-    link.tablet = "Chest screen: open http://10.0.0.5:8765/ on the tablet; the code is 1234-5678."
+    link.screen, link.code = "http://10.0.0.5:8765/", "1234-5678"
     link.tablet_page = "chest screen http://10.0.0.5:8765/ code 1234-5678"
     async with run(app=program, size=(80, 24)) as pilot:
         await paused_after(pilot, link, 1)
-        assert link.tablet in live(pilot).query_one(LogView).sentences
+        assert screen_words(link.screen, link.code) in live(pilot).query_one(LogView).sentences
         assert link.tablet_page in screen_text(pilot.app)  # however small the window is
 
 

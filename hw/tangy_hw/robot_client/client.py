@@ -167,13 +167,6 @@ class RobotLink:
     # ------------------------------------------------------------------------- what it says
 
     @property
-    def tablet(self) -> str:
-        """How a tablet becomes the chest screen, in a sentence; "" where that is no page."""
-        if not self.screen:
-            return ""
-        return f"Chest screen: open {self.screen} on the tablet; the code there is {self.code}."
-
-    @property
     def tablet_page(self) -> str:
         """The address of the chest screen and its code, as short as can be; "" as for `tablet`."""
         return f"chest screen {self.screen} code {self.code}" if self.screen else ""

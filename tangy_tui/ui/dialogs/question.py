@@ -21,9 +21,9 @@ from tangy_tui.text.questions import (
     OR_DID_YOU_MEAN,
     SAID_TOO_EARLY,
     TOO_EARLY,
-    WHICH,
     yes_words,
 )
+from tangy_tui.text.refusals import WHICH
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, yes_key_of

@@ -23,6 +23,8 @@ from tangy_tui.text.drills import (
     WAS_RIGHT,
     WELCOME,
     Told,
+    note_words,
+    option_words,
     question_words,
     round_parts,
     sheet_lines,
@@ -86,7 +88,8 @@ class DrillScreen(TangyScreen[None]):
         """Say what it is, and wait for a key."""
         page = self.query_one(Page)
         page.border_title = "Rehearse"
-        told = [self.drill.note, WELCOME, NO_HURRY]
+        note = self.drill.note
+        told = ["" if note is None else note_words(note), WELCOME, NO_HURRY]
         page.show(lambda width: [
             line for part in told if part for line in [*paragraph(part, width), PageLine()]
         ])  # fmt: skip
@@ -161,7 +164,7 @@ class DrillScreen(TangyScreen[None]):
         question, shown = self.drill.question, self.drill.round
         if question is None or shown is None:
             return
-        choices = tuple((choice.key, choice.words) for choice in question.choices)
+        choices = tuple((choice.key, option_words(question, choice)) for choice in question.choices)
         self._ask(question_words(question, shown), choices)
 
     def _show_told(self, shown: Round, told: Sequence[Told]) -> None:

@@ -57,6 +57,7 @@ from tangy_tui.text.control import (
 from tangy_tui.text.live_games import LOOKS_ROUND, MAY_MOVE, frozen_words
 from tangy_tui.text.live_news import seated_words
 from tangy_tui.text.missing_devices import missing_words
+from tangy_tui.text.tablet import screen_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
@@ -127,8 +128,8 @@ class LiveScreen(PlayScreen):
         workspace = self._workspace
         for told in missing_words(workspace.robot, workspace.activity):
             self._write(told, "text")
-        if self.world.link.tablet:
-            self._write(self.world.link.tablet, "text")
+        if (link := self.world.link).screen:
+            self._write(screen_words(link.screen, link.code), "text")
             # the log has no room in a small window, and the tablet may have to be opened again
             self.query_one(RoomView).border_subtitle = Content(self.world.link.tablet_page)
         self.set_interval(TRACK_SECONDS, self.track)

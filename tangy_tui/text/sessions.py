@@ -1,0 +1,50 @@
+"""What is said of a session of the log: the limits of its report, and how faults ended."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, assert_never
+
+from tangy_profiles.reading import plain
+
+if TYPE_CHECKING:
+    from tangy_tui.monitoring.fault import FaultStatus
+    from tangy_tui.monitoring.session import Session, SessionNote
+
+
+def status_words(status: FaultStatus) -> str:
+    """Say how a fault ended."""
+    match status:
+        case "open":
+            return "left open"
+        case "borne":
+            return "Tangy goes on with it"
+        case "over":
+            return "over"
+        case forgotten:
+            assert_never(forgotten)
+
+
+def note_words(note: SessionNote) -> str:
+    """Say which details a report lacks, or what of it was brought about."""
+    match note.kind:
+        case "unknown activity":
+            return unknown_words(note.about)
+        case "no times":
+            return "An older Tangy kept no times within a game: those games are drawn by steps."
+        case "brought about":
+            return f"Some of this was brought about: {note.about}."
+        case forgotten:
+            assert_never(forgotten)
+
+
+def unknown_words(activity: str) -> str:
+    """Say that an activity is unknown, and which details are missing for that reason."""
+    return plain(
+        f"The activity {activity!r} is not here any more. So the report leaves out what Tangy "
+        "said, and counts each behaviour that Tangy could carry out as a success."
+    )
+
+
+def session_document(session: Session) -> dict[str, Any]:
+    """Return a session as one JSON document, with its notes in words."""
+    return {**session.to_json(), "notes": [note_words(note) for note in session.notes]}
