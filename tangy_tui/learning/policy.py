@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import platform
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -217,6 +218,9 @@ class Forest(NamedTuple):
 Grow = Callable[[ForestSettings, tuple[tuple[Situation, str], ...], tuple[Situation, ...]], Forest]
 """Gives what a forest of these settings, learnt from these rows, answers in these situations."""
 
+MANY_CLASSES = "The number of unique classes is greater than 50% of the number of samples"
+"""Begins the one warning of scikit-learn that does not apply to behaviours."""
+
 
 @lru_cache(maxsize=256)
 def grown(
@@ -240,6 +244,9 @@ def grown(
         min_samples_leaf=settings.min_samples_leaf,
         random_state=settings.seed % 2**32,
     )
+    # After a short game most steps are of different behaviours. They are names, whatever their
+    # number, and scikit-learn's guess that numbers were meant would stand in staff's terminal.
+    warnings.filterwarnings("ignore", MANY_CLASSES, UserWarning)
     forest.fit(np.array([encode(s) for s, _ in rows]), [behaviour for _, behaviour in rows])
     shares = forest.predict_proba(np.array([encode(s) for s in situations]))
     behaviours = [str(name) for name in forest.classes_]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
@@ -187,3 +188,20 @@ async def test_who_waits_is_told_when_time_has_ended(stepped: bool) -> None:
             await time.sleep(100)
         with pytest.raises(DeviceError, match=r"time stands still .*the base is gone"):
             await time.sleep(1)  # and whoever comes later is not left waiting
+
+
+async def test_the_end_of_time_is_no_news_of_somebody_who_has_given_up() -> None:
+    clock = HandClock()
+    clock.free.clear()
+    told: list[str] = []
+    loop = asyncio.get_running_loop()
+    loop.set_exception_handler(lambda _, context: told.append(str(context["message"])))
+    time = ControlLoop(clock, lambda: False)
+    async with passing(time):
+        waiting = asyncio.create_task(time.sleep(100))
+        await turns()
+        waiting.cancel()
+        await asyncio.wait([waiting])
+    del time, waiting
+    gc.collect()
+    assert told == []

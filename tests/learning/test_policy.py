@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import warnings
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -257,3 +258,14 @@ def test_demonstrations_of_the_activity_as_it_was_are_refused_by_name(
 def test_a_situation_of_another_activity_is_no_key(covered: Policy) -> None:
     with pytest.raises(KeyError):
         covered.decide(Situation("arriving", "ANR", "hidden"))
+
+
+def test_a_short_game_of_many_behaviours_is_learnt_without_a_warning() -> None:
+    situations = tuple(Situation("stage", "AR", str(number)) for number in range(24))
+    rows = tuple((situation, f"behaviour {n}") for n, situation in enumerate(situations))
+    assert len(rows) > 20, "scikit-learn says nothing of fewer"
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        grown(ForestSettings(trees=2, seed=771), rows, situations)
+        warnings.warn("another", UserWarning, stacklevel=1)
+    assert [str(one.message) for one in warned] == ["another"]

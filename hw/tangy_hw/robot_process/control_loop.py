@@ -53,6 +53,7 @@ class ControlLoop:
             come, self._next = self._next, None
             if come is not None and not come.done():
                 come.set_exception(DeviceError(f"The robot's time stands still ({error!r})."))
+                come.exception()  # read here: everybody who waited may have given up by now
             raise
 
     async def _run(self) -> None:
