@@ -218,7 +218,7 @@ class Forest(NamedTuple):
 Grow = Callable[[ForestSettings, tuple[tuple[Situation, str], ...], tuple[Situation, ...]], Forest]
 """Gives what a forest of these settings, learnt from these rows, answers in these situations."""
 
-MANY_CLASSES = "The number of unique classes is greater than 50% of the number of samples"
+MANY_CLASSES = r"The number of unique classes is greater than \d+% of the number of samples"
 """Begins the one warning of scikit-learn that does not apply to behaviours."""
 
 

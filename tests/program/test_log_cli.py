@@ -182,8 +182,8 @@ def test_a_game_of_an_activity_that_is_gone_is_still_listed(
         append_body(store, "game begun", {**begun, "game": "feedfacefeed", "activity": "whist"})
     assert "whist" in tangy("log", "list", "--data", played).stdout
     done = tangy("log", "show", "last", "--data", played)
-    assert (done.returncode, "There is no activity 'whist' here" in done.stderr) == (0, True)
-    assert "There is no activity 'whist'" in tangy("log", "report", "--data", played).stdout
+    assert (done.returncode, "The activity 'whist' is not here" in done.stderr) == (0, True)
+    assert "The activity 'whist' is not here" in tangy("log", "report", "--data", played).stdout
     other = Path(__file__).parent.parent / "lanterns.toml"
     done = tangy("log", "report", "--activity", other, "--data", played)
     assert (done.returncode, "played was whist" in done.stderr) == (2, True)
