@@ -16,6 +16,7 @@ from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.terminal import too_small
 from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import draw
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -25,10 +26,9 @@ LOW_OR_TALL = [(0, "-low"), (22, "-tall")]
 ResultT = TypeVar("ResultT")
 
 
-class Cover(Widget, can_focus=True):
+class Cover(Inked, can_focus=True):
     """Covers a screen that has too little room with one sentence, and takes the keys meanwhile."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     Cover { layer: cover; dock: top; width: 100%; height: 100%; background: $background; }
     """
@@ -92,6 +92,7 @@ class TangyScreen(Screen[ResultT]):
     nothing takes them afterwards.
     """
 
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     TangyScreen { layers: default cover; overflow: hidden hidden; }
     """
@@ -132,6 +133,7 @@ class TangyScreen(Screen[ResultT]):
 class Dialog(ModalScreen[ResultT]):
     """A question or a message over a screen. It is answered once; STOP answers it with `no`."""
 
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     Dialog { layers: default cover; align: center middle; overflow: hidden hidden; }
     Dialog > .box {

@@ -11,14 +11,13 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.strip import Strip
-from textual.widget import Widget
 
 from tangy_tui.text.program import TAGLINE
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import key_line
-from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import Row, draw, fit, shorten
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
@@ -59,12 +58,11 @@ States = Callable[[], Mapping[str, str]]
 """Gives a short line on how far each choice is, by its id: {"teach": "2 demonstrations"}."""
 
 
-class Menu(Widget, can_focus=True):
+class Menu(Inked, can_focus=True):
     """The choices, one line each, with a line between them where there is room."""
 
     ALLOW_MAXIMIZE = False  # there is nothing beside them
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     Menu { height: 1fr; padding: 1 2 0 2; }
     """

@@ -11,10 +11,9 @@ from rich.style import Style
 from textual import events
 from textual.geometry import Region
 from textual.strip import Strip
-from textual.widget import Widget
 
-from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.rows import draw, ink
+from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.rows import draw
 from tangy_tui.ui.widgets.wrapping import wrap
 
 if TYPE_CHECKING:
@@ -48,10 +47,9 @@ class Pixels(Protocol):
         ...
 
 
-class BlockPicture(Widget, can_focus=True):
+class BlockPicture(Inked, can_focus=True):
     """Shows a picture that was made to `fit`, in the middle; only cells that changed are drawn."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     HELP: ClassVar[str] = ""
 
     def __init__(self, title: str, help: str, *, id: str | None = None) -> None:
@@ -135,13 +133,13 @@ class BlockPicture(Widget, can_focus=True):
             text = lines[n] if 0 <= n < len(lines) else ""
             return draw(self, ((text.center(width), "dim"),), width)
         left, top = self._offset(cells)
-        blank = ink(self, "blank")
+        blank = self.ink("blank")
         if not 0 <= y - top < len(cells):
             return Strip.blank(width, blank)
         row = cells[y - top]
         kind: Any = getattr(self.app, "kind", None)
         if self.app.native_ansi_color or (kind is not None and kind.ascii):
-            shades = Segment(_shades(row), ink(self, "text"))
+            shades = Segment(_shades(row), self.ink("text"))
             strip = Strip([Segment(" " * left, blank), shades])
         else:
             strip = Strip([Segment(" " * left, blank), *_blocks(row)])

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
 
 from textual.strip import Strip
-from textual.widget import Widget
 
 from tangy_profiles.cards import Column, Deck
-from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import Row, Span, draw
 
 LETTER = "B "
@@ -17,10 +15,9 @@ CELL = 3
 """Columns of the screen that a number takes."""
 
 
-class CallBoard(Widget):
+class CallBoard(Inked):
     """One line for each column; where not all numbers fit, only those that were called."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     CallBoard { height: auto; }
     """

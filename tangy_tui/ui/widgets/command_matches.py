@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import ClassVar
 
 from rich.cells import cell_len
 from textual.strip import Strip
 from textual.suggester import Suggester
-from textual.widget import Widget
 
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 Sayable = Callable[[], tuple[str, ...]]
@@ -39,10 +37,9 @@ def goes_on(value: str, match: str) -> bool:
     return len(match) > len(value) and match.lower().startswith(value.lower())
 
 
-class CommandMatches(Widget):
+class CommandMatches(Inked):
     """One line with the commands that fit what was typed so far, or with the keys there are."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     CommandMatches { height: 1; padding: 0 0 0 2; }
     """

@@ -6,15 +6,13 @@ While Tangy asks somebody for help, its words stand there in full, whatever room
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
 
 from rich.cells import cell_len
 from textual import events
 from textual.strip import Strip
-from textual.widget import Widget
 
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import draw, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -25,13 +23,12 @@ MOST_LINES = 4
 """Lines from which the screen gives no more room to the banner."""
 
 
-class FaultBanner(Widget):
+class FaultBanner(Inked):
     """Says what is wrong and what is done about it, with the key that says it was seen.
 
     The screen that it is on has the class `-banner-2` while it has two lines, and so on.
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     FaultBanner { height: 1; padding: 0 1; background: $panel; display: none; }
     FaultBanner.-there { display: block; }

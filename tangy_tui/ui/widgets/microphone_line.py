@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import ClassVar, Protocol
+from typing import Protocol
 
 from rich.cells import cell_len
 from textual.strip import Strip
 from textual.timer import Timer
-from textual.widget import Widget
 
 from tangy_hw.audio.meter import SoundTrouble
 from tangy_tui.text.microphone import trouble_words
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 HERTZ = 10
@@ -87,14 +86,13 @@ class Microphone(Protocol):
         """How loud it is."""
 
 
-class MicrophoneLine(Widget):
+class MicrophoneLine(Inked):
     """One line; while the microphone is not open, it costs nothing.
 
     `look` is to be called when state or words may have changed. Level and trouble are looked at
     ten times a second at most, and drawn when they are others.
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     MicrophoneLine { height: 1; padding: 0 1; background: $panel; }
     """

@@ -7,22 +7,20 @@ robot that walks at ten frames a second costs some hundred bytes a frame, and on
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import ClassVar
 
 from textual import events
 from textual.geometry import Region
 from textual.message import Message
 from textual.strip import Strip
 from textual.timer import Timer
-from textual.widget import Widget
 
 from tangy_profiles.person import Person
 from tangy_profiles.room import Point, Room
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.type_ahead_guard import Clock, clock_of
+from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.room_drawing import draw_room
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPlan, plan
 from tangy_tui.ui.widgets.rows import Row, draw
@@ -37,14 +35,13 @@ Mark = tuple[Point, str, str]
 EMPTY = Scene(FRONT, (), {}, (), None)
 
 
-class RoomView(Widget):
+class RoomView(Inked):
     """Robot and people in the activity room, seen from behind the people's backs.
 
     `show` draws a scene at once; `drive` lets the robot walk to where it is going, and `hold`
     keeps it where it is seen, whatever is shown meanwhile.
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     RoomView { width: 1fr; height: 1fr; min-height: 7; }
     """

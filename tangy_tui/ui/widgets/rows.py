@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import ClassVar
 
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
-from rich.style import Style
 from textual.geometry import Region, Size
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
-from textual.widget import Widget
 
-from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.inks import Inked
 
 Span = tuple[str, str]
 """A piece of text and the ink it is written in."""
 
 Row = tuple[Span, ...]
 """One line."""
-
-
-SHAPES = ("curve",)
-"""Inks of text that is a picture."""
 
 
 def fit(text: str, width: int) -> str:
@@ -42,39 +35,20 @@ def shorten(text: str, width: int) -> str:
     return set_cell_size(text, width - 1).rstrip() + "…" if width > 0 else ""
 
 
-def ink(widget: Widget, name: str, over: str = "") -> Style:
-    """Return the style of an ink on a widget, on a row that is marked `over` (cursor, now)."""
-    if name == "blank":  # a foreground would be written to the terminal for nothing
-        style = Style(bgcolor=ink(widget, "text").bgcolor)
-    else:
-        style = widget.get_component_rich_style(f"ink--{name}")
-    if over and name in SHAPES:
-        over = "" if widget.app.native_ansi_color else over  # a picture is not to be reversed
-    if over:
-        mark = widget.get_component_rich_style(f"ink--{over}", partial=True)
-        style += Style(
-            bgcolor=mark.bgcolor,
-            bold=mark.bold,
-            reverse=mark.reverse,
-            underline=mark.underline,
-        )
-    return style
-
-
-def draw(widget: Widget, row: Row, width: int, over: str = "") -> Strip:
+def draw(widget: Inked, row: Row, width: int, over: str = "") -> Strip:
     """Draw one line over the whole width of a widget."""
     segments = [
-        Segment(text, ink(widget, "blank" if text.isspace() else name, over))
+        Segment(text, widget.ink("blank" if text.isspace() else name, over))
         for text, name in row
         if text
     ]
-    return Strip(segments).adjust_cell_length(width, ink(widget, "blank", over))
+    return Strip(segments).adjust_cell_length(width, widget.ink("blank", over))
 
 
 class Rows:
     """The lines of one scrolled widget; puts on the screen only those that changed."""
 
-    def __init__(self, widget: ScrollView) -> None:
+    def __init__(self, widget: RowView) -> None:
         self._widget = widget
         self._rows: list[Row] = []
         self._marks: dict[int, str] = {}
@@ -155,10 +129,9 @@ class Rows:
             self._widget.scroll_to(y=index - height + 1, animate=False, force=True)
 
 
-class RowView(ScrollView):
+class RowView(ScrollView, Inked):
     """A scrolled widget that is made of rows: `_rows.put` shows them, and draws what changed."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     RowView { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
     """

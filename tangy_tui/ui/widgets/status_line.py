@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from rich.cells import cell_len
 from textual.strip import Strip
-from textual.widget import Widget
 
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 STOP = "^x STOP"
@@ -37,10 +35,9 @@ class Status:
     seen: str = ""
 
 
-class StatusLine(Widget):
+class StatusLine(Inked):
     """One line, at the top of every screen."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
     StatusLine { height: 1; dock: top; background: $panel; padding: 0 1; }
     """
