@@ -157,7 +157,9 @@ class GameStep(EventRecord):
 class GameEnding(EventRecord):
     """A game ended; `stopped` says why before its end, if it was.
 
-    `pauses` is how often the robot waited for late data, and `paused_seconds` for how long.
+    `pauses` is how often the robot waited for late data, and `paused_seconds` for how long. `looks`
+    is how often it looked at what the person beside it has, and `looks_wrong` how many of these
+    looks others overruled.
     """
 
     game: str
@@ -165,6 +167,8 @@ class GameEnding(EventRecord):
     stopped: str | None
     pauses: Sparse[Count] = 0
     paused_seconds: Sparse[float] = 0.0
+    looks: Sparse[Count] = 0
+    looks_wrong: Sparse[Count] = 0
 
 
 Criticality = Literal["critical", "non-critical"]

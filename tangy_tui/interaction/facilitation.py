@@ -34,6 +34,7 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.interaction.observation import Observation
 from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.interaction.reading_error import learnt_error
 from tangy_tui.interaction.refusal import refused
 from tangy_tui.interaction.uncertainty import remedy_for, which_of, why_not
 from tangy_tui.language.commands import Learnt, Phrasebook
@@ -46,7 +47,6 @@ from tangy_tui.world import World
 _LOG = logging.getLogger(__name__)
 
 NOT_DONE = "(it could not be carried out)"
-
 MOST_STEPS = 1_000
 """A game longer than this goes round in circles: all 75 numbers need about 120 steps."""
 
@@ -102,7 +102,8 @@ class Facilitation:
         """Is asked at each step about the very thing that would be done; on a no nothing is."""
         self.contradicts: Contradicts = lambda action, state, outcome, after: False
         """Is asked what to look at again; whoever looks behaviours over knows."""
-        self.observation = Observation(world)
+        error = learnt_error(store, world.activity.name, world.played_in)
+        self.observation = Observation(world, error)
         """Observes the state, and looks again where one look is not to be believed."""
         self.changes = GameChanges(world, store)
         self._answers = answers
@@ -392,7 +393,8 @@ class Facilitation:
         self.over = True
         count, seconds = self.world.pauses
         ending = GameEnding(
-            game=self._game, steps=self.steps, stopped=reason, pauses=count, paused_seconds=seconds
-        )
+            game=self._game, steps=self.steps, stopped=reason, pauses=count, paused_seconds=seconds,
+            looks=self.observation.counted.looks, looks_wrong=self.observation.counted.wrong,
+        )  # fmt: skip
         self._store.append(ending)
         return GameEnded(self._game, self.steps, reason, (count, seconds))

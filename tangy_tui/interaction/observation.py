@@ -9,29 +9,46 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from typing import Protocol, runtime_checkable
 
 from tangy_profiles.state import ActivityState
+from tangy_tui.interaction.reading_error import FusedLook, ReadingError
 from tangy_tui.world import World
 
-ACQUITS, CONVINCES = 2, 4
-"""Looks that have to agree: on what was to be expected, and on what contradicts it. With 5% of all
-looks late, two agreeing ones contradict falsely some 20 times in 500 games, three once, and four
-never did in 1,000."""
+ACQUITS = 2
+"""Looks that have to agree on what was to be expected. How many have to agree on what contradicts
+it follows from how often a look is wrong (`ReadingError.needed`): four if 5% of all looks are."""
 
-MOST_LOOKS = 6
-"""So many looks are taken at most; a look at a card takes a robot about a second."""
+MORE_LOOKS = 2
+"""So many looks are taken at most beyond those that have to agree; each takes about a second."""
+
+
+@runtime_checkable
+class FusesLooks(Protocol):
+    """A world that fuses looks at cards itself: how many must agree, and what became of them."""
+
+    agreeing: int
+    fused_looks: tuple[int, int]
 
 
 class Observation:
     """Observes the state of a game. `begin` each game."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, error: ReadingError | None = None) -> None:
+        """Take the world, and how often looks were wrong so far."""
         self._world = world
         self._last: ActivityState | None = None
+        self.error = error or ReadingError()
+        self.fused: FusedLook | None = None
+        """What the last state that contradicted the expectation rests on; None: on one look."""
+        self.counted = ReadingError()
+        """The looks of this game alone."""
+        self._fused_before = (0, 0)
 
     def begin(self, state: ActivityState) -> None:
         """Take note of how a game begins."""
-        self._last = state
+        self._last, self.fused = state, None
+        self.counted = ReadingError()
 
     def before(self, doubtful: Callable[[ActivityState], bool]) -> ActivityState:
         """Return the state before a behaviour; it should be as it was after the last one.
@@ -54,9 +71,12 @@ class Observation:
         Args:
             contradicts: says of a state that it is not what was to be expected.
         """
-        state = self._world.observe()
+        state, self.fused = self._world.observe(), None
+        self._count_fused()
         if contradicts(state):
             state = self._again(state, contradicts, self._look_again)
+        else:
+            self._count(state, 1, 1)
         self._last = state
         return state
 
@@ -74,13 +94,35 @@ class Observation:
         look: Callable[[], ActivityState],
     ) -> ActivityState:
         """Look again until looks agree, or for as often as is sensible."""
-        seen = Counter((state,))
-        for _ in range(MOST_LOOKS - 1):
+        seen, needed = Counter((state,)), self.error.needed
+        for _ in range(needed + MORE_LOOKS - 1):
             state = look()
             seen[state] += 1
-            if seen[state] >= (CONVINCES if contradicts(state) else ACQUITS):
-                return state
-        return seen.most_common(1)[0][0]
+            if seen[state] >= (needed if contradicts(state) else ACQUITS):
+                break
+        else:
+            state = seen.most_common(1)[0][0]
+        if look == self._look_again:
+            self.fused = FusedLook(seen[state], seen.total(), self.error.rate)
+            self._count(state, seen[state], seen.total())
+        return state
+
+    def _count_fused(self) -> None:
+        """Count the looks that the world has fused since, and tell it how many have to agree."""
+        world = self._world
+        if isinstance(world, FusesLooks):
+            (taken, wrong), before = world.fused_looks, self._fused_before
+            taken, wrong = taken - before[0], wrong - before[1]
+            self._fused_before = world.fused_looks
+            for counted in (self.error, self.counted):
+                counted.add(taken - wrong, taken)
+            world.agreeing = self.error.needed
+
+    def _count(self, state: ActivityState, agreeing: int, taken: int) -> None:
+        """Count looks at what a person has; of others nothing can be misread."""
+        if state.attended is not None and state.place == state.attended:
+            self.error.add(agreeing, taken)
+            self.counted.add(agreeing, taken)
 
     def _look_again(self) -> ActivityState:
         """Take another look; a world that has to do something for that says how."""

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, Evidence
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact
 from tangy_profiles.robot import Robot
+from tangy_tui.interaction.reading_error import FusedLook
 from tangy_tui.learning.effects import Mismatch
 
 STATES = {OK: "it works", STALE: "no data", ERROR: "failed", WARN: "it warns"}
@@ -18,6 +19,7 @@ def evidence_words(
     mismatches: Sequence[Mismatch],
     robot: Robot,
     conditions: Iterable[Condition] = (),
+    looks: FusedLook | None = None,
 ) -> str:
     """Write evidence as one line: what was measured, and what was expected and seen.
 
@@ -26,6 +28,7 @@ def evidence_words(
         mismatches: what was not as expected.
         robot: its profile.
         conditions: by which the evidence was recognised; their limits are said beside it.
+        looks: how many looks the mismatches rest on, and how often one is wrong.
     """
     limits = {condition.key: condition.limit for condition in conditions}
     parts: list[str] = []
@@ -47,7 +50,12 @@ def evidence_words(
             measure = device.facts.get(fact)
             measured = measure.says if measure is not None else fact.replace("_", " ")
             parts.append(f"{device.label}: {measured}: {written(value)}{limit}")
-    return "; ".join([*parts, *map(mismatch_words, mismatches)])
+    told = [*parts, *map(mismatch_words, mismatches)]
+    if looks is not None:
+        often = max(2, round(1 / looks.rate))
+        agree = f"{looks.agreeing} of {looks.taken} looks agree"
+        told.append(f"{agree}, and one look is wrong about 1 in {often} times")
+    return "; ".join(told)
 
 
 def mismatch_words(mismatch: Mismatch) -> str:

@@ -119,7 +119,8 @@ class Recovery:
         rule = diagnosis.rule
         conditions = rule.matched(diagnosis.evidence) or ()
         seen = {k: v for k, v in diagnosis.evidence.items() if k not in diagnosis.beside}
-        why = evidence_words(seen, diagnosis.mismatches, self._robot, conditions)
+        looks = self._game.observation.fused if diagnosis.mismatches else None
+        why = evidence_words(seen, diagnosis.mismatches, self._robot, conditions, looks)
         fault = Fault(
             id=uuid4().hex[:12],
             game=self._game.game,

@@ -9,7 +9,8 @@ import pytest
 
 from tangy_profiles.state import ActivityState, Situation, UserState
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.observation import MOST_LOOKS, Observation
+from tangy_tui.interaction.observation import MORE_LOOKS, Observation
+from tangy_tui.interaction.reading_error import ReadingError
 from tangy_tui.learning.policy import Policy
 from tangy_tui.world import World
 from tests.support.games import codes, ended, moves, play
@@ -66,7 +67,7 @@ def test_what_contradicts_is_seen_again_before_it_counts(
 
 def test_looks_that_never_agree_come_to_an_end() -> None:
     _, taken = after(*(state(f"never {number}") for number in range(20)))
-    assert taken == MOST_LOOKS
+    assert taken == ReadingError().needed + MORE_LOOKS
 
 
 @pytest.mark.parametrize("odd", ODD)

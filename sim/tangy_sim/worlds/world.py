@@ -27,8 +27,8 @@ from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respon
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.users import SimulatedUser, UserModel, load_users, waiting_calls, waiting_time
 
-AGREEING, MOST_LOOKS = 3, 5
-"""Looks at a card that agree before it counts as read, and looks that are taken at most."""
+AGREEING, MORE_LOOKS = 3, 2
+"""Looks at a card that have to agree before it counts as read, and those beyond them at most."""
 
 
 class SimulatedWorld(PlannedGame):
@@ -38,6 +38,11 @@ class SimulatedWorld(PlannedGame):
     by id, and `order` is that of the numbers of this game: who watches a simulation sees both, the
     robot does not.
     """
+
+    agreeing = AGREEING
+    """Looks at a card that have to agree before it counts as read."""
+    fused_looks = (0, 0)
+    """Looks that were taken at cards, and how many of them the others overruled."""
 
     played_in: GameWorld = SIMULATED
 
@@ -301,12 +306,16 @@ class SimulatedWorld(PlannedGame):
     def _look_at_card(self) -> None:
         """Read the card beside the robot until looks agree: one may be late, or misread."""
         looks: Counter[str | None] = Counter()
-        for _ in range(MOST_LOOKS):
+        for _ in range(self.agreeing + MORE_LOOKS):
             self.read_card()
             looks[self.tracker.seen] += 1
-            if looks[self.tracker.seen] == AGREEING:
-                return
-        self.tracker.seen = looks.most_common(1)[0][0]
+            if looks[self.tracker.seen] == self.agreeing:
+                break
+        else:
+            self.tracker.seen = looks.most_common(1)[0][0]
+        taken, wrong = self.fused_looks
+        wrong += looks.total() - looks[self.tracker.seen]
+        self.fused_looks = (taken + looks.total(), wrong)
 
     def read_card(self) -> None:
         """Take one look at the card beside the robot."""
