@@ -208,6 +208,8 @@ def _document(pieces: Sequence[Mapping[str, Any]], users: int) -> dict[str, Any]
         "false_alarms": sum(fault["of"] is None for fault in faults),
         "asked": sum(game["asked"] for game in games),
         "kinds": _kinds([one for one in induced if one["could_show"]]),
+        "finished": sum(game["ended"] == comparison.TO_ITS_END for game in games),
+        "stopped": [game["ended"] for game in games if game["ended"] != comparison.TO_ITS_END],
         "ended": dict(Counter(game["ended"] for game in games).most_common()),
         "each_game": games,
     }

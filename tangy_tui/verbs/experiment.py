@@ -143,6 +143,7 @@ def _run(
         page.write(report, page_of(document))
     if as_json:
         print_json({**document, "compared": [asdict(row) for row in compare(document)]})
+        _end(document)
         return
     for row in compare(document):
         print(f"{row.what} ({row.source})\n  paper: {row.paper}\n  here:  {row.here}")
@@ -151,6 +152,13 @@ def _run(
         print(f"({name}: {words}.)")
     if report is not None:
         print(plain(report_in(report)))
+    _end(document)
+
+
+def _end(document: dict[str, Any]) -> None:
+    """Let a script know by the exit status that games did not come to their end."""
+    if document.get("stopped"):
+        raise typer.Exit(1)
 
 
 @contextmanager

@@ -101,6 +101,15 @@ def live(
             "them. What is not said it learns when it first sees a card there. Repeatable.",
         ),
     ] = None,
+    load: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=64,
+            help="Keep so many processes busy beside a bench game, to try it on a machine that is "
+            "short of time.",
+        ),
+    ] = 0,
     mic: Mic = None,
     hands_free: HandsFree = False,
     spoken_answers: SpokenAnswers = False,
@@ -137,6 +146,8 @@ def live(
     if bench and (camera or requests or table or card):
         options = "--camera, --requests, --table, --card"
         raise TangyError(f"{options}: the bench brings its own; leave them out.")
+    if load and not bench:
+        raise TangyError("--load: only a bench game is played on a busy machine: add --bench.")
     faults = _listed(inject or [])
     listens = mic == "-" and not (headless or as_json)
     sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
@@ -145,7 +156,9 @@ def live(
     screen = not (headless or as_json or plain_lines) and full_screen()
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens in a live game on the screen; there is none here.")
-    with open_workspace(data, activity, users, robot=robot) as workspace:
+    from tangy_tui.app.machine_load import machine_load
+
+    with machine_load(load), open_workspace(data, activity, users, robot=robot) as workspace:
         need_policy(workspace.store, workspace.activity, policy)
         world = BENCH if bench else LIVE
         past = past_game(workspace, world, resume=resume, discard=discard, asks=screen)

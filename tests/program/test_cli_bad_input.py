@@ -39,6 +39,7 @@ Tangy = Callable[..., CompletedProcess[str]]
         (("people", "rename", "user1", "a\x1b[2Jb"), "cannot be shown"),
         (("people", "rename", "user1", "x" * 41), "at most 40"),
         (("live", "--bench", "--camera", "camera=0"), "the bench brings its own"),
+        (("live", "--load", "2"), "add --bench"),
     ],
 )
 def test_bad_input_is_status_two_and_one_sentence(
