@@ -172,6 +172,15 @@ class Detector:
         unseen = acted.outcome.response is None
         return mends and unseen and any(one.variable == OWED_BY_PEOPLE[0] for one in found)
 
+    def _went_unseen(self, acted: Acted) -> bool:
+        """Say whether a person was asked to mend what could be seen, and then could not be."""
+        person, unread = acted.state.attended, self.activity.unread
+        if acted.action.behaviour.effect not in CORRECTS or person is None:
+            return False
+        before, after = acted.state.user(person).activity, acted.after.user(person).activity
+        beside = acted.after.place == person == acted.after.attended
+        return acted.outcome.completed and beside and before != unread == after
+
     def take_in(self, now: ActivityState) -> None:
         """Begin anew from a state that staff, or a change of the game's plan, brought about."""
         self._last = now
@@ -225,7 +234,9 @@ class Detector:
                 self._refusals.pop(person, None)
             else:
                 self.refused(person)
-        elif not explained and refused(acted.action.behaviour, before, outcome, after):
+        elif not explained and (
+            refused(acted.action.behaviour, before, outcome, after) or self._went_unseen(acted)
+        ):
             self.refused(str(before.attended))
         alike = after._replace(step=before.step, closed=before.closed) == before
         moved_on = before.attended is None and bool(outcome.numbers)  # a number was called

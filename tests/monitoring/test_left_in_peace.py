@@ -55,6 +55,17 @@ def test_nobody_is_asked_in_vain_more_than_three_times_in_a_visit(
     assert ended(events).stopped is None
 
 
+@pytest.mark.parametrize("seed", range(1, 13))
+def test_what_went_out_of_sight_after_a_request_counts_as_one_of_the_three(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
+    events = play(supervise("never-complies@8", "card-out-of-sight~.3", seed=seed))
+    visits = Counter(visit for visit, _ in in_vain(events))
+    assert max(visits.values(), default=0) <= MOST
+    assert ended(events).stopped is None
+
+
 @pytest.mark.parametrize("beside", ["arm-failed@3", "requests-silent@3", "voice-dead@3"])
 def test_a_fault_that_hides_no_card_lets_nobody_be_asked_more_often(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, beside: str
