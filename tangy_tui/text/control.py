@@ -92,7 +92,7 @@ BY_KEYS: dict[NoteKind, str] = {
     "paused": "Paused: {pause} goes on.",
     "stopped": "STOP. Press {pause} to go on.",
     "stopped first": "Not now: Tangy was stopped. Press {pause} to go on first.",
-    "asks first": "Tangy is asking: answer it first ({command} to type); esc gives the game up.",
+    "asks first": "Tangy is asking: answer first ({command} to type); esc gives the game up.",
 }
 """What is said otherwise where staff have keys, and type only to answer."""
 
@@ -167,7 +167,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "stopped first":
             return "Not now: Tangy was stopped. Type first: go on."
         case "asks first":
-            return "Tangy asks first: answer, or type: give back."
+            return "Tangy is asking: answer first, or type: give back."
         case "halted first":
             return "Not now: a fault halts Tangy. Type: what."
         case "no game":

@@ -60,7 +60,7 @@ def items(listed: PhraseList) -> Iterator[Item]:
         texts += [f"your own: {', '.join(own)}"] if own else []
         first = ways.phrases[0].split() if ways.phrases else []
         aloud = ", ".join(phones[word] for word in first) if phones.keys() >= set(first) else ""
-        yield Item("What can be said for what", ways.behaviour, tuple(texts), aloud)
+        yield Item("What to say", ways.question, tuple(texts), aloud)
     for called in listed.people:
         texts = [", ".join(called.ways), said_words(called.said)]
         aloud, id = called.said.phones, called.person.id

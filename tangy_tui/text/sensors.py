@@ -152,8 +152,8 @@ class Teller:
         if reading is None:
             self._since.pop(device.name, None)
             if self._live:
-                return Told(device, "", ABSENT, "The robot's file names no driver for it.")
-            return Told(device, "", SIMULATED, "Nothing to be seen until a game goes on.")
+                return Told(device, "", ABSENT, "No driver in the robot file.")
+            return Told(device, "", SIMULATED, "No data until a game runs.")
         code, now = state_of(device, reading), self._clock()
         before, since = self._since.get(device.name, ("", now))
         if code != before:

@@ -36,8 +36,8 @@ class ActionsProvider(Provider):
     """Gives the palette the actions of the screen, and the program's commands without a key."""
 
     async def discover(self) -> Hits:
-        """Give all of them, in the order of the keymap."""
-        for entry in self._entries():
+        """Give all of them in the order of the keymap, the keys that only edit a line last."""
+        for entry in sorted(self._entries(), key=lambda entry: not entry.word):
             yield DiscoveryHit(_line(Content(entry.name), entry), entry.run, text=entry.name)
 
     async def search(self, query: str) -> Hits:

@@ -74,13 +74,14 @@ class TeachingPicture:
         self.tour: Tour | None = None
         """The tour, while a new teacher is shown around."""
 
-    def tell(self, event: TeachingEvent) -> None:
-        """Show what followed from a command."""
+    def tell(self, event: TeachingEvent, *, asked: bool) -> None:
+        """Show what followed from a command; a remark that is `asked` about stands there alone."""
         match event:
             case Executed():
                 self.step(event)
             case Contradicted() | Overlooked() | WrongPerson() | EndedEarly() | NewWording():
-                self.remark(event)
+                if not asked:
+                    self.remark(event)
             case Settled():
                 self._log.write(settled_words(event, self._teaching.activity), "dim")
             case Announced(arranged):

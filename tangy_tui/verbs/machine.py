@@ -37,9 +37,7 @@ def doctor(
     robot: Annotated[
         str | None, typer.Option(help="Try this robot's devices, too: its name, or its TOML.")
     ] = None,
-    logs: Annotated[
-        bool, typer.Option("--logs", help="Say where each process writes down what it does.")
-    ] = False,
+    logs: Annotated[bool, typer.Option("--logs", help="Show where each process logs.")] = False,
     activity: ActivityName = "",
     seed: Seed = None,
     data: Data = None,

@@ -133,7 +133,7 @@ async def test_a_device_says_where_its_data_comes_from_and_one_without_a_driver_
         pilot.type("down")
         await shown(pilot, "from the robot process")
         pilot.type("end")
-        await shown(pilot, "names no driver for it")
+        await shown(pilot, "No driver in the robot file")
 
 
 async def test_v_shows_what_its_camera_sees(

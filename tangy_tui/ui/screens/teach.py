@@ -32,13 +32,7 @@ from tangy_tui.learning.teaching_events import (
     Undo,
 )
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.learning.verification import (
-    Asked,
-    NotUnderstood,
-    Offered,
-    Refused,
-    Rejected,
-)
+from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
 from tangy_tui.text import teaching as text
 from tangy_tui.text.questions import REJECTED, not_understood_words
 from tangy_tui.text.refusals import refused_words
@@ -365,21 +359,27 @@ class TeachScreen(TangyScreen[bool]):
                     speaker_of(self.app).hush()
                 case Begun():
                     self._listener.refresh()
-            self._picture.tell(event)
+            self._picture.tell(event, asked=not self._quiet)
         if undone:
             self._picture.undone(undone)
         bar.ready()
         self._picture.state()
         remark = self.teaching.remark
-        quiet = self._scripted is not None or self._listener.by_voice
-        if remark is not None and remark in events and not quiet:
+        if remark is not None and remark in events and not self._quiet:
             self.run_worker(self._remark(remark), name="remark")
         else:
             self._listener.open(True)
 
+    @property
+    def _quiet(self) -> bool:
+        return self._scripted is not None or self._listener.by_voice
+
     async def _remark(self, remark: Remark) -> None:
         """Let a remark be answered in place; one on a spoken step is answered by its word."""
-        self._apply(Settle(await self._alone(remark_dialog(remark, self.teaching))))
+        answer = await self._alone(remark_dialog(remark, self.teaching))
+        if answer == "later":
+            self._picture.remark(remark)  # it stood in the dialog, and is read here from now on
+        self._apply(Settle(answer))
 
     async def _verify(self, asked: Asked | Offered) -> None:
         """Put the question, and give its answer to the session when its dialog has gone."""
