@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from tangy_profiles.scene import ArrangedSituation
 from tangy_profiles.state import FRONT, ActivityState, Situation
 from tangy_tui.text.situations import card_words
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity, StageRule
-    from tangy_profiles.scene import Arranged, ArrangedSituation, Scene
+    from tangy_profiles.scene import Arranged, Scene
 
 Name = Callable[[str], str]
 

@@ -12,6 +12,7 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
+from tests.support.waiting import until
 
 
 def program(workspace: Workspace) -> Program:
@@ -112,8 +113,7 @@ async def test_escape_takes_back_what_was_begun_before_it_skips_the_tour(
     async with run(app=program(workspace), size=SMALL) as pilot:
         await pilot.pause()
         await pilot.press(*"Ada", "enter", "enter")
-        await pilot.pause()
-        assert "go on" not in screen_text(pilot.app).splitlines()[-1]  # a command does
+        await until(lambda: "go on" not in screen_text(pilot.app).splitlines()[-1])  # a command does
         for begun in (("tab",), tuple("greet")):
             await pilot.press(*begun, "escape")
             await pilot.pause()
