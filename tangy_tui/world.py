@@ -6,6 +6,7 @@ from typing import Protocol, runtime_checkable
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
+from tangy_profiles.declared.memory import GameMemory
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.health import Health
@@ -79,3 +80,18 @@ class Arranging(Protocol):
     def coming(self) -> Arranged | ArrangedSituation | None:
         """What is about to come about, None where nothing is."""
         ...
+
+
+@runtime_checkable
+class Remembering(Protocol):
+    """A world whose games cannot be played again from their steps: their facts are logged."""
+
+    @property
+    def memory(self) -> GameMemory:
+        """Everything that is known of the game now."""
+        ...
+
+
+def remembered(world: World) -> GameMemory | None:
+    """Return what has to be logged of a game, None where its steps are enough."""
+    return world.memory if isinstance(world, Remembering) else None

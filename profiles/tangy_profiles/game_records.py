@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from tangy_profiles.codec import By, Count, Flat, Sparse, measurement, read
 from tangy_profiles.contacts import Role
+from tangy_profiles.declared.memory import GameMemory
 from tangy_profiles.demonstration import Step, not_the_same
 from tangy_profiles.drill_sheet import Sheet
 from tangy_profiles.game_rules import GamePlan
@@ -132,7 +133,8 @@ class GameChange(EventRecord):
 class GameStep(EventRecord):
     """A behaviour was executed: how it was chosen, and what was seen before and `after`.
 
-    `seconds` is None in games of before that was logged.
+    `seconds` is None in games of before that was logged. `memory` is what the game stands at in a
+    live game of an activity by facts, which the steps alone do not lead to.
     """
 
     game: str
@@ -147,6 +149,7 @@ class GameStep(EventRecord):
     seconds: float | None = None
     state: GameState
     after: GameState | None = None
+    memory: Sparse[GameMemory | None] = None
 
     def misfit(self) -> str:
         """Say what does not fit together, as the tail of a sentence ("": nothing)."""

@@ -37,6 +37,7 @@ class NotResumable(TangyError):
 
 CANNOT_GO_ON = "The game cannot go on where it was interrupted"
 OTHER_PEOPLE = "other people take part now"
+FACTS_UNKNOWN = "its log has no facts: it was played by an earlier version"
 OTHERWISE = "its steps do not come out as they did"
 
 

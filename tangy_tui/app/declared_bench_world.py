@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
 from tangy_profiles.behaviour import Action
+from tangy_profiles.codec import written
 from tangy_profiles.declared.typed_observations import TypedObservation
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import ActivityState
 from tangy_sim.worlds import injection
 from tangy_sim.worlds.injection import Kind
@@ -23,6 +25,14 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         """Begin a game on the bench."""
         self._passed_on = 0
         return super().begin()
+
+    def resume(self, past: PastGame) -> ActivityState:
+        """Go on where a game was interrupted; the people on the bench know where it stood."""
+        self._passed_on = 0
+        memory = past.steps[-1].memory
+        if memory is not None:
+            self.bench.do("rules", memory=written(memory))
+        return super().resume(past)
 
     def can_show(self, kind: Kind, action: Action) -> bool:
         """Say whether a fault of a kind would be seen if it came with an action."""

@@ -1,7 +1,6 @@
 """Facilitation (III-B): observe, let the policy choose, persuade, act, and learn from the response.
 
-`Facilitation` runs one game after another in any world, step by step, and tells what happened.
-What happens is in the log before it is told.
+`Facilitation` runs game after game in any world, step by step, and reports each event once logged.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.teaching_session import NOTHING_SAID
 from tangy_tui.learning.verification import Verifier
-from tangy_tui.world import World
+from tangy_tui.world import World, remembered
 
 _LOG = logging.getLogger(__name__)
 
@@ -372,6 +371,7 @@ class Facilitation:
                 seconds=outcome.seconds,
                 state=acted.state,
                 after=acted.after,
+                memory=remembered(self.world),
             )
         )
         if outcome.response is not None:

@@ -19,11 +19,18 @@ from tangy_profiles.declared.game import DeclaredGame, Execution
 from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
+from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.speech import with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.defaults import ASK_AGAIN
-from tangy_profiles.past_game import NotResumable, PastGame
+from tangy_profiles.past_game import (
+    FACTS_UNKNOWN,
+    OTHER_PEOPLE,
+    OTHERWISE,
+    NotResumable,
+    PastGame,
+)
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import EVERYBODY, FRONT, ActivityState, Outcome, Response
 
@@ -72,12 +79,37 @@ class DeclaredLiveWorld(LiveWorld):
         self._asked_again: dict[str, int] = {}
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Refuse: what people did in the game before it was interrupted is known to nobody.
+        """Go on where a game was interrupted, with the facts that the log kept of it.
+
+        Who asked by a sign is taken to ask by word, as nobody holds up a sign meanwhile.
 
         Raises:
-            NotResumable: always.
+            NotResumable: other people take part, the activity was changed, or the log is of a
+                version that did not keep the facts.
         """
-        raise NotResumable("what people answered in it is not known any more")
+        last = past.steps[-1]
+        if past.beginning.people != self.people:
+            raise NotResumable(OTHER_PEOPLE)
+        if last.memory is None:
+            raise NotResumable(FACTS_UNKNOWN)
+        game = game_from(self.activity.declaration, self.people, last.memory)
+        if game is None:
+            raise NotResumable(OTHERWISE)
+        for _ in range(past.beginning.number):
+            self._begin()  # the items of each game of the run come in an order of their own
+        self.game = game
+        self.tracker = DeclaredTracker(self.activity, game)
+        self._started = self.link.time - game.now
+        for person in game.queue:
+            self.requests.ask_for(person)
+        self.over = False
+        self.commands.settle()
+        return self.observe()
+
+    @property
+    def memory(self) -> GameMemory:
+        """Everything that is known of the game now, for the log."""
+        return memory_of(self.game)
 
     # ------------------------------------------------------------------------ what is observed
 

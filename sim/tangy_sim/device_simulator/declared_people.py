@@ -14,6 +14,7 @@ from random import Random
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.memory import GameMemory, game_from
 from tangy_profiles.declared.vocabulary import ASKING, NO, YES
 from tangy_profiles.person import Person
 from tangy_sim.device_simulator.faults import Faults
@@ -41,6 +42,14 @@ class DeclaredPeople(People):
         self._began = now
         self.known = DeclaredGame(self._declaration, self.ids)
         """The game as the people at the table understand it."""
+
+    def remember(self, memory: GameMemory) -> None:
+        """Go on from where an interrupted game stood, in a room in which nobody holds up a sign."""
+        game = game_from(self._declaration, tuple(self.ids), memory)
+        if game is not None:
+            self.known = game
+            self._began = self.now - game.now
+            self.game.opened = True
 
     def _seat(self) -> dict[str, Sitter]:
         deck = self.activity.deck

@@ -10,6 +10,9 @@ from dataclasses import replace
 from typing import Any
 
 from tangy_profiles.cards import PATTERNS
+from tangy_profiles.codec import read
+from tangy_profiles.declared.memory import GameMemory
+from tangy_sim.device_simulator.declared_people import DeclaredPeople
 from tangy_sim.device_simulator.people import People
 
 
@@ -19,11 +22,15 @@ def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
     Args:
         people: the group.
         told: `patterns` and `together` of what wins; `done`, whose sign comes down; `away`, who is
-            not here; `taken_back`, a number that counts as not called. Each may be left out.
+            not here; `taken_back`, a number that counts as not called; `memory`, where an
+            interrupted game by facts goes on. Each may be left out.
 
     Raises:
         KeyError: somebody or some pattern is not known.
+        Unreadable: what is told of the interrupted game is not valid.
     """
+    if "memory" in told and isinstance(people, DeclaredPeople):
+        people.remember(read(GameMemory, told["memory"]))
     if "patterns" in told:
         _play_for(people, tuple(map(str, told["patterns"])), int(told["together"]))
     if "done" in told:

@@ -1,0 +1,97 @@
+"""The facts of a declared game as the log keeps them after each step of a live game.
+
+In a live game the steps alone do not lead to its facts: people changed some of them. So the log
+keeps all of them, and a game that was interrupted goes on from there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tangy_profiles.codec import Count
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.model import Declaration
+from tangy_profiles.state import FRONT
+
+
+@dataclass(frozen=True, slots=True)
+class GameMemory:
+    """Everything that the interpreter knows of a game; persons by id, "" for the group."""
+
+    values: tuple[tuple[str, str, str], ...]
+    """Fact, whose, and value; facts with their first values are left out."""
+    counts: tuple[tuple[str, str, float], ...]
+    """Fact, whose, and the number, or for a timer when it was started (s in the game)."""
+    order: tuple[Count, ...]
+    """The rows of the items in the order of the game."""
+    round: Count
+    turn: Count
+    queue: tuple[str, ...]
+    place: str
+    addressed: str | None
+    actor: str | None
+    acts: tuple[tuple[str, Count], ...]
+    now: float
+    """The time in the game, in s."""
+    step: Count
+    closed: str | None
+    executed: tuple[tuple[str, Count], ...]
+    """How often each behaviour was carried out."""
+
+
+def memory_of(game: DeclaredGame) -> GameMemory:
+    """Return what has to be kept of a game, so that it can go on."""
+    return GameMemory(
+        values=tuple((*key, value) for key, value in sorted(game.values.items())),
+        counts=tuple((*key, number) for key, number in sorted(game.counts.items())),
+        order=game.order,
+        round=game.round,
+        turn=game.turn,
+        queue=tuple(game.queue),
+        place=game.place,
+        addressed=game.addressed,
+        actor=game.actor,
+        acts=tuple(game.acts.items()),
+        now=game.now,
+        step=game.step,
+        closed=game.closed,
+        executed=tuple(sorted(game.executed.items())),
+    )
+
+
+def game_from(
+    declaration: Declaration, players: tuple[str, ...], memory: GameMemory
+) -> DeclaredGame | None:
+    """Return the game that was kept; None if it is of another activity, or of other players."""
+    if not _fits(declaration, players, memory):
+        return None
+    game = DeclaredGame(declaration, players, memory.order)
+    game.values = {(fact, whose): value for fact, whose, value in memory.values}
+    game.counts = {(fact, whose): number for fact, whose, number in memory.counts}
+    game.round, game.turn = memory.round, memory.turn
+    game.queue = list(memory.queue)
+    game.place, game.addressed, game.actor = memory.place, memory.addressed, memory.actor
+    game.acts = dict(memory.acts)
+    game.now, game.step, game.closed = memory.now, memory.step, memory.closed
+    game.executed = dict(memory.executed)
+    return game
+
+
+def _fits(declaration: Declaration, players: tuple[str, ...], memory: GameMemory) -> bool:
+    """Say whether the activity still has what a game needs: files can change in between."""
+    facts, own = declaration.facts, {"", *players}
+    named = {memory.addressed, memory.actor, memory.closed, *memory.queue} - {None}
+    return (
+        {who for who, _ in memory.acts} == set(players) >= named
+        and memory.place in {FRONT, *players}
+        and memory.turn < len(players)
+        and memory.round <= len(memory.order)
+        and len(memory.order) == declaration.items.rounds
+        and all(row < max(1, len(declaration.items.rows)) for row in memory.order)
+        and all(
+            fact in facts and whose in own and value in facts[fact].values
+            for fact, whose, value in memory.values
+        )
+        and all(fact in facts and whose in own for fact, whose, _ in memory.counts)
+        and all(name in declaration.behaviours for name, _ in memory.executed)
+    )

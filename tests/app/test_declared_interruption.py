@@ -1,0 +1,121 @@
+"""A game by facts that was killed goes on with the facts that it had, live and simulated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime
+from random import Random
+from typing import cast
+
+import pytest
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
+from tangy_profiles.codec import read, written
+from tangy_profiles.declared.acts import acts, raw
+from tangy_profiles.declared.typed_observations import TypedObservation
+from tangy_profiles.declared.whom import first_addressee
+from tangy_profiles.game_records import GameBeginning, GameStep
+from tangy_profiles.game_world import LIVE
+from tangy_profiles.past_game import NotResumable, PastGame
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_profiles.state import ActivityState
+from tangy_sim.worlds.declared_world import DeclaredWorld
+from tests.hw.links import FakeLink
+from tests.support.declared import DECLARED, declared
+
+PEOPLE = ("user1", "user2", "user3")
+SEED = 4
+
+
+def live(name: str) -> DeclaredLiveWorld:
+    return DeclaredLiveWorld(
+        declared(name), PEOPLE, cast(RobotLink, FakeLink(PEOPLE)), load_robot(), load_room(),
+        seed=SEED,
+    )  # fmt: skip
+
+
+def past_of(name: str, steps: list[GameStep]) -> PastGame:
+    """Return the game as it is read from the log."""
+    beginning = GameBeginning(game="g", number=1, activity=name, people=PEOPLE, world=LIVE)
+    logged = tuple(read(GameStep, written(step)) for step in steps)
+    return PastGame(beginning, datetime.now(UTC), logged)
+
+
+def play(world: DeclaredWorld | DeclaredLiveWorld, steps: int, since: int = 0) -> list[GameStep]:
+    """Play by what the activity expects, so many steps, and return what is logged of them."""
+    done: list[GameStep] = []
+    while not world.over and len(done) < steps:
+        state, activity = world.observe(), world.activity
+        behaviour = activity.behaviours[activity.expected[state.situation]]
+        selector = activity.expected_selector(state.situation)
+        whom = dict(state.whom).get(selector or "", first_addressee(behaviour, state))
+        world.execute(activity.action(behaviour, whom, None))
+        if isinstance(world, DeclaredLiveWorld):
+            let_act(world, since + len(done))
+        done.append(
+            GameStep(
+                game="g", behaviour=behaviour.name, target=whom, state=state,
+                after=world.observe(),
+                memory=world.memory if isinstance(world, DeclaredLiveWorld) else None,
+            )
+        )  # fmt: skip
+    return done
+
+
+def let_act(world: DeclaredLiveWorld, step: int) -> None:
+    """Let people act, the same at each step of every game."""
+    for act in list(acts(world.game.copy(), drawn=Random(f"{step}").random)):
+        said = raw(world.game, world.game.declaration.facts[act.fact], act.value)
+        world.take(Observed(TypedObservation(act.fact, act.who, said), 1.0, "staff"))
+
+
+def states(steps: list[GameStep]) -> list[tuple[str, str | None, ActivityState | None]]:
+    return [(step.behaviour, step.target, step.after) for step in steps]
+
+
+@pytest.mark.parametrize("name", DECLARED)
+@pytest.mark.parametrize("killed_at", [1, 3, 8, 21])
+def test_a_live_game_goes_on_as_the_one_that_nobody_killed(name: str, killed_at: int) -> None:
+    whole = live(name)
+    whole.begin()
+    before = play(whole, killed_at)
+    resumed = live(name)
+    state = resumed.resume(past_of(name, before))
+    assert state == before[-1].after
+    assert resumed.game.__dict__.keys() == whole.game.__dict__.keys()
+    assert resumed.memory == before[-1].memory == whole.memory
+    rest = play(whole, 15, since=killed_at)
+    assert rest and states(play(resumed, 15, since=killed_at)) == states(rest)
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_a_simulated_game_goes_on_as_the_one_that_nobody_killed(name: str) -> None:
+    whole = DeclaredWorld(declared(name), PEOPLE, seed=SEED)
+    before = play(whole, 9)
+    resumed = DeclaredWorld(declared(name), PEOPLE, seed=SEED)
+    assert resumed.resume(past_of(name, before)) == before[-1].after
+    assert states(play(resumed, 15)) == states(play(whole, 15))
+
+
+def test_who_asked_before_it_was_killed_is_not_forgotten_although_no_sign_is_up() -> None:
+    world = live("trivia")
+    world.begin()
+    *_, step = play(world, 2)
+    world.tell("user3", "asks")
+    asked = replace(step, after=world.observe(), memory=world.memory)
+    assert world.game.queue == ["user3"]
+    resumed = live("trivia")
+    resumed.resume(past_of("trivia", [asked]))
+    resumed.commands.wait(10)
+    assert [u.id for u in resumed.observe().users if u.request == "AR"] == ["user3"]
+
+
+def test_a_log_without_facts_or_of_another_activity_is_not_gone_on_with() -> None:
+    world = live("trivia")
+    world.begin()
+    (step,) = play(world, 1)
+    for name, last in (("trivia", replace(step, memory=None)), ("exercises", step)):
+        with pytest.raises(NotResumable):
+            live(name).resume(past_of(name, [last]))
