@@ -115,7 +115,9 @@ async def test_who_leaves_a_game_is_told_what_was_kept(
         await pilot.press(*way)
         await pilot.pause()
         assert isinstance(pilot.app.screen, HomeScreen)
-        assert "Tangy keeps 1 step of this game." in " ".join(n.message for n in pilot.app._notifications)
+        assert "Tangy keeps 1 step of this game." in " ".join(
+            n.message for n in pilot.app._notifications
+        )
 
 
 async def test_undo_takes_the_last_step_back(run: Run, workspace: Workspace) -> None:

@@ -113,7 +113,8 @@ async def test_escape_takes_back_what_was_begun_before_it_skips_the_tour(
     async with run(app=program(workspace), size=SMALL) as pilot:
         await pilot.pause()
         await pilot.press(*"Ada", "enter", "enter")
-        await until(lambda: "go on" not in screen_text(pilot.app).splitlines()[-1])  # a command does
+        # Enter belongs to the command now, and no longer to the tour.
+        await until(lambda: "go on" not in screen_text(pilot.app).splitlines()[-1])
         for begun in (("tab",), tuple("greet")):
             await pilot.press(*begun, "escape")
             await pilot.pause()
