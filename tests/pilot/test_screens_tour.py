@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
+from textual.pilot import Pilot
 
 from tangy_tui.app.teacher_profile import TeacherProfile, save_profile
 from tangy_tui.app.workspace import Workspace
@@ -12,11 +15,16 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
-from tests.support.waiting import until
+from tests.support.waiting import until_shown
 
 
 def program(workspace: Workspace) -> Program:
     return Program(workspace, asks_name=True, clock=StillClock())
+
+
+async def shows(pilot: Pilot[Any], words: str) -> None:
+    """Wait until words are on the screen."""
+    await until_shown(pilot, lambda: words in screen_text(pilot.app))
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE])
@@ -26,19 +34,18 @@ async def test_a_new_teacher_gives_one_real_command_and_answers_its_question(
     async with run(app=program(workspace), size=size) as pilot:
         await pilot.pause()
         await pilot.press(*"Ada", "enter")
-        await pilot.pause()
-        assert "Welcome, Ada." in screen_text(pilot.app)
+        await shows(pilot, "Welcome, Ada.")
         await pilot.press("enter")
-        assert "Try it: type greet everyone" in screen_text(pilot.app)
+        await shows(pilot, "Try it: type greet everyone")
         await pilot.press(*"greet everyone", "enter")
         await pilot.pause()
-        assert "Tangy does nothing before you say yes." in screen_text(pilot.app)
+        await shows(pilot, "Tangy does nothing before you say yes.")
         await pilot.press("y")
         await pilot.pause()
-        assert "That is your first step" in screen_text(pilot.app)
+        await shows(pilot, "That is your first step")
         await pilot.press("enter", "enter", "enter")
         await pilot.pause()
-        assert "Now: " in screen_text(pilot.app)
+        await shows(pilot, "Now: ")
         shown = read_demonstrations(workspace.store, workspace.activity.name)[-1]
         assert shown.teacher == "Ada"
         assert shown.guided
@@ -51,11 +58,11 @@ async def test_escape_skips_the_tour_and_stays_where_one_teaches(
     async with run(app=program(workspace)) as pilot:
         await pilot.pause()
         await pilot.press(*"Ada", "enter")
-        await pilot.pause()
+        await shows(pilot, "Welcome, Ada.")
         await pilot.press("escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, TeachScreen)
-        assert "Now: " in screen_text(pilot.app)
+        await shows(pilot, "Now: ")
         assert "Welcome" not in screen_text(pilot.app)
 
 
@@ -103,7 +110,7 @@ async def test_a_game_that_was_begun_stays_its_teachers(run: Run, workspace: Wor
         await pilot.pause()
         await pilot.press(*"my name is Bea", "enter")
         await pilot.pause()
-        assert "This game stays Ada's" in screen_text(pilot.app)
+        await shows(pilot, "This game stays Ada's")
         assert read_demonstrations(workspace.store, "bingo")[-1].teacher == "Ada"
 
 
@@ -112,13 +119,15 @@ async def test_escape_takes_back_what_was_begun_before_it_skips_the_tour(
 ) -> None:
     async with run(app=program(workspace), size=SMALL) as pilot:
         await pilot.pause()
-        await pilot.press(*"Ada", "enter", "enter")
+        await pilot.press(*"Ada", "enter")
+        await shows(pilot, "Welcome, Ada.")
+        await pilot.press("enter")
         # Enter belongs to the command now, and no longer to the tour.
-        await until(lambda: "go on" not in screen_text(pilot.app).splitlines()[-1])
+        await until_shown(pilot, lambda: "go on" not in screen_text(pilot.app).splitlines()[-1])
         for begun in (("tab",), tuple("greet")):
             await pilot.press(*begun, "escape")
             await pilot.pause()
-            assert "Try it: type greet everyone" in screen_text(pilot.app)
+            await shows(pilot, "Try it: type greet everyone")
             assert not pilot.app.screen.query_one(CommandBar).text
         await pilot.press("escape")
         await pilot.pause()
