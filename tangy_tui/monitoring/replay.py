@@ -11,6 +11,7 @@ from tangy_profiles.codec import written
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import (
     CallMade,
+    ChangeKind,
     FaultDiagnosed,
     FaultMove,
     GameChange,
@@ -84,7 +85,13 @@ class Noted:
     """The number of a call that counts no more; 0: of none."""
 
 
-What: TypeAlias = Done | AnsweredRequest | Diagnosed | Moved | Noted | CallMade
+OF_ITS_OWN: tuple[ChangeKind, ...] = (
+    *("others first", "played on", "won", "claimed"),
+    *("visit", "visit put off", "visit over", "calls first"),
+)
+"""Changes that the activity's rules bring about. Of the others, staff's actions tell."""
+
+What: TypeAlias = Done | AnsweredRequest | Diagnosed | Moved | Noted | CallMade | GameChange
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +138,8 @@ class Moment:
                 return {"kind": "recovery", "fault": fault.id, "move": written(move)}
             case CallMade() as made:
                 return {"kind": "call", **made.body}
+            case GameChange() as change:
+                return {"kind": "change", **change.body}
 
 
 @dataclass
@@ -158,6 +167,11 @@ class GameReplay:
     def answers(self) -> list[tuple[Moment, AnsweredRequest]]:
         """People's responses to requests, with their times."""
         return [(m, m.what) for m in self.moments if isinstance(m.what, AnsweredRequest)]
+
+    @property
+    def changes(self) -> list[tuple[Moment, GameChange]]:
+        """What the activity's rules changed beside the behaviours, with its times."""
+        return [(m, m.what) for m in self.moments if isinstance(m.what, GameChange)]
 
     @property
     def real_faults(self) -> list[Fault]:
@@ -222,9 +236,9 @@ def _replay(
                 what = _answered(event, followed, took)
             case ResponseAwaited():
                 what = _answered(event, None, None)
-            case GameChange(what="visit" | "won" | "claimed", person=person):
-                replay.unasked.add((step + 1, person))
-                continue
+            case GameChange() as what if what.what in OF_ITS_OWN:
+                if what.what in ("visit", "won", "claimed"):
+                    replay.unasked.add((step + 1, what.person))
             case GameResumed(by=by):
                 what = Noted(RESUMED, by)
             case StaffAction(what=words, by=by, taken_back=taken):

@@ -45,6 +45,8 @@ def people_part(session: Session) -> Iterator[str]:
             for one in found.values()
         ),
     )
+    for line in say.changes_lines(session.replays, session.name):
+        yield paragraph(line)
 
 
 def calls_part(session: Session) -> Iterator[str]:

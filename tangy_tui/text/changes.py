@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import assert_never
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.game_records import GameChange
 from tangy_profiles.planned_game import PlannedGame
 from tangy_tui.interaction.game_events import GameChanged
 from tangy_tui.text.numbers import counted
@@ -20,12 +21,13 @@ def changed_lines(event: GameChanged, activity: Activity, name: Name) -> list[st
     return [changed_words(event, activity, name), *said]
 
 
-def changed_words(event: GameChanged, activity: Activity, name: Name) -> str:
-    """Say in a sentence what changed."""
+def changed_words(event: GameChanged | GameChange, activity: Activity | None, name: Name) -> str:
+    """Say in a sentence what changed, as it happens or as the log has it."""
     person = name(event.person) if event.person else ""
     match event.what:
         case "taken back":
-            return f"{activity.deck.label(event.number)} is taken back. Tangy calls it again later."
+            call = str(event.number) if activity is None else activity.deck.label(event.number)
+            return f"{call} is taken back. Tangy calls it again later."
         case "patterns chosen":
             return f"Next: {pattern_words(activity, event.patterns)}."
         case "others first":
@@ -67,9 +69,11 @@ def calls_first_words(calls: int) -> str:
     return f"Tangy first calls {counted(calls, 'number')}, then goes to them."
 
 
-def pattern_words(activity: Activity, names: tuple[str, ...]) -> str:
+def pattern_words(activity: Activity | None, names: tuple[str, ...]) -> str:
     """Name patterns as people call them, in their order."""
-    labels = [activity.rules.pattern(name).label for name in names]
+    labels = (
+        list(names) if activity is None else [activity.rules.pattern(name).label for name in names]
+    )
     return ", then ".join(labels) or "nothing more"
 
 

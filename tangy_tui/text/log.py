@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from tangy_profiles.game_records import CallMade
+from tangy_profiles.game_records import CallMade, GameChange
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Progress, Session
 from tangy_tui.text.calls import logged_words
+from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.report import changes_lines
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
@@ -79,6 +81,8 @@ def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list
             return [f"*  {what}{f', by {by}' if by else ''}."]
         case CallMade(role=role, way=way, stage=stage, said=said_then):
             return [f"*  {logged_words(role, way, stage, said_then)}"]
+        case GameChange() as change:
+            return [f"*  {changed_words(change, activity, name)}"]
         case Moved(fault, move):
             said = [f"   Tangy says: {move.speech}"] if move.speech else []
             whose = "" if fault.asks_only else f"{fault.name}: "
@@ -117,6 +121,7 @@ def session_lines(session: Session) -> Iterator[str]:
     if session.timed:
         yield f"Time in the room: {length(session.seconds)}."
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
+    yield from changes_lines(session.replays, session.name)
     yield ""
     yield counted(len(session.faults), "fault") + ("." if not session.faults else ":")
     numbers = {game.id: game.number for game in session.games}

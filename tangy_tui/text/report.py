@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
 from tangy_profiles.activity import Activity
@@ -11,6 +12,7 @@ from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.monitoring.attention import Attention, Call
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
+from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import Name
@@ -107,6 +109,24 @@ def care_lines(found: Iterable[Attention], name: Name) -> list[str]:
             lines.append(f"{name(one.id)} was still waiting at the end, for {wait}.")
         elif one.waits and max(one.waits) > LONG_WAIT:
             lines.append(f"{name(one.id)} waited {length(max(one.waits))} for help.")
+    return lines
+
+
+def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
+    """Say who won before the end, whom Tangy visited unasked, and how often calls came first."""
+    changes = [one for replay in replays for one in replay.changes]
+    lines = [
+        f"At {time_of_day(moment.at)} {changed_words(change, None, name)}"
+        for moment, change in changes
+        if change.what in ("played on", "others first")
+    ]
+    visits = Counter(name(change.person) for _, change in changes if change.what == "visit")
+    if visits:
+        each = [who if n == 1 else f"{who} ({n} times)" for who, n in visits.items()]
+        lines.append(f"Tangy visited {listed(each)} although they had not asked.")
+    if first := sum(change.what == "calls first" for _, change in changes):
+        times = counted(first, "time")
+        lines.append(f"Many were asking: {times}, Tangy called some numbers before it helped.")
     return lines
 
 

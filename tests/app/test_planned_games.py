@@ -34,7 +34,13 @@ from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameChanged, GameEnded
 from tangy_tui.learning.policies import load_policy
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.session import read_session
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.pages.session import session_page
+from tangy_tui.text.changes import changed_words
+from tangy_tui.text.log import replay_lines, session_lines
+from tangy_tui.text.report import changes_lines
 
 
 class Planned:
@@ -195,6 +201,34 @@ def test_in_a_large_group_calls_have_their_share_and_nobody_who_asks_waits_for_e
     assert len(world.called_now) == 30 and planned.supervision.faults == []
     assert 0 < longest <= rule.calls * 24 / rule.visits
     assert "calls first" in planned.changes()
+    planned.workspace.close()
+
+
+def test_the_log_and_the_report_tell_what_changed_beside_the_behaviours(taught: Path) -> None:
+    planned = Planned(taught, users=24)
+    planned.begin(GamePlan(("line", "full card"), visits=True, pace=5))
+    planned.play(calls=30)
+    told = [(one.what, one.person, one.number) for one in planned.events
+            if isinstance(one, GameChanged)]  # fmt: skip
+    store, activity = planned.workspace.store, planned.workspace.activity
+    session = read_session(
+        store, read_games(store), {activity.name: activity}, planned.workspace.names
+    )
+    (replay,) = session.replays
+    kept = [(one.what, one.person, one.number) for _, one in replay.changes]
+    assert kept == told
+    assert "calls first" in {what for what, _, _ in told}
+    moments = [m.to_json() for m in replay.moments]
+    assert sum(one["kind"] == "change" for one in moments) == len(told)
+    lines = "\n".join(replay_lines(replay, activity, session.name))
+    unknown = "\n".join(replay_lines(replay, None, session.name))  # its activity is gone
+    for change in planned.events:
+        if isinstance(change, GameChanged):
+            words = changed_words(change, activity, session.name)
+            assert words in lines and words in unknown
+    summed = changes_lines(session.replays, session.name)
+    page, short = session_page(session), list(session_lines(session))
+    assert summed and all(line in page and line in short for line in summed)
     planned.workspace.close()
 
 

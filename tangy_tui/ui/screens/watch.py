@@ -11,7 +11,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import Static
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.game_records import CallMade
+from tangy_profiles.game_records import CallMade, GameChange
 from tangy_profiles.person import Person
 from tangy_profiles.room import Point, load_room
 from tangy_profiles.store import Store
@@ -30,7 +30,13 @@ from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 ALARMS = ("stopped", "halted")
-KINDS: dict[type, Kind] = {Diagnosed: "warn", Moved: "dim", Noted: "dim", CallMade: "warn"}
+KINDS: dict[type, Kind] = {
+    Diagnosed: "warn",
+    Moved: "dim",
+    Noted: "dim",
+    CallMade: "warn",
+    GameChange: "dim",
+}
 
 
 class WatchScreen(TangyScreen[None]):
