@@ -153,6 +153,6 @@ class TestThePage:
 
     def test_what_is_searched_is_found_wherever_it_stands(self, activity: Activity) -> None:
         entries = list(items(list_phrases(activity, seated(4))))
-        assert [entry.about for entry in entries if entry.has("FUNNY say")] == ["joke"]
+        assert [entry.about for entry in entries if entry.has("FUNNY say")] == ["tell a joke"]
         assert [entry.about for entry in entries if entry.has("seat 2")] == ["User 2"]
         assert all(entry.has("") for entry in entries)

@@ -293,7 +293,7 @@ async def test_pausing_while_tangy_asks_pauses_after_the_answer(
     async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
         await pilot.press("escape", "p", "E", "colon")
-        assert "answer it first" in screen.query_one(LogView).sentences[-1]
+        assert "answer first" in screen.query_one(LogView).sentences[-1]
         count = screen.query_one(Transcript).count
         await answer(pilot)
         while screen.query_one(Transcript).count == count:

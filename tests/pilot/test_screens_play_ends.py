@@ -125,7 +125,7 @@ async def test_what_waits_for_the_answer_says_so_in_the_panel(
         screen = await asked(pilot)
         await pilot.press("escape", key)
         await pilot.pause()
-        assert "answer it first" in " ".join(pilot.text().split())
+        assert "answer first" in " ".join(pilot.text().split())
         assert not told(pilot)
         assert screen.games == 1
 

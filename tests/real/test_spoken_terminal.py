@@ -135,7 +135,7 @@ def test_a_decoder_that_is_killed_in_mid_utterance_shows_and_loses_nothing(
     microphone.say(terminal, pcm[: len(pcm) // 2])
     os.kill(decoder, signal.SIGKILL)
     microphone.say(terminal, pcm[len(pcm) // 2 :])
-    terminal.until("ended unasked (signal 9)")
+    terminal.until("stopped by itself (signal 9)")
     terminal.type("t")
     terminal.until("Did you say: greet everyone?")
     (other,) = children(terminal.process.pid)
