@@ -209,7 +209,7 @@ def live(
             )
         switched = opening(number)
         sees = reads_cards(workspace.robot) or not workspace.activity.deck.columns
-        if not (bench or plain_lines or sees):
+        if workspace.robot.drivers and not (bench or plain_lines or sees):
             raise TangyError(staff_needed(workspace.activity.object))
         lines = _set_up(workspace, pace) if plain_lines and not begin and past is None else None
         if lines is not None and not lines.run():
