@@ -10,12 +10,21 @@ if TYPE_CHECKING:
 
 
 def learn(workspace: Workspace) -> Policy:
-    """Learn from the finished demonstrations, by what teachers said of them; keep the policy."""
+    """Learn from the finished demonstrations and what teachers decided; keep the policy.
+
+    Raises:
+        NothingToLearnFrom: nobody has finished a demonstration.
+    """
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policies import keep_policy, unused_name, without_strange_steps
-    from tangy_tui.learning.policy import learn_policy
+    from tangy_tui.learning.policy import NothingToLearnFrom, learn_policy
 
     library = read_library(workspace.store, workspace.activity.name)
+    if library.demonstrations and not library.finished:
+        raise NothingToLearnFrom(
+            "Tangy learns from finished demonstrations, and none is finished yet: play the game to "
+            "its end, or type: finish the demonstration."
+        )
     used, _ = without_strange_steps(workspace.activity, library.finished)
     policy = learn_policy(workspace.activity, used, resolutions=library.resolutions)
     policy = unused_name(workspace.store, policy)
