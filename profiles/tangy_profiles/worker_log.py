@@ -27,7 +27,7 @@ def open_log(path: Path) -> BinaryIO:
         if not stat.S_ISREG(os.fstat(log.fileno()).st_mode):
             raise OSError(errno.EINVAL, "is no file")
         with suppress(PermissionError):  # it is another user's
-            os.fchmod(log.fileno(), 0o600)  # whatever the umask, and whoever created it
+            os.fchmod(log.fileno(), 0o600)  # despite the umask, also if another program created it
         if os.fstat(log.fileno()).st_size > MOST:
             cut(path)
     except BaseException:

@@ -22,7 +22,7 @@ class AfterTeaching:
     check: Callable[[], object]
 
     def perform(self, word: Perform) -> tuple[list[str], bool]:
-        """Do what a word wants; return what is to be said, and whether a game is to be played."""
+        """Carry out a word; return the sentences to say, and whether to play a game."""
         try:
             match word.action:
                 case "learn":

@@ -30,7 +30,7 @@ class ReadingError:
     wrong: int = 0
 
     def add(self, agreeing: int, taken: int) -> None:
-        """Count looks that were taken together, of which so many agree with what is believed."""
+        """Count looks that were taken together, and how many agree with the fused reading."""
         self.looks += taken
         self.wrong += taken - agreeing
 

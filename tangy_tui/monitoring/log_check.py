@@ -23,7 +23,7 @@ from tangy_tui.learning import library
 from tangy_tui.learning.policies import MANY, LeftOut, without_strange_steps
 
 LogProblem: TypeAlias = str | LeftOut
-"""What is wrong with a log: a sentence of its reader, or a step that nothing is learnt from."""
+"""Damage in a log: a sentence of its reader, or a step that Tangy does not learn from."""
 
 
 def log_problems(store: Store) -> list[LogProblem]:

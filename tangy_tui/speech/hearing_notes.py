@@ -1,4 +1,4 @@
-"""What there is to say about hearing while Tangy listens; `tangy_tui.text` puts it in words."""
+"""Notes about hearing while Tangy listens; `tangy_tui.text` puts them in words."""
 
 from __future__ import annotations
 

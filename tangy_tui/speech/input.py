@@ -117,7 +117,7 @@ class SpeechInput:
 
     @property
     def trouble(self) -> SoundTrouble | None:
-        """What is wrong with the sound, if anything is."""
+        """The fault of the sound; None if it is good."""
         listens = self.state in ("listening", "speaking")
         spoken = not self.words and not self.hands_free  # who was heard spoke loudly enough
         return self.meter.trouble(speaking=spoken) if self.live and listens else None

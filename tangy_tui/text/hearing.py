@@ -1,4 +1,4 @@
-"""What is said of hearing while Tangy listens: what it misses, and what it records."""
+"""Words about hearing while Tangy listens: what it misses, and what it records."""
 
 from __future__ import annotations
 

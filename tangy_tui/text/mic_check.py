@@ -47,7 +47,7 @@ def _step_words(step: CheckStep) -> str:
 
 
 def numbered(asked: Sequence[CalibrationPrompt]) -> list[str]:
-    """Return what is to be said, a line each."""
+    """Return the sentences to say, a line each."""
     return [f"{number}. {one.text}" for number, one in enumerate(asked, 1)]
 
 

@@ -1,4 +1,4 @@
-"""What is said of a microphone: what is wrong with its sound, and what to do about it."""
+"""Words about a microphone: faults of its sound, and how to cure them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def trouble_words(trouble: SoundTrouble) -> str:
-    """Say in one line what is wrong with a sound."""
+    """Describe a fault of the sound in one line."""
     match trouble.kind:
         case "nothing comes":
             return f"The microphone has sent nothing for {trouble.seconds} s: is it connected?"

@@ -22,7 +22,7 @@ def missing_words(robot: Robot, activity: Activity) -> list[str]:
 
     Args:
         robot: without the devices that nothing drives.
-        activity: what is played with it.
+        activity: the activity that it plays.
     """
     missing = missing_devices(robot)
     labels = {device.name: device.label for device in robot.undriven}

@@ -1,4 +1,4 @@
-"""What is said of a command that cannot be carried out now, while teaching or in a game."""
+"""Words for commands that Tangy refuses now, while teaching or in a game."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said of a session of the log: the limits of its report, and how faults ended."""
+"""Words about a session in the log: the limits of its report, and how faults ended."""
 
 from __future__ import annotations
 

@@ -25,5 +25,5 @@ def accepted(losses: int) -> str:
 
 
 def problem_words(problems: Iterable[LogProblem]) -> list[str]:
-    """Say what is wrong with a log, a sentence each."""
+    """Describe the damage in a log, a sentence each."""
     return [one if isinstance(one, str) else left_out_words(one) for one in problems]

@@ -34,7 +34,7 @@ SoundFault: TypeAlias = Literal["nothing comes", "no sound", "too loud", "very q
 
 @dataclass(frozen=True, slots=True)
 class SoundTrouble:
-    """What is wrong with a sound, and for how many whole seconds it has been so (0: just now)."""
+    """A fault of a sound, and its duration in whole s (0: it began just now)."""
 
     kind: SoundFault
     seconds: int = 0

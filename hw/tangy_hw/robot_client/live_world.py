@@ -234,7 +234,7 @@ class LiveWorld(LivePlan):
         return watch_response(self, action, numbers), True
 
     def _announce(self, action: Action, numbers: tuple[int, ...]) -> None:
-        """Speak, show and gesture; what is shown to all names no person, only the seat."""
+        """Speak, show and gesture; the public screen names no person, only the seat."""
         name, fill, deck = self.name_of(action.target), self.activity.fill, self.activity.deck
         seat, behaviour = self.seat_of(action.target), action.behaviour
         called = numbers if action.behaviour.effect == "draw" else ()

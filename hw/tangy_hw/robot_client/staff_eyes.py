@@ -33,11 +33,11 @@ class StaffEyes:
     """Asks staff how cards are, and keeps what they told of the one beside the robot."""
 
     def __init__(self, activity: Activity, commands: Commands) -> None:
-        """Take what is played, and by what the robot waits."""
+        """Take the activity, and how the robot waits."""
         self.asks = ""
         """Of whose card staff are to tell, "" while nothing is to be told."""
         self.answer: Callable[[str], ToldCard | None] = lambda person: self._told
-        """Gives what is told of a person's card; None: nothing is told yet."""
+        """Returns what staff said about a person's card; None: nothing yet."""
         self.asked_last = ""
         """Of whose card staff were asked last."""
         self.before: ToldCard | None = None

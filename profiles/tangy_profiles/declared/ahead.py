@@ -12,7 +12,7 @@ from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
 from tangy_profiles.state import Situation
 
 MOST_AHEAD = 3_000
-"""States that are looked at for what is to happen next."""
+"""The most states that the search for the next situation visits."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ from tangy_profiles.state import EVERYBODY, ActivityState, Outcome
 from tangy_sim.worlds.declared_world import DeclaredWorld
 
 MOST_BACK = 25
-"""How often a guided game goes back; what is left then is for the next one."""
+"""How often a guided game goes back; the next guided game covers the rest."""
 
 
 class GuidedDeclaredWorld(DeclaredWorld):

@@ -23,7 +23,7 @@ ValueT = TypeVar("ValueT")
 class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
     """Takes a line: Enter takes what `taken` makes of it, esc leaves.
 
-    What is wrong with a line is said below it, and it stays.
+    A line that is refused stays, with the reason below it.
     """
 
     DEFAULT_CSS = """
@@ -46,7 +46,7 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
         """Make the dialog.
 
         Args:
-            title: what is asked.
+            title: the question.
             words: what helps to answer it.
             keys: what keys do.
             begun: stands in the line already.

@@ -29,5 +29,5 @@ class TellDialog(LineDialog[str]):
         super().__init__(TELL, telling_words(waits_for, sayable), TELL_KEYS)
 
     def taken(self, line: str) -> str | None:
-        """Return what is told; None: nothing is."""
+        """Return the line without spaces around it; None if it is empty."""
         return line.strip() or None

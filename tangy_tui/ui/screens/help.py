@@ -28,7 +28,7 @@ Keys = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True, slots=True)
 class Help:
-    """What there is to say: a title, paragraphs, the keys here, and the keys everywhere."""
+    """The help: a title, paragraphs, the keys here, and the keys everywhere."""
 
     title: str
     paragraphs: tuple[str, ...]

@@ -70,7 +70,7 @@ class SetUpScreen(TangyScreen[bool]):
     def __init__(
         self, setup: SetUp, switch_on: SwitchOn, choose: ChooseActivity | None = None
     ) -> None:
-        """Take what is set up, what switches the robot on, and what asks for another activity."""
+        """Take the set-up, the switch of the robot, and the choice of another activity."""
         super().__init__()
         self.setup = setup
         self._switch_on = switch_on

@@ -75,7 +75,7 @@ class Microphone(Protocol):
 
     @property
     def trouble(self) -> SoundTrouble | None:
-        """What is wrong, if anything is."""
+        """The fault; None if there is none."""
 
     @property
     def records(self) -> bool:

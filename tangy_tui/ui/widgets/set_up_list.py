@@ -99,7 +99,7 @@ class SetUpList(Choosable):
         return lines[self._cursor] if self._cursor is not None and lines else None
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor, or whoever is carried."""
+        """Move the cursor, or the person who is carried."""
         if not self._carries:
             super().action_choose(by)
         elif 0 <= (to := (self._cursor or 0) + by) < len(self.choices):
@@ -127,7 +127,7 @@ class SetUpList(Choosable):
             self.action_tell()
 
     def action_tell(self) -> None:
-        """Tell of the line that the cursor is on, or let go of whoever is carried."""
+        """Describe the line at the cursor, or put down the person who is carried."""
         if self._carries:
             self.action_carry()
         else:
