@@ -79,7 +79,7 @@ def person_words(person: PersonNow) -> str:
         case "away":
             return "not here"
         case "visited":
-            return "Tangy is there"
+            return "visit now"  # Tangy is there, or on its way
         case "asks":
             waits = "" if person.waits is None else f" {clock_words(person.waits)}"
             return f"asks{waits}" + (f", {seen}" if seen else "")

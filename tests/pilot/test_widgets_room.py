@@ -9,10 +9,11 @@ from syrupy.assertion import SnapshotAssertion
 from textual.app import ComposeResult
 from textual.geometry import Region
 
+from tangy_profiles.room import load_room
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.widgets.room_plan import plan
+from tangy_tui.ui.widgets.room_plan import Grid, plan
 from tangy_tui.ui.widgets.room_view import RoomView
 
 if TYPE_CHECKING:
@@ -342,3 +343,14 @@ async def test_where_the_robot_has_been_taken_while_it_was_held_it_walks_to(
         room.tick()
         await pilot.pause()
         assert screen.arrived == ["user1"]
+
+
+@pytest.mark.parametrize("people", [9, 12])
+@pytest.mark.parametrize("width", [78, 118, 158])
+def test_each_table_of_a_hall_is_seen_to_both_its_ends(people: int, width: int) -> None:
+    room = load_room("hall")
+    grid = Grid(room, people, plan(width, 8, people))
+    assert len(grid.tables) == 3
+    for left, right in grid.tables:
+        cards = [centre for centre in grid.centres if left <= centre <= right]
+        assert cards and left < cards[0] - 1 and cards[-1] + 1 < right

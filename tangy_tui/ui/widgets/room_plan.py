@@ -94,20 +94,27 @@ class Grid:
         gaps = [b - a for a, b in pairwise(seats)]
         left, near, right, _ = room.table
         margin = min(gaps) / 2 if gaps else (right - left) / 2
-        self._from = seats[0] - margin
-        self._scale = plan.width / max(0.1, seats[-1] + margin - self._from)
+        tables = room.tables if people > 1 and room.tables else ()
+        tables = tuple(table for table in tables if table[0] <= seats[-1])
+        self._from = min([seats[0] - margin, *(table[0] for table in tables)])
+        end = max([seats[-1] + margin, *(table[2] for table in tables)])
+        self._scale = plan.width / max(0.1, end - self._from)
         self._top = room.front.y
         self._depth = max(0.1, near - room.reach - room.front.y)
         self._plan = plan
         self.centres = [self.column(x) for x in seats]
         middles = [round(((a + b) / 2 - self._from) * self._scale) for a, b in pairwise(seats)]
         self.slots = list(zip([0, *middles], [*middles, plan.width], strict=True))
-        tables = room.tables if people > 1 and room.tables else (room.table,)
-        last = seats[-1]
-        self.tables = [
-            (self.column(table[0]), self.column(table[2])) for table in tables if table[0] <= last
-        ]
+        self.tables = [self._ends(table[0], table[2]) for table in tables or (room.table,)]
         self.front = self.column(room.front.x)
+
+    def _ends(self, left: float, right: float) -> tuple[int, int]:
+        """Return the columns where a table (from and to in m) ends: beside the cards on it."""
+        start, end = self.column(left), self.column(right)
+        cards = [centre for centre in self.centres if start <= centre <= end]
+        if not cards:
+            return start, end
+        return max(0, min(start, cards[0] - 2)), min(self._plan.width - 1, max(end, cards[-1] + 2))
 
     def column(self, x: float) -> int:
         """Return the column, in cells, of a place in m."""

@@ -131,5 +131,5 @@ class StaffPanel(RowView, can_focus=True):
         how = how if width >= SLOT else how.partition(",")[0]
         return (
             (fit(clean(name), columns) + " ", "strong" if ink == "warn" else "text"),
-            (fit(clean(how), width - columns - 1), ink),
+            (fit(clean(how), width - columns - 2) + " ", ink),
         )
