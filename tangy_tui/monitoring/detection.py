@@ -153,9 +153,9 @@ class Detector:
         self._count(acted, explained)
         if self._refusals[str(acted.state.attended)]:
             evidence |= self.refusals(acted.state.attended)
-        if not explained and self._is_unchanged(acted, found):
-            self._unchanged[str(acted.state.attended)] += 1
-            evidence["person.unchanged"] = self._unchanged[str(acted.state.attended)]
+        if not explained and acted.action.behaviour.effect in CORRECTS:
+            unchanged = self._count_unchanged(acted, found)
+            evidence |= {"person.unchanged": unchanged} if unchanged else {}
         if self._fruitless:
             evidence["visit.fruitless"] = self._fruitless
         if evidence:
@@ -165,12 +165,19 @@ class Detector:
             evidence["behaviour.response"] = _response(outcome)
         return evidence, found
 
-    @staticmethod
-    def _is_unchanged(acted: Acted, found: Sequence[Mismatch]) -> bool:
-        """Say whether what was to be mended looks as before, and nobody was seen to refuse."""
-        mends = acted.action.behaviour.effect in CORRECTS and acted.state.attended is not None
-        unseen = acted.outcome.response is None
-        return mends and unseen and any(one.variable == OWED_BY_PEOPLE[0] for one in found)
+    def _count_unchanged(self, acted: Acted, found: Sequence[Mismatch]) -> int:
+        """Count how often in a row what a person mended looks as before; return that number.
+
+        A person who was seen to refuse leaves the count as it is.
+        """
+        person, response = str(acted.state.attended), acted.outcome.response
+        if response is not None and not response.followed:
+            return 0
+        if any(one.variable == OWED_BY_PEOPLE[0] for one in found):
+            self._unchanged[person] += 1
+        else:
+            self._unchanged.pop(person, None)
+        return self._unchanged[person]
 
     def _went_unseen(self, acted: Acted) -> bool:
         """Say whether a person was asked to mend what could be seen, and then could not be."""
