@@ -24,11 +24,15 @@ from tangy_tui.speech.lexicon import Alike, Lexicon, distinct_word
 
 @dataclass(frozen=True, slots=True)
 class CheckedFile:
-    """A file that was looked over: its mistakes, and what is worth a second look, a line each."""
+    """A file that was looked over: its mistakes, and what is worth a second look, a line each.
+
+    `notes` say how far it was looked over.
+    """
 
     file: str
     mistakes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -> CheckedFile:

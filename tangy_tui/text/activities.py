@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.declared.situations import seen_facts
@@ -13,9 +13,10 @@ from tangy_tui.text.numbers import counted
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.declared.activity import DeclaredActivity
-    from tangy_profiles.declared.checking import ActivityFlaw
+    from tangy_profiles.declared.checking import ActivityFlaw, Findings
     from tangy_profiles.declared.model import Effect, Fact, FactCondition
-    from tangy_profiles.declared.search import Reach
+    from tangy_profiles.declared.search import Cut
+    from tangy_tui.learning.coverage_proof import CoverageProof
     from tangy_tui.learning.policy import Policy
 
 
@@ -125,24 +126,63 @@ def _any_of(selectors: tuple[str, ...]) -> str:
     return f"{' or '.join(words)}{more}"
 
 
-def proof_words(activity: Activity, found: Reach) -> list[str]:
-    """Say what a search of all games has shown: whether Tangy would ask anywhere."""
+def proof_words(activity: Activity, found: CoverageProof) -> list[str]:
+    """Say for which groups a search of all games has proved that everything was shown."""
+    teams = bool(activity.teams)
     reached = counted(len(found.reached), "situation")
-    if not found.whole:
-        return [f"So many games are possible that not all were searched: {reached} came about."]
-    where = [
-        f"  {activity.in_words(one)}{': for whom?' if why else ''}"
-        for one, why in found.open.items()
+    lines = []
+    if found.proved:
+        lines.append(f"Tangy searched all games of {_sizes_words(found.proved, teams=teams)}.")
+    lines += [
+        f"Tangy could not search all games of {_sizes_words((size,), teams=teams)}: "
+        f"{_cut_words(one.cut, one.states)}"
+        for size, one in found.searches
+        if one.cut
     ]
-    searched = f"Searched all games of up to two players: {reached} can come about"
-    if where:
-        return [f"{searched}, and Tangy would ask here:", *where]
-    stuck = (
-        []
-        if found.stuck is None
-        else [f"From here no game ends: {activity.in_words(found.stuck)}."]
-    )
-    return [f"{searched}, and each was shown.", *stuck]
+    if not teams:
+        lines.append("Larger groups were not searched.")
+    if found.open:
+        lines.append(f"{reached} came about, and in these Tangy would ask you:")
+        lines += [
+            f"  {activity.in_words(one)}{': for whom?' if why else ''}"
+            for one, why in found.open.items()
+        ]
+    else:
+        lines.append(f"{reached} came about, and each was shown.")
+    if found.stuck is not None:
+        lines.append(f"From here no game ends: {activity.in_words(found.stuck)}.")
+    return lines
+
+
+def search_lines(found: Findings, *, teams: bool) -> list[str]:
+    """Say how far the games of an activity were searched, and what did not come up by then."""
+    tried = [one for one in found.searches if not one.as_expected]
+    whole = tuple(one.players for one in tried if not one.cut)
+    lines = [f"searched all games of {_sizes_words(whole, teams=teams)}."] if whole else []
+    lines += [
+        f"not searched to the end: games of {_sizes_words((one.players,), teams=teams)}"
+        f"{' that go as expected' if one.as_expected else ''}. "
+        f"{_cut_words(one.cut, one.states)}"
+        for one in found.searches
+        if one.cut
+    ]
+    if found.not_met:
+        names = ", ".join(one.name for one in found.not_met)
+        lines.append(f"did not come up by then, and may be impossible: {names}.")
+    return lines
+
+
+def _cut_words(cut: Cut, states: int) -> str:
+    why = "the time for it was over" if cut == "time" else "there are too many"
+    return f"The search stopped after {counted(states, 'state')}, because {why}."
+
+
+def _sizes_words(sizes: Sequence[int], *, teams: bool) -> str:
+    """Name sizes of groups: "1, 2 and 3 players"."""
+    *first, last = map(str, sizes)
+    both = f"{', '.join(first)} and {last}" if first else last
+    noun = "team" if teams else "player"
+    return f"{both} {noun if list(sizes) == [1] else noun + 's'}"
 
 
 TRIED = "The game has come to its end."

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -49,15 +48,19 @@ def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
     }
 
 
-def _searched(activity: Activity, policy: Policy, people: Sequence[str]) -> dict[str, Any]:
+def _searched(activity: Activity, policy: Policy) -> dict[str, Any]:
     """Describe whom behaviours are for, and what a search of all games has found."""
-    found = prove_coverage(activity, policy, people)
+    found = prove_coverage(activity, policy)
     if found is None:
         return {}
     return {
         "whom": [[*key, list(selectors)] for key, selectors in policy.whom.items()],
         "searched": {
             "whole": found.whole,
+            "sizes": [
+                {"players": size, "states": one.states, "cut": one.cut}
+                for size, one in found.searches
+            ],
             "reached": [list(situation) for situation in found.reached],
             "asks": [list(situation) for situation in found.open],
         },
@@ -92,7 +95,7 @@ def policy_document(workspace: Workspace, policy: Policy) -> dict[str, Any]:
             for decision in [policy.decide(situation)]
         ],
         "joint_states": {"people": len(people), "reachable": len(states), "as_expected": right},
-        **_searched(activity, policy, people),
+        **_searched(activity, policy),
         "exact": policy.exact(activity),
         "asks": [list(s) for s in activity.situations if not policy.decide(s).sure],
         "effects": {

@@ -53,6 +53,8 @@ def print_checked(checked: CheckedFile, activity: Activity | None) -> None:
         console.print(_verdict(checked.file, not checked.warnings, words))
     for line in checked.warnings:
         console.print(Text(f"  look at: {line}", style="yellow"))
+    for line in checked.notes:
+        console.print(Text(f"  {line}"))
 
 
 def print_rules(rules: Rules) -> None:

@@ -53,7 +53,6 @@ def print_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     Console(highlight=False).print(table)
 
 
-PLAYERS = ("one", "other")
 """As many as a search of all games has."""
 
 
@@ -85,7 +84,7 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
             console.print(Text(line))
     for line in whom_words(activity, policy):
         console.print(Text(line))
-    found = prove_coverage(activity, policy, activity.teams or PLAYERS)
+    found = prove_coverage(activity, policy)
     for line in () if found is None else proof_words(activity, found):
         console.print(Text(line))
     table = _table("What follows", "behaviour", "what was seen afterwards")

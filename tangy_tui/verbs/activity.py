@@ -318,7 +318,7 @@ def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
     from tangy_tui.speech.activity_check import CheckedFile, check_activity
-    from tangy_tui.text.activities import finding_words
+    from tangy_tui.text.activities import finding_words, search_lines
 
     try:
         activity = load_activity(name)
@@ -328,8 +328,10 @@ def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
         return CheckedFile(plain(Path(name).name), (str(error),)), None
     checked = check_activity(activity, robot, load_room().placed(load_people(SHOWN)))
     if isinstance(activity, DeclaredActivity):
-        found = [finding_words(activity.source, one) for one in findings(activity)]
-        checked = replace(checked, warnings=(*checked.warnings, *map(plain, found)))
+        found = findings(activity)
+        flaws = [plain(finding_words(activity.source, one)) for one in found.flaws]
+        notes = map(plain, search_lines(found, teams=bool(activity.teams)))
+        checked = replace(checked, warnings=(*checked.warnings, *flaws), notes=tuple(notes))
     return checked, activity
 
 
@@ -358,4 +360,5 @@ def _checked_document(checked: CheckedFile, activity: Activity | None) -> dict[s
         **({} if activity is None else _asking_document(activity)),
         "mistakes": list(checked.mistakes),
         "warnings": list(checked.warnings),
+        "notes": list(checked.notes),
     }

@@ -10,6 +10,7 @@ import pytest
 from tangy_profiles.activity import shipped_activities
 from tangy_profiles.declared.activity import read_declared
 from tangy_profiles.declared.checking import findings
+from tangy_profiles.declared.search import Limit
 from tests.support.declared import DECLARED, declared
 
 SHIPPED = shipped_activities()["trivia"]
@@ -23,12 +24,13 @@ def flaws(folder: Path, *changes: tuple[str, str]) -> set[tuple[str, str]]:
     shutil.copy(SHIPPED.with_suffix(".csv"), folder / "trivia.csv")
     path = folder / "mine.toml"
     path.write_text(text, encoding="utf-8")
-    return {(found.flaw, found.name) for found in findings(read_declared(path))}
+    return {(found.flaw, found.name) for found in findings(read_declared(path)).flaws}
 
 
 @pytest.mark.parametrize("name", DECLARED)
 def test_what_ships_has_no_flaw(name: str) -> None:
-    assert list(findings(declared(name))) == []
+    found = findings(declared(name))
+    assert (found.flaws, found.not_met) == ((), ())
 
 
 def test_a_stage_that_no_game_comes_to_and_a_flag_that_nothing_sets(tmp_path: Path) -> None:
@@ -66,3 +68,19 @@ def test_a_behaviour_that_is_never_possible(tmp_path: Path) -> None:
     needs = 'needs = ["open is yes", "open is no"]\n'
     never = ('[behaviours."tell scores"]\n', f'[behaviours."tell scores"]\n{needs}')
     assert ("behaviour never possible", "tell scores") in flaws(tmp_path, never)
+
+
+def test_a_search_that_is_cut_says_so_and_what_it_had_not_met() -> None:
+    found = findings(declared("trivia"), Limit(states=40, seconds=10.0))
+    assert {one.cut for one in found.searches} == {"states"}
+    assert all(0 < one.states <= 40 for one in found.searches)
+    assert "over" in {one.name for one in found.not_met}
+    assert found.flaws == ()
+
+
+def test_a_search_ends_with_its_time() -> None:
+    found = findings(declared("exercises"), Limit(states=12_000, seconds=0.2))
+    whole = findings(declared("trivia"))
+    assert found.searches[-1].cut == "time"
+    assert [one.cut for one in whole.searches] == ["", "", ""]
+    assert [one.players for one in whole.searches] == [1, 2, 2]

@@ -26,6 +26,7 @@ def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
     assert tangy("learn", *options).returncode == 0
     learnt = json.loads(tangy("policy", "--json", *options).stdout)
     assert (learnt["searched"]["whole"], learnt["searched"]["asks"]) == (True, [])
+    assert all(one["states"] > 0 for one in learnt["searched"]["sizes"])
     said = " ".join(tangy("policy", *options).stdout.split())  # lines break where they are full
     assert "each was shown" in said
     played = tangy("play", "--games", 100, "--headless", "--json", "--seed", 7, *options)

@@ -52,7 +52,7 @@ def test_two_guided_games_show_all_that_can_come_about(name: str, count: int) ->
         world = GuidedDeclaredWorld(activity, players, seed=seed, shown=taught)
         play(world, activity)
         taught = world.taught
-    found = reach(activity.declaration, players, taught)
+    found = reach(activity.declaration, players[:2], taught)
     assert found.whole
     assert found.open == {}
     assert found.stuck is None

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from time import thread_time
 from typing import Literal
 
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.search import Reach, explore
+from tangy_profiles.declared.search import Cut, Limit, Reach, explore
 from tangy_profiles.declared.shown_moves import UNDECIDED, Move, ShownMoves
 from tangy_profiles.declared.speech import empty_slots
 from tangy_profiles.state import EVERYBODY
@@ -24,8 +25,10 @@ Flaw = Literal[
     "never ends",
 ]
 PLAYERS = ("one", "other")
-MOST_TRIED = 12_000
-"""States that are searched with every behaviour that can be done."""
+LIMIT = Limit(states=12_000, seconds=10.0)
+"""How far each search goes, and for how many s of CPU all of them together."""
+SHARE = 0.6
+"""The share of the time that is left to a search while another one follows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,37 +40,95 @@ class ActivityFlaw:
     text: str = ""
 
 
-def findings(activity: DeclaredActivity) -> Iterator[ActivityFlaw]:
-    """Yield the problems of an activity that can be read, the worst first."""
+@dataclass(frozen=True, slots=True)
+class SearchedGames:
+    """How far games of a number of players were searched.
+
+    `as_expected` are games that go as the file expects, others have every possible behaviour.
+    `cut` says why the search ended early.
+    """
+
+    players: int
+    states: int
+    cut: Cut
+    as_expected: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """The flaws of an activity, the worst first, and how far its games were searched.
+
+    `not_met` are stages, situations and behaviours that no search met before one was cut: they
+    may come up later.
+    """
+
+    flaws: tuple[ActivityFlaw, ...]
+    searches: tuple[SearchedGames, ...]
+    not_met: tuple[ActivityFlaw, ...] = ()
+
+
+def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
+    """Return the flaws of an activity that can be read, and how far it was searched.
+
+    Args:
+        activity: the activity.
+        limit: the states of each search, and the CPU time of all of them in s.
+    """
+    until = thread_time() + limit.seconds
     slots: dict[tuple[str, str], bool] = {}
-    found = _tried(activity, slots)
-    stuck = found.stuck
+    players = (activity.teams or PLAYERS)[:2]
+    sizes = [players] if activity.teams else [players[:1], players]
+    found: list[tuple[SearchedGames, Reach]] = []
+
+    def note(group: Sequence[str], one: Reach, *, as_expected: bool = False) -> None:
+        found.append((SearchedGames(len(group), one.states, one.cut, as_expected), one))
+
+    for group in sizes:
+        left = Limit(limit.states, SHARE * (until - thread_time()))
+        note(group, _tried(activity, group, slots, left))
+    tried = [one for _, one in found]
     if activity.expected:
-        slots, as_expected = _played_as_expected(activity)
-        stuck = stuck or as_expected.stuck
-    if stuck is not None:
-        yield ActivityFlaw("never ends", activity.in_words(stuck))
-    if found.whole:
-        stages = {situation.stage for situation in found.reached}
-        for stage in activity.stages:
-            if stage not in stages:
-                yield ActivityFlaw("stage never reached", stage)
-        for situation in activity.situations:
-            if situation.stage in stages and situation not in found.reached:
-                yield ActivityFlaw("situation never reached", activity.in_words(situation))
-        for name in activity.behaviours:
-            if name not in found.played:
-                yield ActivityFlaw("behaviour never possible", name)
-    for (behaviour, text), lacks in slots.items():
-        if lacks and behaviour in found.played:
-            yield ActivityFlaw("text lacks a word", behaviour, text)
-    yield from _unused_facts(activity)
+        left = Limit(limit.states, until - thread_time())
+        slots, one = _played_as_expected(activity, players, left)
+        note(players, one, as_expected=True)
+    stuck = next((one.stuck for _, one in found if one.stuck is not None), None)
+    flaws = [ActivityFlaw("never ends", activity.in_words(stuck))] if stuck is not None else []
+    missing = tuple(_missing(activity, tried))
+    whole = all(one.whole for one in tried)
+    played = {name for one in tried for name in one.played}
+    flaws += missing if whole else ()
+    flaws += [
+        ActivityFlaw("text lacks a word", behaviour, text)
+        for (behaviour, text), lacks in slots.items()
+        if lacks and behaviour in played
+    ]
+    flaws += _unused_facts(activity)
+    return Findings(tuple(flaws), tuple(one for one, _ in found), () if whole else missing)
 
 
-def _tried(activity: DeclaredActivity, slots: dict[tuple[str, str], bool]) -> Reach:
+def _missing(activity: DeclaredActivity, found: Sequence[Reach]) -> Iterator[ActivityFlaw]:
+    """Yield the stages, situations and behaviours that no search came to."""
+    reached = {situation for one in found for situation in one.reached}
+    stages = {situation.stage for situation in reached}
+    for stage in activity.stages:
+        if stage not in stages:
+            yield ActivityFlaw("stage never reached", stage)
+    for situation in activity.situations:
+        if situation.stage in stages and situation not in reached:
+            yield ActivityFlaw("situation never reached", activity.in_words(situation))
+    for name in activity.behaviours:
+        if not any(name in one.played for one in found):
+            yield ActivityFlaw("behaviour never possible", name)
+
+
+def _tried(
+    activity: DeclaredActivity,
+    players: Sequence[str],
+    slots: dict[tuple[str, str], bool],
+    limit: Limit,
+) -> Reach:
     """Search with every behaviour, and note which texts lack a word whenever they are spoken."""
     declaration = activity.declaration
-    players = (activity.teams or PLAYERS)[:2]
     rounds = min(declaration.items.rounds, max(1, declaration.most_counted))
     situations = ShownMoves(activity.behaviours)
 
@@ -83,11 +144,11 @@ def _tried(activity: DeclaredActivity, slots: dict[tuple[str, str], bool]) -> Re
         return able
 
     game = DeclaredGame(declaration, players, range(rounds))
-    return explore(game, moves, situations.situation, MOST_TRIED)
+    return explore(game, moves, situations.situation, limit)
 
 
 def _played_as_expected(
-    activity: DeclaredActivity,
+    activity: DeclaredActivity, players: Sequence[str], limit: Limit
 ) -> tuple[dict[tuple[str, str], bool], Reach]:
     """Search games that go as the file expects; return which texts lack a word at some time."""
     slots: dict[tuple[str, str], bool] = {}
@@ -101,10 +162,9 @@ def _played_as_expected(
         _note_slots(game, *move, slots, any_time=True)
         return [move]
 
-    game = DeclaredGame(declaration, (activity.teams or PLAYERS)[:2], range(1))
-    if declaration.items.rounds:
-        game = DeclaredGame(declaration, game.players, range(min(2, declaration.items.rounds)))
-    return slots, explore(game, moves, shown.situation, MOST_TRIED)
+    rounds = min(2, declaration.items.rounds) or 1
+    game = DeclaredGame(declaration, players, range(rounds))
+    return slots, explore(game, moves, shown.situation, limit)
 
 
 def expected_moves(activity: DeclaredActivity) -> ShownMoves:

@@ -10,6 +10,8 @@ from bisect import bisect_right
 from collections import deque
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, field
+from time import thread_time
+from typing import Literal
 
 from tangy_profiles.declared.acts import Act, acts, take_in
 from tangy_profiles.declared.game import DeclaredGame
@@ -25,12 +27,24 @@ _Node = tuple[bool, Hashable]
 """Whether it is the robot's move, and the state."""
 SOON = 1.0
 """So many s pass where nothing in particular is to happen."""
-MOST_STATES = 60_000
 MOST_ASKING = 2
 """More do not ask at once in a search."""
 FEWEST_ROUNDS = 2
-MOST_PLAYERS = 2
-"""A search of every game has no more: states grow with every one."""
+Cut = Literal["", "states", "time"]
+"""Why a search ended before it had seen everything ("": it has)."""
+LOOKS_AT_CLOCK = 32
+"""After so many states a search looks at the time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """How far a search may go: in states, people's acts and the robot's moves apart, and CPU s."""
+
+    states: int = 60_000
+    seconds: float = 10.0
+
+
+USUAL = Limit()
 
 
 def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Event]:
@@ -110,17 +124,22 @@ def state_key(game: DeclaredGame) -> Hashable:
 class Reach:
     """Which situations games can come to, by what was taught or by any behaviour.
 
-    `open` are those reached in which nothing was shown, or in which selectors disagree. `whole`
-    says whether the search came to its end, so that nothing else can be reached. `stuck` is a
-    situation from which no game ends, if there is one.
+    `open` are those reached in which nothing was shown, or in which selectors disagree. `cut`
+    says why the search ended early, if it did: then other situations may be reached as well.
+    `stuck` is a situation from which no game ends, if there is one.
     """
 
     reached: dict[Situation, int] = field(default_factory=dict)
     open: dict[Situation, str] = field(default_factory=dict)
     states: int = 0
-    whole: bool = True
+    cut: Cut = ""
     stuck: Situation | None = None
     played: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def whole(self) -> bool:
+        """Whether the search came to its end, so that nothing else can be reached."""
+        return not self.cut
 
 
 def done_move(game: DeclaredGame, move: Move) -> DeclaredGame:
@@ -136,7 +155,7 @@ def explore(
     game: DeclaredGame,
     moves: Callable[[DeclaredGame], Sequence[Move]],
     situation: Callable[[DeclaredGame], Situation],
-    most: int = MOST_STATES,
+    limit: Limit = USUAL,
 ) -> Reach:
     """Search everything that can be reached from a game.
 
@@ -146,9 +165,10 @@ def explore(
         game: where the search begins.
         moves: the behaviours that may be done in a state; none if nothing was shown.
         situation: gives the situation of a state.
-        most: the states that are looked at.
+        limit: how far the search may go.
     """
     found = Reach()
+    until, looked = thread_time() + limit.seconds, 0
     begin = (True, state_key(game))
     waiting: deque[tuple[DeclaredGame, _Node]] = deque([(game, begin)])
     known: dict[_Node, DeclaredGame] = {begin: game}
@@ -161,13 +181,17 @@ def explore(
         if other.over:
             ends.append(new)
         elif new not in known:
-            if len(known) >= most:
-                found.whole = False
+            if len(known) >= limit.states:
+                found.cut = "states"
                 return
             known[new] = other
             waiting.append((other, new))
 
     while waiting:
+        looked += 1
+        if looked % LOOKS_AT_CLOCK == 0 and thread_time() > until:
+            found.cut = "time"
+            break
         one, node = waiting.popleft()
         if not node[0]:  # people act, and then it is the robot's move
             reach_node(one, True, node)
@@ -227,18 +251,21 @@ def _until_next_band(game: DeclaredGame) -> float | None:
     return min(left, default=None)
 
 
-def reach(declaration: Declaration, players: Sequence[str], taught: ShownMoves) -> Reach:
+def reach(
+    declaration: Declaration, players: Sequence[str], taught: ShownMoves, limit: Limit = USUAL
+) -> Reach:
     """Search every game that can occur by what was taught.
 
     Args:
         declaration: the activity.
-        players: those who take turns; a search has the first `MOST_PLAYERS`.
+        players: those who take turns; states grow with every one of them.
         taught: what to do in which situation.
+        limit: how far the search may go.
     """
-    game = DeclaredGame(declaration, players[:MOST_PLAYERS], range(declaration.items.rounds))
+    game = DeclaredGame(declaration, players, range(declaration.items.rounds))
 
     def moves(now: DeclaredGame) -> list[Move]:
         move = taught.move(now)
         return [] if move is None else [move]
 
-    return explore(search_game(game), moves, taught.situation)
+    return explore(search_game(game), moves, taught.situation, limit)
