@@ -166,6 +166,11 @@ class FaultRule:
         return self.criticality == CRITICAL
 
     @property
+    def quiet(self) -> bool:
+        """Whether it is noted and no more: Tangy goes on, and nobody has to do anything."""
+        return self.recovery == (RECOVERIES[0],) and not self.remedy and not self.device
+
+    @property
     def urgency(self) -> int:
         """Its place among faults that are there at once; the smallest comes first."""
         return URGENCY.index(self.recovery[0])

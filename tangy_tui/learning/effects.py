@@ -127,13 +127,20 @@ def transition(
         if shown != activity.unread:
             lost = now == activity.unread and not closed and after.stage not in closing
             changes["card"] = "lost from view" if lost else "kept in view"
-    fewer = any(
-        user.request == "AR" and after.user(user.id).request == "ANR"
-        for user in before.users
-        if user.id != person
-    )
-    changes["others' requests"] = "fewer" if fewer else "kept"
+    waiting = [user.id for user in before.users if user.request == "AR" and user.id != person]
+    gone = sum(after.user(id).request == "ANR" for id in waiting)
+    changes["others' requests"] = who_waits(gone, len(waiting))
     return changes
+
+
+def who_waits(gone: int, waiting: int) -> str:
+    """Describe what became of the requests of `waiting` people of whom `gone` ask no more.
+
+    One person, or some, may change their minds; that all do at the same moment is another matter.
+    """
+    if not gone:
+        return "kept"
+    return "none left" if 1 < gone == waiting else "fewer"
 
 
 def _counted(stage: str, activity: Activity) -> bool:

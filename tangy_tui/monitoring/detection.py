@@ -29,7 +29,7 @@ from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState, Outcome, Variable
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.interaction.refusal import refused
-from tangy_tui.learning.effects import Effects, Mismatch
+from tangy_tui.learning.effects import Effects, Mismatch, who_waits
 
 OWED_BY_PEOPLE = ("what was asked about", "request")
 """The variables that stay as they were if a person does not do what was asked: an outcome, and
@@ -39,7 +39,6 @@ no fault of the robot's."""
 LATE = "WAITS"
 """How a robot is while the data of a device is late, and not lost."""
 OTHERS: Variable = "others' requests"
-FEWER = "fewer"
 
 
 class Detector:
@@ -54,6 +53,8 @@ class Detector:
         self._unchanged: Counter[str] = Counter()
         self.doubted: set[str] = set()
         """People whose cards Tangy may misread; it no longer judges them in this game."""
+        self.withdrew: tuple[str, ...] = ()
+        """Who asks no more since the last comparison, although nobody has helped them."""
         self._fruitless = 0
         self._last: ActivityState | None = None
         self._health: Health | None = None
@@ -65,6 +66,7 @@ class Detector:
         self._in_game.clear()
         self._unchanged.clear()
         self.doubted.clear()
+        self.withdrew = ()
         self._fruitless = 0
         self._last = None
 
@@ -146,8 +148,11 @@ class Detector:
         """
         behaviour, outcome = acted.action.behaviour, acted.outcome
         found = self.unexpected(behaviour, acted.state, outcome, acted.after)
-        if behaviour.name in self.effects.values:
-            found += self._between(behaviour.name, acted.state, found)
+        waiting = [] if self._last is None else _waiting(self._last, acted.state)
+        gone = [id for id in waiting if acted.state.user(id).request == "ANR"]
+        self.withdrew = tuple(dict.fromkeys((*gone, *_gone_during(acted))))
+        if gone and not any(one.variable == OTHERS for one in found):
+            found += self._between(behaviour.name, waiting, len(gone))
         self._last = acted.after
         evidence: dict[str, Fact] = {f"mismatch.{one.variable}": one.seen for one in found}
         self._count(acted, explained)
@@ -218,19 +223,14 @@ class Detector:
         unexpected = self.unexpected(behaviour, before, outcome, after)
         return bool(unexpected) or refused(behaviour, before, outcome, after)
 
-    def _between(
-        self, behaviour: str, now: ActivityState, found: Sequence[Mismatch]
-    ) -> list[Mismatch]:
-        """Return what changed before a behaviour began, since the last one: who asks no more."""
-        last, expected = self._last, self.effects.values[behaviour].get(OTHERS, frozenset())
-        if last is None or FEWER in expected or any(one.variable == OTHERS for one in found):
+    def _between(self, behaviour: str, waiting: Sequence[str], gone: int) -> list[Mismatch]:
+        """Return the mismatch that of those who waited some ask no more as a behaviour begins."""
+        if behaviour not in self.effects.values:
             return []
-        gone = any(
-            user.request == "AR" and now.user(user.id).request == "ANR"
-            for user in last.users
-            if user.id not in (last.attended, now.attended)
-        )
-        return [Mismatch(behaviour, OTHERS, tuple(sorted(expected)), FEWER)] if gone else []
+        expected = self.effects.values[behaviour].get(OTHERS, frozenset())
+        seen = who_waits(gone, len(waiting))
+        mismatch = Mismatch(behaviour, OTHERS, tuple(sorted(expected)), seen)
+        return [] if seen in expected else [mismatch]
 
     def _count(self, acted: Acted, explained: bool) -> None:
         """Count requests that a person did not follow, and behaviours that changed nothing."""
@@ -248,6 +248,23 @@ class Detector:
         alike = after._replace(step=before.step, closed=before.closed) == before
         moved_on = before.attended is None and bool(outcome.numbers)  # a number was called
         self._fruitless = self._fruitless + 1 if alike and not moved_on else 0
+
+
+def _waiting(last: ActivityState, now: ActivityState) -> list[str]:
+    """Return who asked and waited for the robot to come, which then stood with nobody of them."""
+    beside = {last.place, now.place, now.attended}
+    return [user.id for user in last.users if user.request == "AR" and user.id not in beside]
+
+
+def _gone_during(acted: Acted) -> list[str]:
+    """Return who waited while a behaviour was for somebody else, and asks no more after it."""
+    return [
+        user.id
+        for user in acted.state.users
+        if user.request == "AR"
+        and user.id != acted.state.attended
+        and acted.after.user(user.id).request == "ANR"
+    ]
 
 
 def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:

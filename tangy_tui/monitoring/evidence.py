@@ -89,6 +89,7 @@ _MISMATCHES = {
     ("card", "lost from view"): "what Tangy was looking at went out of its sight",
     ("card", "kept in view"): "Tangy still sees what should be out of its sight",
     ("others' requests", "fewer"): "somebody else who asked for help asks no more",
+    ("others' requests", "none left"): "all who asked for help stopped asking at the same moment",
     ("others' requests", "kept"): "somebody else still asks for help, unexpectedly",
 }
 

@@ -14,7 +14,7 @@ from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.game_events import Acted, GameEvent, Unsure
 from tangy_tui.learning.effects import Mismatch
 from tangy_tui.monitoring.aftermath import Aftermath
-from tangy_tui.monitoring.detection import Detector, together
+from tangy_tui.monitoring.detection import OTHERS, Detector, together
 from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
 from tangy_tui.monitoring.fault import BORNE, Fault, RecoveryEvent
 from tangy_tui.monitoring.recovery import Event, Recovery
@@ -166,7 +166,7 @@ class FaultWatch:
         told: list[Event] = []
         attended = acted.state.attended if acted is not None else whose
         for diagnosis in found:
-            person = None if diagnosis.rule.device else attended
+            person = None if diagnosis.rule.device else self._whose(diagnosis, attended)
             if self._recovery.knows(diagnosis, person):
                 continue
             try:
@@ -174,11 +174,14 @@ class FaultWatch:
             except TangyError:
                 self._seen = None  # so that the next look finds it again
                 raise
-            told += self._recovery.supersede(self._recovery.faults[-1])
+            fault = self._recovery.faults[-1]
+            if diagnosis.rule.quiet:
+                told += self._recovery.go_further(fault)
+            told += self._recovery.supersede(fault)
             if diagnosis.rule.remedy == LEAVE_TO_STAFF and person is not None:
                 self._detector.doubted.add(person)
             if acted is not None and diagnosis.mismatches:
-                self.acted[self._recovery.faults[-1].id] = acted
+                self.acted[fault.id] = acted
         if told and not self._recovery.ended:
             told += self._recovery.halt_if_critical()
             for fault in self._recovery.waiting[1:]:
@@ -187,3 +190,10 @@ class FaultWatch:
                         fault, RecoveryEvent("kept", self._recovery.seconds)
                     )
         return told
+
+    def _whose(self, diagnosis: Diagnosis, attended: str | None) -> str | None:
+        """Return whom a diagnosis is about; None: no single person."""
+        if not diagnosis.mismatches or any(m.variable != OTHERS for m in diagnosis.mismatches):
+            return attended
+        withdrew = self._detector.withdrew
+        return withdrew[0] if len(withdrew) == 1 else None

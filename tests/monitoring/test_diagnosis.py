@@ -88,12 +88,14 @@ def test_whatever_is_seen_every_symptom_is_explained_once(found: dict[str, Fact]
 
 
 def test_what_no_rule_explains_asks_the_teacher_and_says_what_was_seen() -> None:
-    mismatch = Mismatch("call number", "others' requests", ("kept",), "fewer")
-    (told,) = diagnose(BOOK, {"mismatch.others' requests": "fewer"}, [mismatch])
+    mismatch = Mismatch("call number", "others' requests", ("kept",), "none left")
+    (told,) = diagnose(BOOK, {"mismatch.others' requests": "none left"}, [mismatch])
     assert told.rule is BOOK.fallback
     assert told.rule.recovery == ("teacher",)
     words = evidence_words(told.evidence, told.mismatches, ROBOT)
-    assert words == "after 'call number', somebody else who asked for help asks no more"
+    assert words == (
+        "after 'call number', all who asked for help stopped asking at the same moment"
+    )
 
 
 def test_a_mismatch_belongs_to_the_fault_that_explains_it() -> None:
@@ -105,7 +107,7 @@ def test_a_mismatch_belongs_to_the_fault_that_explains_it() -> None:
         "mismatch.others' requests": "fewer",
     }
     told = {d.rule.code: d.mismatches for d in diagnose(BOOK, found, [place, other])}
-    assert told == {"path-blocked": (place,), "unexplained": (other,)}
+    assert told == {"path-blocked": (place,), "request-withdrawn": (other,)}
 
 
 def test_staff_read_whom_to_call_or_that_nobody_is_named() -> None:

@@ -365,15 +365,46 @@ def test_what_breaks_a_behaviour_off_explains_that_nothing_has_come_of_it(
     assert ended(told).stopped is None
 
 
-def test_who_asks_no_more_before_the_next_behaviour_begins_is_missed(supervise: Supervise) -> None:
-    for seed in range(30):
+def waiting(supervise: Supervise, some: int) -> Supervision:
+    """Play until some people wait for help, and Tangy is with none of them."""
+    for seed in range(60):
         game = supervise(seed=seed)
         game.begin()
-        while not game.over and len(world_of(game).tracker.queue) < 2:
+        tracker = world_of(game).tracker
+        while not game.over and (len(tracker.queue) < some or tracker.place in tracker.queue):
             game.step()
         if not game.over:
-            break
-    world_of(game).tracker.queue.pop()
+            return game
+    raise AssertionError(f"Never did {some} people wait.")
+
+
+def test_a_sign_that_is_lowered_again_is_noted_and_the_game_goes_on(
+    supervise: Supervise, workspace: Workspace
+) -> None:
+    game = waiting(supervise, 2)
+    person = world_of(game).tracker.queue.pop()
     told = game.step()
-    assert codes(told) == ["unexplained"]
-    assert "asks no more" in game.faults[-1].why
+    assert codes(told) == ["request-withdrawn"] and moves(told) == ["recovered"]
+    assert (game.question, game.halted, game.waiting) == (None, None, [])
+    (kept,) = [one for one in read_faults(workspace.store) if one.code == "request-withdrawn"]
+    assert (kept.person, kept.status) == (person, OVER)
+    assert not any(move.speech for move in kept.moves)
+    assert game.detector.refusals(person) == {}
+
+
+def test_the_only_one_who_waits_may_change_their_mind(supervise: Supervise) -> None:
+    game = waiting(supervise, 1)
+    tracker = world_of(game).tracker
+    (person,) = tracker.queue
+    tracker.queue.clear()
+    assert codes(game.step()) == ["request-withdrawn"]
+    assert game.faults[-1].person == person and game.question is None
+
+
+def test_staff_are_asked_when_all_stop_asking_at_the_same_moment(supervise: Supervise) -> None:
+    game = waiting(supervise, 2)
+    world_of(game).tracker.queue.clear()
+    assert codes(game.step()) == ["unexplained"]
+    assert game.faults[-1].person is None
+    game.step()
+    assert game.question is not None
