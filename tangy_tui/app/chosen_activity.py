@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from tangy_profiles.activity import load_activity
+from tangy_profiles.activity import Activity, known_activities, load_activity
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
-from tangy_profiles.errors import TangyError
+from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain, read_toml
 
 FILE = "activity.toml"
@@ -51,3 +51,19 @@ def choose_activity(folder: Path, activity: str) -> str:
     except OSError as error:
         raise TangyError(plain(f"{folder / FILE}: cannot be written: {error.strerror}.")) from None
     return kept
+
+
+def choosable(profile: str, activity: Activity) -> list[tuple[str, Activity]]:
+    """Return the activities that can be chosen, by the words that choose them.
+
+    The present one, with its `profile`, is the first: it may be a file of one's own.
+    """
+    found = [(profile, activity)]
+    for name in sorted(known_activities()):
+        if name == profile:
+            continue
+        try:
+            found.append((name, load_activity(name)))
+        except ProfileError:
+            continue  # of what other packages bring; `tangy doctor` says what is wrong with it
+    return found

@@ -15,6 +15,7 @@ from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
 from tangy_profiles.health import OK
 from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.app.chosen_activity import choosable
 from tangy_tui.app.joining import let_join
 
 if TYPE_CHECKING:
@@ -98,13 +99,20 @@ class SetUp:
             self.seats[at], self.seats[to] = self.seats[to], self.seats[at]
             self.workspace.seat(self.seats)
 
+    @property
+    def teams_play(self) -> bool:
+        """Whether teams take part, and not people one by one."""
+        return bool(self.workspace.activity.teams)
+
     def add(self, name: str, *, guest: bool) -> None:
         """Let a person take part from now on, or as a guest today, as long as the robot is off.
+
+        Not while `teams_play`.
 
         Raises:
             TangyError: there is no room for more, or the name cannot be given.
         """
-        if self.world is None:
+        if self.world is None and not self.teams_play:
             self.seats.append(let_join(self.workspace, name, guest=guest))
 
     def rename(self, person: str, name: str) -> None:
@@ -114,6 +122,11 @@ class SetUp:
             TangyError: it cannot be given.
         """
         self.workspace.rename(self.workspace.find_person(person), name)
+
+    def activities(self) -> dict[str, str]:
+        """Return the titles of the activities that can be chosen, the present one first."""
+        there = choosable(self.workspace.profile, self.workspace.activity)
+        return {name: activity.title for name, activity in there}
 
     def play(self, activity: str) -> None:
         """Play another activity, as long as the robot is off.

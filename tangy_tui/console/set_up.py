@@ -23,6 +23,10 @@ from tangy_tui.text import set_up as text
 _SEAT = re.compile(r"seat (.+?) (\d{1,2})", re.I)
 _MINUTES = re.compile(r"time (\d{1,3})(?: minutes?)?", re.I)
 _WORDS = re.compile(r"words (.+)", re.I)
+_JOINS = re.compile(r"(guest|add) (.+)", re.I)
+_NAME = re.compile(r"rename (.+?) to (.+)", re.I)
+_ACTIVITY = re.compile(r"activity (.+)", re.I)
+_ACTIVITIES = ("activity", "activities")
 
 
 class SetUpLines:
@@ -84,9 +88,29 @@ class SetUpLines:
             setup.minutes = min(int(minutes[1]), 10 * MINUTES[-1])
         elif strength := _WORDS.fullmatch(words):
             setup.choose_strength(strength[1])
+        elif joins := _JOINS.fullmatch(words):
+            self._add(joins[2], guest=joins[1].casefold() == "guest")
+        elif name := _NAME.fullmatch(words):
+            setup.rename(self._find(name[1]), name[2])
+        elif wanted := _ACTIVITY.fullmatch(words):
+            self._play(wanted[1])
+        elif words.casefold() in _ACTIVITIES:
+            self._write(text.activities_line(setup.activities().values()))
         else:
             return False
         return True
+
+    def _add(self, name: str, *, guest: bool) -> None:
+        if self.setup.teams_play:
+            raise TangyError(text.TEAMS_PLAY)
+        self.setup.add(name, guest=guest)
+
+    def _play(self, wanted: str) -> None:
+        """Play another activity, called by its word or its title."""
+        titles = self.setup.activities()
+        called = {title.casefold(): name for name, title in titles.items()}
+        self.setup.play(called.get(wanted.casefold(), wanted))
+        self._command = command_reader(self.setup.workspace.activity, self._find)
 
     def _take(self, command: GameCommand | None) -> bool | None:
         """Take a command of games as a choice; None: staff leave."""

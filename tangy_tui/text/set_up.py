@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import assert_never
 
 from tangy_tui.app.set_up import Check, CheckName, SetUp
@@ -18,6 +18,9 @@ NO_CARD = "Tangy saw no card. Hold one closer, flat, and in good light."
 NO_SOUND = "Tangy could not speak. Check its loudspeaker."
 SWITCH_FIRST = "First press Enter on Robot: Tangy is still off."
 SEATED = "Tangy is on, so you cannot change people or seats. To change them, leave with esc."
+TEAMS_PLAY = (
+    "Teams play this activity, so you cannot add people. Tell people which team they are in."
+)
 ACTIVITY = "Activity"
 ADD, ADD_GUEST, RENAME = "Who has come?", "Is {} here for good?", "What is {} called?"
 FOR_GOOD, TODAY = "takes part from now on", "is a guest today"
@@ -193,8 +196,9 @@ def _to_do(check: Check) -> str:
 
 
 LINES_HELP = (
-    "Type: left Rosa, here Rosa, seat Rosa 3, play for line, full card, several winners, pace 20, "
-    "visits on, words gentle, time 40. Then: begin. Or: end."
+    "Type: left Rosa, here Rosa, seat Rosa 3, guest Anna, add Anna, rename Rosa to Rosie, "
+    "activity trivia, play for line, full card, several winners, pace 20, visits on, words gentle, "
+    "time 40. Then: begin. Or: end."
 )
 LINES_ANYWAY = "Not everything is ready. Type begin to begin anyway, or end."
 
@@ -203,6 +207,11 @@ def line_of(check: Check) -> str:
     """Say how a part is, in line mode, which has no keys."""
     unchecked = check.state == "not checked"
     return "not tried" if unchecked else check_words(check)
+
+
+def activities_line(titles: Iterable[str]) -> str:
+    """List the activities that can be chosen."""
+    return f"You can play: {', '.join(titles)}. Type: activity, and one of them."
 
 
 def lines_of(setup: SetUp) -> list[str]:
@@ -215,8 +224,19 @@ def lines_of(setup: SetUp) -> list[str]:
     return [
         f"{PEOPLE}: {people_words(setup)}.",
         *people,
-        f"Played for: {patterns_words(setup)}. Winners: {winners_words(setup)}.",
-        f"Pace: {pace_words(setup.pace)}. Time: {minutes_words(setup.minutes)}.",
-        f"Tangy visits {visits_words(setup)}. Its words: {strength_words(setup)}.",
+        f"{ACTIVITY}: {setup.workspace.activity.title}.",
+        *_game_lines(setup),
         *missing_words(setup.workspace.robot, setup.workspace.activity),
+    ]
+
+
+def _game_lines(setup: SetUp) -> list[str]:
+    """Describe the choices for the game; without patterns there are fewer."""
+    pace = f"Pace: {pace_words(setup.pace)}. Time: {minutes_words(setup.minutes)}."
+    if not setup.workspace.activity.rules.patterns:
+        return [pace, f"Tangy's words: {strength_words(setup)}."]
+    return [
+        f"Played for: {patterns_words(setup)}. Winners: {winners_words(setup)}.",
+        pace,
+        f"Tangy visits {visits_words(setup)}. Its words: {strength_words(setup)}.",
     ]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tangy_profiles.activity import known_activities, load_activity
-from tangy_profiles.errors import ProfileError, TangyError
+from tangy_profiles.errors import TangyError
+from tangy_tui.app.chosen_activity import choosable
 from tangy_tui.text.activities import CHOOSE_ACTIVITY, activity_note, chosen_words
 
 if TYPE_CHECKING:
@@ -48,13 +48,5 @@ def choices(workspace: Workspace) -> list[tuple[str, str, str]]:
 
     A file of one's own is among them while it is the present one.
     """
-    found = [(workspace.profile, workspace.activity.title, activity_note(workspace.activity))]
-    for name in sorted(known_activities()):
-        if name == workspace.profile:
-            continue
-        try:
-            activity = load_activity(name)
-        except ProfileError:
-            continue  # of what other packages bring; `tangy doctor` says what is wrong with it
-        found.append((name, activity.title, activity_note(activity)))
-    return found
+    there = choosable(workspace.profile, workspace.activity)
+    return [(name, activity.title, activity_note(activity)) for name, activity in there]

@@ -212,8 +212,11 @@ def live(
         if workspace.robot.drivers and not (bench or plain_lines or sees):
             raise TangyError(staff_needed(workspace.activity.object))
         lines = _set_up(workspace, pace) if plain_lines and not begin and past is None else None
+        played_before = workspace.profile
         if lines is not None and not lines.run():
             return
+        if workspace.profile != played_before:
+            learnt = recall(workspace, "", quiet=as_json)
         if not as_json:
             print(SWITCHING_ON, file=sys.stderr)
         from tangy_tui.app.live_games import LiveGames

@@ -16,6 +16,7 @@ from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.text.register import with_guests
+from tangy_tui.text.set_up import TEAMS_PLAY
 
 
 def ids(workspace: Workspace) -> list[str]:
@@ -96,6 +97,33 @@ def test_a_game_is_set_up_by_lines(data_folder: Path) -> None:
     assert (setup.pace, setup.several, setup.strength, setup.minutes) == (20, True, "gentle", 40)
     assert next(lines) == "never read"
     assert not SetUpLines(setup, lambda: "end", said.append).run()
+    workspace.close()
+
+
+def test_people_and_the_activity_are_set_up_by_lines(taught: Path) -> None:
+    workspace = Workspace(taught)
+    setup, said = SetUp.of(workspace), list[str]()
+    lines = iter(
+        ["guest Anna", "add Bert", "rename user 3 to Clara", "rename Nobody to Dora",
+         "seat Anna 1", "guest Bert", "activities", "activity no such thing", "activity Trivia",
+         "activity BINGO", "end"]
+    )  # fmt: skip
+    assert not SetUpLines(setup, lambda: next(lines, None), said.append).run()
+    names = [workspace.name(person) for person in setup.seats]
+    assert names == ["Anna", "User 2", "Clara", "User 4", "User 1", "Bert"]
+    assert setup.seats[0] == "guest1" and ids(workspace)[-1] == setup.seats[-1]
+    assert any(all(title in line for title in setup.activities().values()) for line in said)
+    assert workspace.profile == "bingo" and any("not learnt Trivia" in line for line in said)
+    workspace.close()
+
+
+def test_teams_are_set_up_as_they_are(data_folder: Path) -> None:
+    workspace = Workspace(data_folder, activity="team-trivia")
+    setup, said = SetUp.of(workspace), list[str]()
+    lines = iter(["guest Anna", "words gentle", "time 20", "begin"])
+    assert SetUpLines(setup, lambda: next(lines, None), said.append).run()
+    assert TEAMS_PLAY in said and guest_ids(workspace.store) == []
+    assert tuple(setup.seats) == workspace.activity.teams and setup.minutes == 20
     workspace.close()
 
 

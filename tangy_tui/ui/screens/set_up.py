@@ -231,8 +231,9 @@ class SetUpScreen(TangyScreen[bool]):
 
     def action_join(self) -> None:
         """Ask who else is there, and whether for good."""
-        if self.setup.world is not None:
-            self.notify(text.SEATED, markup=False)
+        if self.setup.world is not None or self.setup.teams_play:
+            why = text.SEATED if self.setup.world is not None else text.TEAMS_PLAY
+            self.notify(why, markup=False)
         elif not self._busy:
             self.run_worker(self._ask(self._join), name="join", group="check")
 
