@@ -133,8 +133,9 @@ class GameChange(EventRecord):
 class GameStep(EventRecord):
     """A behaviour was executed: how it was chosen, and what was seen before and `after`.
 
-    `seconds` is None in games of before that was logged. `memory` is what the game stands at in a
-    live game of an activity by facts, which the steps alone do not lead to.
+    `seconds` is how long it took, `clock` the time that was played when it was over, with what
+    passed between the steps; each is None in games of before it was logged. `memory` is what the
+    game stands at in a live game of an activity by facts, which the steps alone do not lead to.
     """
 
     game: str
@@ -147,6 +148,7 @@ class GameStep(EventRecord):
     numbers: tuple[int, ...] = ()
     completed: bool = True
     seconds: float | None = None
+    clock: Sparse[float | None] = None
     state: GameState
     after: GameState | None = None
     memory: Sparse[GameMemory | None] = None

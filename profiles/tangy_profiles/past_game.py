@@ -90,6 +90,20 @@ class PastGame:
         """Where it was played."""
         return self.beginning.world or SIMULATED
 
+    @property
+    def clock(self) -> tuple[float, ...]:
+        """The time that was played when each step was over, in s: of old logs their sum."""
+        times, played = list[float](), 0.0
+        for step in self.steps:
+            played = played + (step.seconds or 0.0) if step.clock is None else step.clock
+            times.append(played)
+        return tuple(times)
+
+    @property
+    def seconds(self) -> float:
+        """The time that was played until the last step was over, in s."""
+        return self.clock[-1] if self.steps else 0.0
+
     def replay(self, world: Replayed) -> ActivityState:
         """Play the games of the run again, as far as the log has them; return the last state.
 

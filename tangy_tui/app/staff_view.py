@@ -58,13 +58,12 @@ class StaffWatch:
         self._visited: dict[str, float] = {}
 
     def resume(self, now: float, past: PastGame) -> None:
-        """Go on with a game at a time in s, by how long its steps took and whom they were for."""
-        ends, played = dict[str, float](), 0.0
-        for step in past.steps:
-            played += step.seconds or 0.0
+        """Go on with a game at a time in s, by when its steps were over and whom they were for."""
+        ends = dict[str, float]()
+        for step, over in zip(past.steps, past.clock, strict=True):
             if step.target in past.beginning.people and step.completed:
-                ends[step.target] = played
-        self.begin(now - played)
+                ends[step.target] = over
+        self.begin(now - past.seconds)
         self._visited = {person: self._began + end for person, end in ends.items()}
 
     def look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:

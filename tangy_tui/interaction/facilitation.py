@@ -13,11 +13,10 @@ from uuid import uuid4
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.declared.whom import Addressee, addressee
 from tangy_profiles.demonstration import Step
-from tangy_profiles.game_records import ChangeKind, GameBeginning, GameEnding, GameResumed, GameStep
+from tangy_profiles.game_records import ChangeKind, GameBeginning, GameEnding, GameResumed
 from tangy_profiles.past_game import PastGame
-from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.person import Person
-from tangy_profiles.state import ActivityState, Outcome, Response
+from tangy_profiles.state import ActivityState, Outcome
 from tangy_profiles.store import Store
 from tangy_tui.interaction.changes import GameChanges
 from tangy_tui.interaction.game_events import (
@@ -31,6 +30,7 @@ from tangy_tui.interaction.game_events import (
     Taught,
     Unsure,
 )
+from tangy_tui.interaction.game_log import GameLog
 from tangy_tui.interaction.observation import Observation
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.interaction.reading_error import learnt_error
@@ -41,7 +41,7 @@ from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.teaching_session import NOTHING_SAID
 from tangy_tui.learning.verification import Verifier
-from tangy_tui.world import World, remembered
+from tangy_tui.world import World
 
 _LOG = logging.getLogger(__name__)
 
@@ -105,6 +105,8 @@ class Facilitation:
         self.observation = Observation(world, error)
         """Observes the state, and looks again where one look is not to be believed."""
         self.changes = GameChanges(world, store)
+        self.log = GameLog(world, store)
+        """Has the steps, and the time that was played."""
         self._answers = answers
         self._learnt = learnt
         self._activity = world.activity
@@ -121,6 +123,7 @@ class Facilitation:
     def begin(self) -> list[GameEvent]:
         """Begin the next game."""
         state = self.world.begin()
+        self.log.begin()
         self._enter(uuid4().hex[:12], self.games + 1, 0, state)
         self._store.append(
             GameBeginning(
@@ -146,6 +149,7 @@ class Facilitation:
         """
         self.changes.resume(past)
         state, game = self.world.resume(past), past.beginning
+        self.log.resume(past)
         self._enter(game.game, game.number, len(past.steps), state)
         self._store.append(GameResumed(game=self._game, steps=self.steps, by=by))
         return [ResumedGame(self._game, self.games, self.steps, state)]
@@ -356,38 +360,8 @@ class Facilitation:
 
     def _log(self, acted: Acted, teacher: str) -> GameEnded | None:
         """Log a step and how a person responded; return how the game ended, if it has."""
-        action, outcome, choice = acted.action, acted.outcome, acted.choice
-        self._store.append(
-            GameStep(
-                game=self._game,
-                behaviour=action.behaviour.name,
-                target=action.target,
-                strategy=action.strategy,
-                share=acted.decision.share,
-                teacher=teacher,
-                draws=choice.draws if choice else None,
-                numbers=outcome.numbers,
-                completed=outcome.completed,
-                seconds=outcome.seconds,
-                state=acted.state,
-                after=acted.after,
-                memory=remembered(self.world),
-            )
-        )
-        if outcome.response is not None:
-            self._log_response(outcome.response)
-        elif choice is not None and outcome.completed:  # what they did may be known later
-            awaited = ResponseAwaited(game=self._game)
-            self._store.append(awaited, person=choice.person, strategy=choice.strategy)
+        self.log.step(self._game, acted, teacher)
         return self._end(None) if self.world.over and not self.looked_over else None
-
-    def _log_response(self, response: Response) -> None:
-        self._store.append(
-            ResponseGiven(game=self._game, followed=response.followed, seconds=response.seconds),
-            person=response.person,
-            strategy=response.strategy,
-            complied=response.complied,
-        )
 
     def _end(self, reason: str | None) -> GameEnded:
         self.over = True

@@ -78,16 +78,20 @@ class Recovery:
         self.name_of = name
         self.begin()
 
-    def begin(self) -> None:
-        """Forget the faults of the last game."""
+    def begin(self, seconds: float = 0.0) -> None:
+        """Forget the faults of the last game; begin at a time in s of the present one."""
         self.faults = []
         self.halted = None
-        self.seconds = 0.0
+        self.seconds = seconds
         self._there: list[Fault] = []  # those that are not over
         self._rules: dict[str, FaultRule] = {}
         self._rung: Counter[str] = Counter()
         self._tried: Counter[str] = Counter()
         self._times: Counter[tuple[str, str | None, str]] = Counter()
+
+    def pass_time(self, seconds: float) -> None:
+        """Let time pass by so many s, and until that which was played altogether."""
+        self.seconds = max(self.seconds + seconds, self._game.log.seconds)
 
     @property
     def there(self) -> list[Fault]:

@@ -226,9 +226,10 @@ def _replay(
     for event in events:
         what: What
         match event.record:
-            case GameStep(seconds=took) as record:
+            case GameStep(seconds=took, clock=over) as record:
                 step += 1
                 replay.timed &= took is not None
+                replay.seconds = max(replay.seconds, (over or 0.0) - (took or 0.0))
                 begun = replay.seconds
                 replay.seconds += took or 0.0
                 what = _done(record, step, begun, replay.seconds, activity, names)

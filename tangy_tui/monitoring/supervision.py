@@ -161,7 +161,7 @@ class Supervision:
             NotResumable: the world cannot come to where the past game was.
         """
         told = list[Event](self.game.begin() if past is None else self.game.resume(past, by))
-        self.recovery.begin()
+        self.recovery.begin(0.0 if past is None else past.seconds)
         self.watch.begin()
         self._clearings.clear()
         self._idle = 0

@@ -131,12 +131,12 @@ class FaultWatch:
 
     def _take_in(self, acted: Acted) -> list[Event]:
         """Record the state after an action that staff ordered; only devices are judged."""
-        self._recovery.seconds += acted.outcome.seconds
+        self._recovery.pass_time(acted.outcome.seconds)
         self._detector.take_in(acted.after)
         return self.look()
 
     def _compare(self, acted: Acted) -> list[Event]:
-        self._recovery.seconds += acted.outcome.seconds
+        self._recovery.pass_time(acted.outcome.seconds)
         known, self._seen = self._seen, self.devices
         faults = diagnose(self.book, self._seen)
         explained = any(not HIDING.isdisjoint(one.rule.also) for one in faults)

@@ -23,8 +23,11 @@ from tangy_tui.app.game_commands import GoesAway, GoOn, TakeBackCall
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.interruption import end_interrupted, find_interrupted
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policies import load_policy
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.session import read_session
 from tangy_tui.monitoring.supervision import Supervision
 from tests.hw.links import FakeLink
 
@@ -194,9 +197,12 @@ def test_where_the_log_leads_elsewhere_the_game_does_not_go_on(room: Interrupted
 class Robot:
     """A live game over a fake link."""
 
-    def __init__(self, workspace: Workspace, past: PastGame | None = None) -> None:
+    def __init__(
+        self, workspace: Workspace, past: PastGame | None = None, on_for: float = 0.0
+    ) -> None:
         policy, _ = load_policy(workspace.store, workspace.activity)
         self.link = FakeLink(tuple(workspace.names))
+        self.link.time = on_for
         self.world = LiveWorld(
             workspace.activity, tuple(workspace.names), cast(RobotLink, self.link),
             load_robot(), load_room(), seed=SEED, names=workspace.names, pace=0.0,
@@ -226,6 +232,45 @@ def test_a_live_game_goes_on_with_the_order_of_its_numbers(taught: Path) -> None
         robot.next(4)
     assert after.world.called == gone and len(after.world.called) > len(called)
     workspace.close()
+
+
+def test_the_clock_of_a_live_game_is_the_time_played_and_not_the_time_it_was_dead(
+    taught: Path,
+) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.next(3)
+    before.link.time += 300.0  # a break in the middle of the game
+    before.next(3)
+    played = before.control.supervision.game.log.seconds
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None and past.seconds == pytest.approx(played) and played > 300
+    assert sum(step.seconds or 0.0 for step in past.steps) < 300
+
+    after = Robot(workspace, past, on_for=7200.0)  # a robot has a clock of its own
+    watch = StaffWatch()
+    watch.resume(after.world.seconds, past)
+    shown = watch.look(after.world.scene(), after.world.people, after.world.seconds, after.world)
+    for seconds in (shown.seconds, after.control.supervision.seconds):
+        assert seconds == pytest.approx(played)
+    after.control.apply(GoOn())
+    after.next(3)
+    played = after.control.supervision.game.log.seconds
+    (game,) = read_session(workspace.store, read_games(workspace.store), {}, {}).replays
+    assert game.seconds == pytest.approx(played)
+    workspace.close()
+
+
+def test_a_log_without_a_clock_has_the_sum_of_its_steps(room: Interrupted) -> None:
+    room.play(9)
+    past = room.past()
+    played = room.supervision.game.log.seconds
+    old = replace(past, steps=tuple(replace(step, clock=None) for step in past.steps))
+    assert past.seconds == old.seconds == pytest.approx(played)
+    room.interrupt()
+    room.resume()
+    assert room.supervision.game.log.seconds == pytest.approx(played)
+    assert room.supervision.seconds == pytest.approx(played)
 
 
 def test_who_left_before_the_first_step_of_a_live_game_is_away_when_it_goes_on(

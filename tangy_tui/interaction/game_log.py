@@ -1,0 +1,67 @@
+"""What the log has of a game as it goes on: its clock, its steps, and how people responded."""
+
+from __future__ import annotations
+
+from tangy_profiles.game_records import GameStep
+from tangy_profiles.past_game import PastGame
+from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
+from tangy_profiles.state import Response
+from tangy_profiles.store import Store
+from tangy_tui.interaction.game_events import Acted
+from tangy_tui.world import World, remembered
+
+
+class GameLog:
+    """Logs the steps of one game after the other. `begin` or `resume` each."""
+
+    def __init__(self, world: World, store: Store) -> None:
+        self._world, self._store = world, store
+        self._began = 0.0
+
+    @property
+    def seconds(self) -> float:
+        """The time that was played, in s: not that in which an interrupted game was not there."""
+        return max(0.0, self._world.seconds - self._began)
+
+    def begin(self) -> None:
+        """Begin to count the time of a game."""
+        self._began = self._world.seconds
+
+    def resume(self, past: PastGame) -> None:
+        """Count on from the last step of a game that was interrupted."""
+        self._began = self._world.seconds - past.seconds
+
+    def step(self, game: str, acted: Acted, teacher: str) -> None:
+        """Log a step, and how a person responded, or that it is awaited."""
+        action, outcome, choice = acted.action, acted.outcome, acted.choice
+        self._store.append(
+            GameStep(
+                game=game,
+                behaviour=action.behaviour.name,
+                target=action.target,
+                strategy=action.strategy,
+                share=acted.decision.share,
+                teacher=teacher,
+                draws=choice.draws if choice else None,
+                numbers=outcome.numbers,
+                completed=outcome.completed,
+                seconds=outcome.seconds,
+                clock=self.seconds,
+                state=acted.state,
+                after=acted.after,
+                memory=remembered(self._world),
+            )
+        )
+        if outcome.response is not None:
+            self._response(game, outcome.response)
+        elif choice is not None and outcome.completed:  # what they did may be known later
+            awaited = ResponseAwaited(game=game)
+            self._store.append(awaited, person=choice.person, strategy=choice.strategy)
+
+    def _response(self, game: str, response: Response) -> None:
+        self._store.append(
+            ResponseGiven(game=game, followed=response.followed, seconds=response.seconds),
+            person=response.person,
+            strategy=response.strategy,
+            complied=response.complied,
+        )
