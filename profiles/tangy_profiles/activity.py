@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib.resources import files
 from itertools import product
 from os.path import isdir
 from pathlib import Path
@@ -33,6 +32,7 @@ from tangy_profiles.game_rules import NO_RULES, GameRules, read_game_rules
 from tangy_profiles.persuading import PAPER, PersuasionConfig, read_persuading
 from tangy_profiles.phones import read_pronunciations
 from tangy_profiles.reading import Table, nearest, plain, read_toml
+from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import Outcome, Request, Situation
 
 LISTENING = ("tiers", "paper")
@@ -258,7 +258,7 @@ class Activity:
 
 def shipped_activities() -> dict[str, Path]:
     """The activities that come with Tangy, by name."""
-    folder = Path(str(files("tangy_profiles"))) / "activities"
+    folder = SHIPPED / "activities"
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
-from pathlib import Path
-
 from tangy_profiles.reading import read_toml
+from tangy_profiles.shipped import SHIPPED
 
-_TOP = read_toml(Path(str(files("tangy_profiles"))) / "defaults.toml")
+_TOP = read_toml(SHIPPED / "defaults.toml")
 
 DEFAULT_ACTIVITY = _TOP.text("activity")
 """The name of the activity that the command line means where none is named."""
@@ -22,6 +20,9 @@ ASK_AGAIN = _TOP.words("ask_again")
 """The texts with which a person is asked again whose answer was not clear."""
 
 _TOP.close()
+
+USUAL_ROBOT = "tangy"
+"""The robot that the command line means where none is named."""
 
 TO_BEGIN_WITH = 4
 """People of a house that has not said who takes part."""

@@ -16,14 +16,13 @@ import re
 import unicodedata
 from collections.abc import Collection, Iterable, Mapping
 from functools import cache
-from importlib.resources import files
-from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from tangy_profiles.codec import keys_of
 from tangy_profiles.events import KINDS
 from tangy_profiles.reading import read_toml
+from tangy_profiles.shipped import SHIPPED
 
 FREE_TEXT = frozenset(("heard", "how", "what", "why", "stopped"))
 """The keys of an event's body that hold words of people."""
@@ -253,7 +252,7 @@ def _letters(name: str) -> str:
 @cache
 def small_words() -> frozenset[str]:
     """Return the small words that are people's names as well."""
-    top = read_toml(Path(str(files("tangy_profiles"))) / "people" / "small_words.toml")
+    top = read_toml(SHIPPED / "people" / "small_words.toml")
     words = frozenset(top.texts("words"))
     top.close()
     return words

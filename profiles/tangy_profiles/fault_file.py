@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 from string import Formatter
 
@@ -26,6 +25,7 @@ from tangy_profiles.known_devices import possible_devices
 from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.robot import DeviceProfile, Robot
 from tangy_profiles.rules_for_robot import for_devices
+from tangy_profiles.shipped import SHIPPED
 
 _TESTS = ("is", "not", "above", "below", "at_least")
 
@@ -48,7 +48,7 @@ def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | No
     Without mistakes there is a book, with the rules as they are for this robot; with any there is
     none.
     """
-    path = path or Path(str(files("tangy_profiles"))) / "faults.toml"
+    path = path or SHIPPED / "faults.toml"
     devices = possible_devices(robot)
     known = evidence_keys(devices)
     rules: list[FaultRule] = []

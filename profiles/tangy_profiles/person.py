@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import unicodedata
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain, read_toml
+from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import FRONT
 from tangy_profiles.voice import VoicePreference
 
@@ -70,7 +70,7 @@ def load_people(count: int, path: Path | None = None) -> tuple[Person, ...]:
     """
     if not 1 <= count <= MOST_PEOPLE:
         raise ProfileError(f"{count} people cannot play: choose from 1 to {MOST_PEOPLE}.")
-    top = read_toml(path or Path(str(files("tangy_profiles"))) / "people" / "sample.toml")
+    top = read_toml(path or SHIPPED / "people" / "sample.toml")
     more_id, more_name = top.text("more_id"), top.text("more_name")
     people: list[Person] = []
     for entry in top.tables("people"):

@@ -10,7 +10,6 @@ from __future__ import annotations
 import io
 import logging
 import os
-import secrets
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -53,7 +52,7 @@ def serving(command: object = None) -> Iterator[str]:
     if isinstance(command, str) and 0 < len(command) <= LONGEST_ID and command.isalnum():
         chosen = command
     elif command is None:
-        chosen = secrets.token_hex(4) if command_id() == NO_COMMAND else command_id()
+        chosen = os.urandom(4).hex() if command_id() == NO_COMMAND else command_id()
     else:
         chosen = NO_COMMAND
     token = _command.set(chosen)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -12,9 +11,11 @@ from typing import TYPE_CHECKING
 from tangy_profiles.body import BodyProfile, read_body
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, read_contact
 from tangy_profiles.contacts import Contact as Contact
+from tangy_profiles.defaults import USUAL_ROBOT
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.liveness import PAUSING, Liveness, read_liveness
 from tangy_profiles.reading import Table, nearest, plain, read_toml
+from tangy_profiles.shipped import SHIPPED
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -164,11 +165,11 @@ class Robot:
 
 def shipped_robots() -> dict[str, Path]:
     """Return the files of the robots that ship, by name."""
-    folder = Path(str(files("tangy_profiles"))) / "robots"
+    folder = SHIPPED / "robots"
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
-def load_robot(name: str = "tangy") -> Robot:
+def load_robot(name: str = USUAL_ROBOT) -> Robot:
     """Load a robot by name, or by the path of its TOML file.
 
     Raises:

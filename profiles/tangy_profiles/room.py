@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from importlib.resources import files
 from itertools import accumulate, pairwise
 from math import hypot
 from pathlib import Path
@@ -16,6 +15,7 @@ from pathlib import Path
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
 from tangy_profiles.reading import Table, nearest, read_toml
+from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import FRONT
 
 AT_ONE_TABLE = 8
@@ -129,7 +129,7 @@ def load_room(name: str = "common-room") -> Room:
     Raises:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
-    folder = Path(str(files("tangy_profiles"))) / "rooms"
+    folder = SHIPPED / "rooms"
     shipped = {path.stem: path for path in folder.glob("*.toml")}
     if name not in shipped and not name.endswith(".toml"):
         raise ProfileError(f"There is no room {name!r}: {nearest(name, shipped)}")

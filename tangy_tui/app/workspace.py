@@ -12,7 +12,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity, load_activity
-from tangy_profiles.defaults import REGISTERED
+from tangy_profiles.defaults import REGISTERED, USUAL_ROBOT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.person import Person, folded, load_people, unaccented
@@ -66,7 +66,7 @@ class Workspace:
         activity: str = "",
         users: int = REGISTERED,
         write: bool = True,
-        robot: str = "tangy",
+        robot: str = USUAL_ROBOT,
         now: Callable[[], datetime] | None = None,
     ) -> None:
         """Read the profiles and open the store, whose clock is `now` (default: the machine's).

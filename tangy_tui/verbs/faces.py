@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
+from tangy_profiles.defaults import DEFAULT_ACTIVITY, USUAL_ROBOT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, folded
 from tangy_profiles.reading import plain
@@ -51,7 +51,7 @@ def faces_who(
         bool, typer.Option("--together", help="All are frames of one person: let them vote.")
     ] = False,
     seconds: Annotated[float, typer.Option(min=0.5, help="Look so long at most.")] = 10.0,
-    robot: Robot = "tangy",
+    robot: Robot = USUAL_ROBOT,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

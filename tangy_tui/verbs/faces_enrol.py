@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import USUAL_ROBOT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person, folded
 from tangy_profiles.reading import plain
@@ -53,7 +54,7 @@ def faces_enrol(
     add: Annotated[
         bool, typer.Option("--add", help="Add to the pictures that were enrolled before.")
     ] = False,
-    robot: Robot = "tangy",
+    robot: Robot = USUAL_ROBOT,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import USUAL_ROBOT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.given_file import read_given_text
@@ -48,7 +49,7 @@ LARGEST_LIST = 100_000  # bytes of a list of faults
 
 
 def live(
-    robot: RobotName = "tangy",
+    robot: RobotName = USUAL_ROBOT,
     bench: Annotated[
         bool,
         typer.Option("--bench", help="Without a robot: its devices are simulated, and its people."),

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tangy_profiles.defaults import REGISTERED
+from tangy_profiles.defaults import REGISTERED, USUAL_ROBOT
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import more_left_out
 from tangy_tui.ui.terminal import terminal_kind
@@ -23,7 +23,7 @@ MOST_TOLD = 5
 
 @contextmanager
 def open_workspace(
-    data: Path | None, activity: str, users: int, *, write: bool = True, robot: str = "tangy"
+    data: Path | None, activity: str, users: int, *, write: bool = True, robot: str = USUAL_ROBOT
 ) -> Iterator[Workspace]:
     """Open the workspace on a data folder, say what its store has noticed, and close it afterwards.
 
@@ -46,24 +46,31 @@ def open_workspace(
 
 
 def open_program(
-    data: Path | None = None, *, robot: str = "tangy", ascii_only: bool = False
+    data: Path | None = None, *, robot: str = USUAL_ROBOT, ascii_only: bool = False
 ) -> int:
     """Open the program at its first screen, and return its exit status.
 
     Beside another program that runs in the same folder, it looks on.
     """
     from tangy_profiles.errors import StoreBusy
-    from tangy_profiles.fault_file import load_faults
     from tangy_tui.ui.run import run_program
 
     try:
         with open_workspace(data, "", REGISTERED, robot=robot) as workspace:
-            load_faults(workspace.robot)  # what is wrong with its file is said before any screen
+            if robot != USUAL_ROBOT:
+                _check_faults(workspace)
             return run_program(workspace, ascii_only=ascii_only)
     except StoreBusy:
         from tangy_tui.text.watching import RUNNING_HERE
 
         return watch_program(data, note=RUNNING_HERE, ascii_only=ascii_only)
+
+
+def _check_faults(workspace: Workspace) -> None:
+    """Say what is wrong with the faults of a robot's file before any screen is open."""
+    from tangy_profiles.fault_file import load_faults
+
+    load_faults(workspace.robot)
 
 
 def watch_program(

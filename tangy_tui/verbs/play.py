@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangy_profiles.defaults import DEFAULT_ACTIVITY
+from tangy_profiles.defaults import DEFAULT_ACTIVITY, USUAL_ROBOT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.text.command_line import TEACH_YOURSELF
@@ -71,7 +71,7 @@ def play(
     mode: Mode = None,
     voice: WithVoice = False,
     camera: Cameras = None,
-    robot: RobotName = "tangy",
+    robot: RobotName = USUAL_ROBOT,
     speed: Annotated[
         float | None,
         typer.Option(

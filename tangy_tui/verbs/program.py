@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import USUAL_ROBOT
 from tangy_profiles.reading import nearest
 from tangy_tui import __version__
 from tangy_tui.app.user_settings import LINK_SPEEDS, LINK_VARIABLE
@@ -57,7 +58,7 @@ def program(
         verb = context.command.get_command(context, called)  # type: ignore[attr-defined]
         context.default_map = {called: _defaults(verb, given)}
     elif full_screen():
-        raise typer.Exit(open_program(data, robot=robot or "tangy", ascii_only=ascii_only))
+        raise typer.Exit(open_program(data, robot=robot or USUAL_ROBOT, ascii_only=ascii_only))
     else:
         print(no_screens(terminal_kind().reason))
         print(context.get_help())

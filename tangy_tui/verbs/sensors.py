@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.card_face import USUAL_SEED
+from tangy_profiles.defaults import USUAL_ROBOT
 from tangy_tui.text.cameras import NO_SOURCE
 from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import REGISTERED, ActivityName, Ascii, Data, Json, Seed, print_json
@@ -35,7 +36,7 @@ RobotName = Annotated[
 
 def sensors(
     camera: Cameras = None,
-    robot: RobotName = "tangy",
+    robot: RobotName = USUAL_ROBOT,
     seconds: Annotated[
         float, typer.Option(min=0.1, help="How long they are looked at, without a screen.")
     ] = 3.0,

@@ -7,11 +7,14 @@ keeps all of them, and a game that was interrupted goes on from there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from tangy_profiles.codec import Count
-from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.model import Declaration
 from tangy_profiles.state import FRONT
+
+if TYPE_CHECKING:
+    from tangy_profiles.declared.game import DeclaredGame
+    from tangy_profiles.declared.model import Declaration
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +68,8 @@ def game_from(
     """Return the game that was kept; None if it is of another activity, or of other players."""
     if not _fits(declaration, players, memory):
         return None
+    from tangy_profiles.declared.game import DeclaredGame
+
     game = DeclaredGame(declaration, players, memory.order)
     game.values = {(fact, whose): value for fact, whose, value in memory.values}
     game.counts = {(fact, whose): number for fact, whose, number in memory.counts}

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from rich.cells import cell_len
 from textual.strip import Strip
 from textual.timer import Timer
 
-from tangy_hw.audio.meter import SoundTrouble
 from tangy_tui.text.microphone import trouble_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
+
+if TYPE_CHECKING:
+    from tangy_hw.audio.meter import SoundTrouble
 
 HERTZ = 10
 """How often the line may be drawn in a second."""
