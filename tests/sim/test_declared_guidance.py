@@ -8,6 +8,9 @@ import pytest
 
 from tangy_profiles.activity import load_activity, read_activity
 from tangy_profiles.declared.activity import DeclaredActivity, build_activity
+from tangy_profiles.declared.ahead import MOST_TRIED, nearest_way
+from tangy_profiles.declared.checking import expected_moves
+from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.search import reach
 from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
 from tangy_profiles.declared.vocabulary import Selector
@@ -15,7 +18,7 @@ from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import ActivityState
 from tangy_sim.worlds.declared_guidance import GuidedDeclaredWorld
 from tangy_sim.worlds.declared_world import DeclaredWorld
-from tests.support.declared import DECLARED, declared
+from tests.support.declared import DECLARED, declared, each_of_first
 from tests.support.renaming import renamed
 
 MOST_STEPS = 400
@@ -118,6 +121,47 @@ def test_a_guided_game_that_goes_back_says_what_for() -> None:
     assert back
     assert len({one.situation for one in steps if one.situation in back}) == len(set(back))
     assert [one.step for one in steps] == list(range(len(steps)))
+
+
+def test_looking_ahead_stops_after_so_many_states_however_many_people_there_are() -> None:
+    activity = read_activity(FILES / "toss.toml")
+    assert isinstance(activity, DeclaredActivity)
+    taught = expected_moves(activity)  # nothing is left to find
+    for count in (2, 12):
+        copies = Copies(DeclaredGame(activity.declaration, [f"user{n}" for n in range(count)]))
+        copies.execute("greet throwers", None)
+        assert nearest_way((copies,), taught, most=100) is None
+        assert Copies.made <= 100 * (2 * MOST_TRIED + 2)
+
+
+class Copies(DeclaredGame):
+    """A game that counts how often it, or a copy of it, is copied."""
+
+    made = 0
+
+    def __init__(self, game: DeclaredGame) -> None:
+        super().__init__(game.declaration, game.players, game.order)
+        Copies.made = 0
+
+    def copy(self) -> DeclaredGame:
+        """Return a copy, and count it."""
+        Copies.made += 1
+        other = super().copy()
+        other.__class__ = Copies
+        return other
+
+
+@pytest.mark.parametrize("name", each_of_first(DECLARED))
+def test_a_guided_game_of_twelve_people_shows_as_much(name: str) -> None:
+    activity = declared(name)
+    players = activity.teams or tuple(f"user{number}" for number in range(1, 13))
+    taught = ShownMoves(activity.behaviours)
+    for seed in (1, 2):
+        world = GuidedDeclaredWorld(activity, players, seed=seed, shown=taught)
+        play(world, activity)
+        taught = world.taught
+    pair = activity.teams or ("user1", "user2")
+    assert reach(activity.declaration, pair, taught).open == {}
 
 
 def test_a_search_names_what_was_not_shown() -> None:

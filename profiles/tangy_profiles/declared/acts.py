@@ -28,18 +28,29 @@ def acts(game: DeclaredGame, *, drawn: Callable[[], float] | None = None) -> Ite
         drawn: draws from 0 to 1, so that each act comes with its chance, one value each
             (default: every act that has a chance, with every value that has a weight).
     """
+    if drawn is None:
+        yield from _possible(game)
+        return
     for habit in game.declaration.habits:
         fact = game.declaration.facts[habit.fact]
         for who in game.players if fact.per_player else (None,):
             able = habit.chance > 0 and all(game.holds(one, who) for one in habit.when)
-            if drawn is None:
-                values = [value for value, weight in habit.weights if weight > 0]
-                new = [value for value in values if game.value(fact.name, who) != value]
-                yield from (Act(fact.name, who, value) for value in new if able)
-                continue
             chance, share = drawn(), drawn()  # two numbers, whatever comes of them
             if able and chance < habit.chance:
                 yield Act(fact.name, who, _chosen(habit, share))
+
+
+def _possible(game: DeclaredGame) -> Iterator[Act]:
+    """Yield every act that has a chance, with every value that has a weight."""
+    for habit, (group, own) in game.declaration.reasons:
+        if habit.chance <= 0 or not all(game.holds(one, None) for one in group):
+            continue
+        fact = game.declaration.facts[habit.fact]
+        values = [value for value, weight in habit.weights if weight > 0]
+        for who in game.players if fact.per_player else (None,):
+            if all(game.holds(one, who) for one in own):
+                now = game.value(fact.name, who)
+                yield from (Act(fact.name, who, value) for value in values if value != now)
 
 
 def take_in(game: DeclaredGame, act: Act) -> bool:

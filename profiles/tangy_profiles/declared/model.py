@@ -206,6 +206,36 @@ class Declaration:
         return tuple(found)
 
     @cached_property
+    def reasons(
+        self,
+    ) -> tuple[tuple[Habit, tuple[tuple[FactCondition, ...], tuple[FactCondition, ...]]], ...]:
+        """Return each habit with its conditions: those of the group, and those of each player."""
+        found = []
+        for habit in self.habits:
+            own = tuple(
+                one for one in habit.when if not one.quantifier and self._is_own(one.fact, set())
+            )
+            group = tuple(one for one in habit.when if one not in own)
+            found.append((habit, (group, own)))
+        return tuple(found)
+
+    @cached_property
+    def last_acts(self) -> frozenset[tuple[str, str]]:
+        """Return the facts with the values that end a game."""
+        return frozenset((habit.fact, value) for habit in self.habits for value in habit.last)
+
+    def _is_own(self, name: str, met: set[str]) -> bool:
+        """Say whether a fact may differ from player to player."""
+        fact = self.facts[name]
+        if fact.kind != "test" or fact.per_player:
+            return fact.per_player
+        if name in met:
+            return False
+        met.add(name)
+        conditions = (one for _, conditions in fact.tests for one in conditions)
+        return any(not one.quantifier and self._is_own(one.fact, met) for one in conditions)
+
+    @cached_property
     def selectors(self) -> frozenset[Selector]:
         """Return the selectors that the file uses anywhere."""
         found = {stage.about for stage in self.stages}

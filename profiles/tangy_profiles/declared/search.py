@@ -15,7 +15,7 @@ from typing import Literal
 
 from tangy_profiles.declared.acts import Act, acts, take_in
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.model import Declaration
+from tangy_profiles.declared.model import Declaration, Fact
 from tangy_profiles.declared.shown_moves import UNDECIDED, Move, ShownMoves
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.state import FRONT, Situation
@@ -56,7 +56,7 @@ def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Eve
         few: of those who may all do the same, only two, or most or all of them together.
     """
     yield SOON
-    ends = {(habit.fact, value) for habit in game.declaration.habits for value in habit.last}
+    ends = game.declaration.last_acts
     able: dict[tuple[str, str], list[Act]] = {}
     for act in acts(game):
         if act.fact == ASKING and len(game.queue) >= MOST_ASKING:
@@ -74,6 +74,13 @@ def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Eve
         yield seconds
 
 
+def ends_game(declaration: Declaration, event: Event) -> bool:
+    """Say whether an event is one that ends a game."""
+    return not isinstance(event, float) and any(
+        (act.fact, act.value) in declaration.last_acts for act in event
+    )
+
+
 def happen(game: DeclaredGame, event: Event) -> None:
     """Let something happen in a game."""
     if isinstance(event, float):
@@ -83,26 +90,66 @@ def happen(game: DeclaredGame, event: Event) -> None:
         take_in(game, act)
 
 
+def rough_key(game: DeclaredGame) -> Hashable:
+    """Return a game's state as if all players were alike whom no selector names, and their order.
+
+    Two states with the same key may differ in who comes when. A search that skips one of them can
+    miss a way, and still every way that it finds is one.
+    """
+    group: list[object] = []
+    own: list[list[object]] = [[] for _ in game.players]
+    for fact, bounds in game.declaration.looked_at:
+        if not fact.per_player:
+            group.append(_kept(game, fact, bounds, ""))
+            continue
+        for player, facts in zip(game.players, own, strict=True):
+            facts.append(_kept(game, fact, bounds, player))
+    after = game.players[(game.turn + 1) % len(game.players)]
+    least = min(game.acts.values()) if "quietest" in game.declaration.selectors else 0
+    remembers = game.declaration.remembers_addressed
+    named = (
+        game.players[game.turn],
+        game.place,
+        game.addressed if remembers else None,
+        game.actor if "last to act" in game.declaration.selectors else None,
+        after,
+    )
+    several = len(game.players) > 1
+    for player, facts in zip(game.players, own, strict=True):
+        roles = sum(2**place for place, one in enumerate(named) if one == player)
+        asks = game.queue.index(player) + 1 if player in game.queue else 0
+        quiet = least and min(game.acts[player] - least, 2)
+        facts += [roles if several else 0, asks, quiet]
+    order = sorted(map(repr, own))
+    return tuple(group), tuple(order), game.round, game.place == FRONT, game.over
+
+
+def _kept(
+    game: DeclaredGame, fact: Fact, bounds: tuple[int, ...], player: str
+) -> str | int | float | None:
+    """Return as much of a fact as conditions can tell apart."""
+    if fact.kind in ("flag", "choice"):
+        value = game.values.get((fact.name, player))
+        return None if value == fact.values[0] else value
+    kept = game.counts.get((fact.name, player))
+    timer = fact.kind == "timer"
+    if kept is None:
+        return None if timer else 0
+    if timer:
+        return bisect_right(bounds, game.now - kept)
+    return min(kept, bounds[-1]) if bounds else 0
+
+
 def state_key(game: DeclaredGame) -> Hashable:
     """Return all of a game's state that can matter to how it goes on."""
     declaration, turn, order = game.declaration, game.turn, game.players
     if not declaration.selectors & {"quietest", "next in circle"}:
         order, turn = (*order[turn:], *order[:turn]), 0
     place = {player: number for number, player in enumerate(order)}
-    values, counts, facts = game.values, game.counts, list[object]()
+    facts = list[object]()
     for fact, bounds in declaration.looked_at:
         for player in order if fact.per_player else ("",):
-            if fact.kind in ("flag", "choice"):
-                value = values.get((fact.name, player))
-                facts.append(None if value == fact.values[0] else value)
-                continue
-            kept = counts.get((fact.name, player))
-            if kept is not None:
-                timer = fact.kind == "timer"
-                place_of = bisect_right(bounds, game.now - kept) if timer else 0
-                facts.append(place_of if timer else min(kept, bounds[-1]) if bounds else 0)
-            else:
-                facts.append(None if fact.kind == "timer" else 0)
+            facts.append(_kept(game, fact, bounds, player))
     acts_of: tuple[int, ...] = ()
     if "quietest" in declaration.selectors:
         least = min(game.acts.values())
