@@ -325,6 +325,13 @@ class StaffAction(EventRecord):
     taken_back: Sparse[Count] = 0
 
 
+@kind("drill-round")
+class DrillAnswered(EventRecord):
+    """A round of a drill was answered: the sheet so far, so that an interrupted drill goes on."""
+
+    sheet: Flat[Sheet]
+
+
 @kind("drill")
 class DrillHeld(EventRecord):
     """A drill was held, with this score sheet."""

@@ -1,7 +1,7 @@
 """Drills: staff rehearse on the table-top what to do when something goes wrong, and get a score.
 
 Drive it by `next` and `answer`: screen, lines and scripts do the same. What was answered is in the
-log before the sheet is shown; nothing else of a drill is logged.
+log round by round, so that an interrupted drill can go on; nothing else of a drill is logged.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.errors import TangyError
 from tangy_profiles.fault_file import load_faults
-from tangy_profiles.game_records import DrillHeld
+from tangy_profiles.game_records import DrillAnswered, DrillHeld
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.drill_log import read_sheets
@@ -79,6 +79,7 @@ class Drill:
         rounds: int = ROUNDS,
         clock: Callable[[], float] = monotonic,
         note: DrillNote | None = None,
+        past: Sheet | None = None,
     ) -> None:
         """Prepare a drill.
 
@@ -90,10 +91,13 @@ class Drill:
             rounds: how many.
             clock: gives seconds; its beginning does not matter.
             note: why it goes by something else than what Tangy has learnt, if it does.
+            past: the sheet so far of an interrupted drill that goes on; its seed and rounds count.
 
         Raises:
             TangyError: there are too few rounds, or too many.
         """
+        if past is not None:
+            seed, rounds = past.seed, past.rounds
         if not 1 <= rounds <= MOST_ROUNDS:
             raise TangyError(f"A drill has from 1 to {MOST_ROUNDS} rounds, not {rounds}.")
         earlier = read_sheets(store)
@@ -116,7 +120,7 @@ class Drill:
         self._plan = draw_rounds(tabletop.book, rounds, Random(f"{seed}/drill"))
         self._given: dict[str, str] = {}
         self._since = 0.0
-        self._answered: list[AnsweredRound] = []
+        self._answered = [] if past is None else list(past.answered)
         self._kept = False
 
     @classmethod
@@ -131,6 +135,7 @@ class Drill:
         seed: int | None = None,
         rounds: int = ROUNDS,
         clock: Callable[[], float] = monotonic,
+        past: Sheet | None = None,
     ) -> Drill:
         """Make a drill by what Tangy has learnt, or else by what it is shown now; it takes a while.
 
@@ -143,8 +148,9 @@ class Drill:
             learnt.policy, learnt.effects, load_faults(robot), robot, activity, names
         )
         return cls(
-            tabletop, store, who=who, seed=seed, rounds=rounds, clock=clock, note=learnt.note
-        )
+            tabletop, store,
+            who=who, seed=seed, rounds=rounds, clock=clock, note=learnt.note, past=past,
+        )  # fmt: skip
 
     @property
     def number(self) -> int:
@@ -207,6 +213,8 @@ class Drill:
         self._answered.append(answered)
         if self.over:
             self._keep()
+        else:
+            self._store.append(DrillAnswered(sheet=self.sheet))
         return answered
 
     def leave(self) -> Sheet | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tangy_profiles.drill_sheet import Sheet
-from tangy_profiles.game_records import DrillHeld
+from tangy_profiles.game_records import DrillAnswered, DrillHeld
 from tangy_profiles.store import Event, Store
 
 
@@ -21,5 +21,22 @@ def last_sheet(store: Store) -> Sheet | None:
     return None if event is None else _sheet(event)
 
 
-def _sheet(event: Event[DrillHeld]) -> Sheet:
+def interrupted_sheet(store: Store, who: str, activity: str) -> Sheet | None:
+    """Return the sheet so far of the drill that a person had last, if it was interrupted."""
+    last: Event[DrillAnswered] | None = None
+    for event in store.events(DrillAnswered):
+        if event.record.sheet.by(who):
+            last = event
+    if last is None or last.record.sheet.activity != activity:
+        return None
+    held = (event.record.sheet for event in store.events(DrillHeld, after=last.seq))
+    return None if any(sheet.by(who) for sheet in held) else _sheet(last)
+
+
+def keep_interrupted(store: Store, sheet: Sheet) -> None:
+    """Keep the sheet of an interrupted drill as it is, unfinished."""
+    store.append(DrillHeld(sheet=replace(sheet, at="")))
+
+
+def _sheet(event: Event[DrillHeld] | Event[DrillAnswered]) -> Sheet:
     return replace(event.record.sheet, at=event.at)

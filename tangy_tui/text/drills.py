@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime
 from types import MappingProxyType
 from typing import TYPE_CHECKING, assert_never
 
@@ -12,6 +13,7 @@ from tangy_tui.monitoring.drill import ACTIONS, Drill, DrillAsks, DrillOption, Q
 from tangy_tui.monitoring.evidence import STATES
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import state_words
+from tangy_tui.text.times import day_and_time
 
 if TYPE_CHECKING:
     from tangy_profiles.drill_sheet import AnsweredRound, Sheet
@@ -259,6 +261,29 @@ def sheets_lines(sheets: Sequence[Sheet], when: Callable[[str], str], who: str =
 def left_words(drill: Drill) -> str:
     """Say what is kept of a drill that was left."""
     return KEPT if drill.sheet.answered else NOTHING_KEPT
+
+
+GO_ON = ("resume", "go on with it", "your answers so far count")
+NEW_DRILL = ("new", "begin a new one", "the other one is kept as an unfinished sheet")
+NO_INTERRUPTED_DRILL = (
+    "No drill was interrupted: there is nothing to go on with. Leave --resume out."
+)
+
+
+def interrupted_words(sheet: Sheet) -> str:
+    """Say that a drill was interrupted, and how far it had come."""
+    when = day_and_time(datetime.fromisoformat(sheet.at))
+    return f"A drill was interrupted after {len(sheet.answered)} of {sheet.rounds} rounds ({when})."
+
+
+def begins_anew(sheet: Sheet) -> str:
+    """Say that a new drill begins beside an interrupted one, which is kept unfinished."""
+    return f"{interrupted_words(sheet)} It is kept as an unfinished sheet, and a new drill begins."
+
+
+def goes_on(sheet: Sheet) -> str:
+    """Say that an interrupted drill goes on."""
+    return f"{interrupted_words(sheet)} It goes on now. `tangy drill --discard` begins a new one."
 
 
 NO_HURRY = "There is no hurry: you see your time, but it does not count."

@@ -9,6 +9,7 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.text import interruptions as text
 
 if TYPE_CHECKING:
+    from tangy_profiles.drill_sheet import Sheet
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.past_game import PastGame
     from tangy_tui.app.workspace import Workspace
@@ -46,6 +47,33 @@ async def ask_about_interrupted(program: Program, world: GameWorld) -> GameToPla
             end_interrupted(workspace, past, text.ENDED)
             await _report(program, workspace, past)
     return None
+
+
+@dataclass(frozen=True, slots=True)
+class DrillToHold:
+    """What is rehearsed: the sheet so far of a drill that goes on, or (None) a new drill."""
+
+    past: Sheet | None
+
+
+async def ask_about_drill(program: Program, who: str) -> DrillToHold | None:
+    """Ask about a drill of a person that was interrupted; None: nothing is rehearsed now."""
+    from tangy_tui.monitoring.drill_log import interrupted_sheet, keep_interrupted
+    from tangy_tui.text.drills import GO_ON, NEW_DRILL, interrupted_words
+    from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+
+    workspace = program.workspace
+    past = interrupted_sheet(workspace.store, who, workspace.activity.name)
+    if past is None:
+        return DrillToHold(None)
+    options = [Option(*GO_ON), Option(*NEW_DRILL)]
+    answer = await program.push_screen_wait(ChooseDialog(interrupted_words(past), options))
+    if answer is None:
+        return None
+    if answer == GO_ON[0]:
+        return DrillToHold(past)
+    keep_interrupted(workspace.store, past)
+    return DrillToHold(None)
 
 
 async def _report(program: Program, workspace: Workspace, past: PastGame) -> None:

@@ -16,6 +16,7 @@ from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
 from tangy_tui.ui import policy_opening
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
+from tangy_tui.ui.drills import hold_drill
 from tangy_tui.ui.first_start import change_teacher, first_start, rename_teacher
 from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
@@ -285,29 +286,9 @@ class Program(SoundingApp):
         if policy is not None:
             await play_from_home(self, policy)
 
-    async def drill(
-        self, rounds: int | None = None, seed: int | None = None, who: str = ""
-    ) -> None:
-        """Open a drill: faults to rehearse; of as many rounds as usual unless said otherwise."""
-        from tangy_tui.monitoring.drill import ROUNDS, Drill
-        from tangy_tui.ui.screens.drill import DrillScreen
-
-        workspace = self.workspace
-        made = await self.in_thread(
-            text.PREPARING_DRILL,
-            lambda: Drill.of(
-                workspace.activity,
-                workspace.robot,
-                workspace.names,
-                workspace.store,
-                who=who or self.workspace.teacher,
-                seed=seed,
-                rounds=rounds or ROUNDS,
-                clock=self.clock,
-            ),
-        )
-        if made is not None:
-            await self.push_screen(DrillScreen(made))
+    async def drill(self) -> None:
+        """Open a drill: faults to rehearse."""
+        await hold_drill(self)
 
     def action_compare(self) -> None:
         """Compare two policies, or what two teachers show."""

@@ -12,6 +12,7 @@ from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
+from tangy_tui.ui.drills import hold_drill
 from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program, Start
@@ -21,6 +22,7 @@ from tangy_tui.ui.writer import outlive_terminal
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import CameraHub
+    from tangy_profiles.drill_sheet import Sheet
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.past_game import PastGame
     from tangy_tui.app.robot_opening import Opening
@@ -161,10 +163,19 @@ def run_live(
 
 
 def run_drill(
-    workspace: Workspace, *, rounds: int, seed: int | None, who: str, ascii_only: bool
+    workspace: Workspace,
+    *,
+    rounds: int,
+    seed: int | None,
+    who: str,
+    ascii_only: bool,
+    past: Sheet | None = None,
 ) -> int:
-    """Open the screen on which faults are rehearsed; return the exit status."""
-    return _run(workspace, lambda program: program.drill(rounds, seed, who), ascii_only)
+    """Open the screen on which faults are rehearsed; return the exit status.
+
+    It goes on with a `past` drill, or asks about one that was interrupted.
+    """
+    return _run(workspace, lambda program: hold_drill(program, rounds, seed, who, past), ascii_only)
 
 
 def run_sensors(workspace: Workspace, sensors: CameraHub, *, ascii_only: bool) -> int:

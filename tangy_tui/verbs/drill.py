@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tangy_profiles.errors import TangyError
 from tangy_profiles.person import read_name
 from tangy_tui.text.command_line import PREPARING_DRILL
 from tangy_tui.verbs.common import (
@@ -21,12 +22,22 @@ from tangy_tui.verbs.common import (
 )
 from tangy_tui.verbs.opening import full_screen, open_workspace, say_notices
 
+if TYPE_CHECKING:
+    from tangy_profiles.drill_sheet import Sheet
+    from tangy_tui.app.workspace import Workspace
+
 
 def drill(
     rounds: Annotated[int, typer.Option(min=1, max=50, help="How many rounds.")] = 6,
     seed: Seed = None,
     who: Annotated[str | None, typer.Option(help="Who rehearses; default your login name.")] = None,
     scores: Annotated[bool, typer.Option("--scores", help="List earlier score sheets.")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with a drill that was interrupted.")
+    ] = False,
+    discard: Annotated[
+        bool, typer.Option("--discard", help="Begin a new drill, whatever was interrupted.")
+    ] = False,
     plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
     activity: ActivityName = "",
     users: Users = REGISTERED,
@@ -58,12 +69,23 @@ def drill(
                 for line in sheets_lines(read_sheets(workspace.store), local_time, only):
                     print_line(line)
             return
-        if not (plain_lines or as_json) and full_screen():
+        screen = not (plain_lines or as_json) and full_screen()
+        past = _interrupted(workspace, name, resume=resume, discard=discard)
+        if screen:
             from tangy_tui.ui.run import run_drill
 
+            past = past if resume else None  # otherwise the screen asks
             raise typer.Exit(
-                run_drill(workspace, rounds=rounds, seed=seed, who=name, ascii_only=ascii_only)
+                run_drill(
+                    workspace,
+                    rounds=rounds,
+                    seed=seed,
+                    who=name,
+                    ascii_only=ascii_only,
+                    past=past,
+                )
             )
+        past = _by_lines(workspace, past, anew=as_json and not resume)
         from tangy_tui.console.drills import drill_by_lines
         from tangy_tui.console.inputs import line_reader
         from tangy_tui.monitoring.drill import Drill
@@ -79,6 +101,7 @@ def drill(
             who=name,
             seed=seed,
             rounds=rounds,
+            past=past,
         )
         if not as_json:
             drill_by_lines(made, print_line, line_reader(None))
@@ -93,3 +116,38 @@ def drill(
         from tangy_profiles.codec import written
 
         print_json(written(made.sheet))
+
+
+def _interrupted(workspace: Workspace, who: str, *, resume: bool, discard: bool) -> Sheet | None:
+    """Return the sheet so far of a drill that was interrupted, unless that is to be ended.
+
+    Raises:
+        TangyError: there is none to resume, or it is to be resumed and discarded.
+    """
+    from tangy_tui.monitoring.drill_log import interrupted_sheet, keep_interrupted
+    from tangy_tui.text.drills import NO_INTERRUPTED_DRILL
+    from tangy_tui.text.interruptions import BOTH
+
+    if resume and discard:
+        raise TangyError(BOTH)
+    past = interrupted_sheet(workspace.store, who, workspace.activity.name)
+    if past is None and resume:
+        raise TangyError(NO_INTERRUPTED_DRILL)
+    if past is not None and discard:
+        keep_interrupted(workspace.store, past)
+        return None
+    return past
+
+
+def _by_lines(workspace: Workspace, past: Sheet | None, *, anew: bool) -> Sheet | None:
+    """Say on standard error what becomes of an interrupted drill, which goes on if not `anew`."""
+    from tangy_tui.monitoring.drill_log import keep_interrupted
+    from tangy_tui.text.drills import begins_anew, goes_on
+
+    if past is None:
+        return None
+    say_notices([begins_anew(past) if anew else goes_on(past)])
+    if not anew:
+        return past
+    keep_interrupted(workspace.store, past)
+    return None

@@ -15,7 +15,7 @@ from tangy_profiles.drill_sheet import NOTHING_WRONG, AnsweredRound, Sheet
 from tangy_profiles.errors import TangyError
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import RECOVERIES
-from tangy_profiles.game_records import DrillHeld
+from tangy_profiles.game_records import DrillAnswered, DrillHeld
 from tangy_profiles.person import Person
 from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store
@@ -23,7 +23,12 @@ from tangy_tui.console.drills import drill_by_lines
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.monitoring import drill_policy, drill_rounds
 from tangy_tui.monitoring.drill import NOTHING, Drill
-from tangy_tui.monitoring.drill_log import last_sheet, read_sheets
+from tangy_tui.monitoring.drill_log import (
+    interrupted_sheet,
+    keep_interrupted,
+    last_sheet,
+    read_sheets,
+)
 from tangy_tui.monitoring.drill_policy import DrillPolicy, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import (
     CHOICES,
@@ -259,7 +264,7 @@ def test_an_activity_that_expects_nothing_must_be_taught_first(
 # ---------------------------------------------------------------------------- answers and score
 
 
-def test_right_answers_get_every_point_and_only_the_sheet_is_logged(
+def test_right_answers_get_every_point_and_only_the_sheet_is_kept(
     table: Tabletop, store: Store
 ) -> None:
     clock = Clock()
@@ -267,7 +272,7 @@ def test_right_answers_get_every_point_and_only_the_sheet_is_logged(
     while drill.next() is not None:
         drill.shown()
         clock.now += 3.0
-        assert list(store.events()) == []
+        assert list(store.events(DrillHeld)) == []
         right_keys(drill)
     assert drill.over
     sheet = drill.sheet
@@ -275,12 +280,56 @@ def test_right_answers_get_every_point_and_only_the_sheet_is_logged(
     assert sheet.points == sheet.most == sum(one.most for one in sheet.answered)
     assert sheet.median == 3.0
     assert sheet.again == ()
-    (event,) = store.events()
+    *rounds, event = store.events()
+    assert {one.kind for one in rounds} == {DrillAnswered.KIND} and len(rounds) == 5
     assert (event.kind, event.person) == (DrillHeld.KIND, None)
     assert [replace(kept, at="") for kept in read_sheets(store)] == [sheet]
     assert drill.next() is None
     drill.leave()
-    assert len(list(store.events())) == 1, "it is kept once"
+    assert len(list(store.events(DrillHeld))) == 1, "it is kept once"
+
+
+def test_a_drill_that_was_interrupted_goes_on_with_the_rounds_it_would_have_had(
+    table: Tabletop, store: Store
+) -> None:
+    whole = Drill(table, store, who="ada", seed=2, rounds=4)
+    shown = []
+    while (one := whole.next()) is not None:
+        shown.append(one)
+        right_keys(whole)
+    before = Drill(table, store, who="bea", seed=2, rounds=4)
+    for _ in range(2):
+        before.next()
+        right_keys(before)
+    before.next()  # and the program is killed
+    past = interrupted_sheet(store, "Bea", "bingo")
+    assert past is not None and past.answered == before.sheet.answered
+    assert interrupted_sheet(store, "ada", "bingo") is None
+    assert interrupted_sheet(store, "bea", "trivia") is None
+
+    after = Drill(table, store, who="bea", past=past)
+    third = after.next()
+    assert third is not None and third.number == 3
+    for what in ("kind", "state", "choices", "devices", "recovery"):
+        assert getattr(third, what) == getattr(shown[2], what)
+    right_keys(after)
+    after.next()
+    right_keys(after)
+    assert after.over and after.sheet.points == after.sheet.most == whole.sheet.points
+    assert after.sheet.finished and interrupted_sheet(store, "bea", "bingo") is None
+
+
+def test_an_interrupted_drill_that_is_not_wanted_is_kept_unfinished(
+    table: Tabletop, store: Store
+) -> None:
+    drill = Drill(table, store, who="ada", seed=2, rounds=4)
+    drill.next()
+    right_keys(drill)
+    past = interrupted_sheet(store, "ada", "bingo")
+    assert past is not None
+    keep_interrupted(store, past)
+    assert interrupted_sheet(store, "ada", "bingo") is None
+    assert [len(sheet.answered) for sheet in read_sheets(store, "ada")] == [1]
 
 
 def test_each_wrong_answer_costs_its_point(table: Tabletop, store: Store) -> None:

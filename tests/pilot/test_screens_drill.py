@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 from textual.app import App
 
+from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import FaultBook
+from tangy_profiles.game_records import DrillAnswered
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.drill import Drill
@@ -18,12 +20,14 @@ from tangy_tui.monitoring.drill_log import last_sheet, read_sheets
 from tangy_tui.monitoring.drill_policy import DrillNote, DrillPolicy, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import Tabletop
 from tangy_tui.text.drills import option_words
+from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.drill import DrillScreen
 from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.home import HomeScreen
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, TangyPilot
+from tests.support.waiting import until_shown
 
 TINY = (60, 18)
 FEW = (
@@ -295,6 +299,30 @@ async def test_it_is_opened_from_home_and_its_score_is_told_there(
             await pilot.pause(0.02)
         await pilot.pause()
         assert f"last: {points} of {points} points" in pilot.text()
+
+
+async def test_an_interrupted_drill_is_offered_and_goes_on(run: Run, workspace: Workspace) -> None:
+    right = AnsweredRound(1, "", "Nothing was wrong", "continue", (), "", "continue", 2.0)
+    sheet = Sheet(workspace.teacher, workspace.activity.name, 3, 2, (right,))
+    workspace.store.append(DrillAnswered(sheet=sheet))
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        await pilot.press("r", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, HomeScreen))
+        await pilot.press("r", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, DrillScreen))
+        await pilot.pause()
+        await pilot.press("enter")
+        await pilot.pause()
+        screen = pilot.app.screen
+        assert isinstance(screen, DrillScreen) and drill_of(screen).number == 2
+        await answer_round(pilot, drill_of(screen))
+        assert drill_of(screen).over
+    kept = last_sheet(workspace.store)
+    assert kept is not None and kept.finished
 
 
 def test_what_is_shown_for_a_drill_is_not_kept(workspace: Workspace, learnt: DrillPolicy) -> None:

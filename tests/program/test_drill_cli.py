@@ -9,6 +9,8 @@ from subprocess import CompletedProcess
 
 import pytest
 
+from tangy_profiles.drill_sheet import AnsweredRound, Sheet
+from tangy_profiles.game_records import DrillAnswered
 from tangy_profiles.store import Store
 from tangy_tui.console import inputs
 from tangy_tui.text.drills import KEPT, NOTHING_KEPT
@@ -42,8 +44,37 @@ def test_by_lines_a_drill_is_told_and_kept(tangy: Tangy, tmp_path: Path) -> None
     assert listed.returncode == 0
     assert listed.stdout.count("Ada") == 2
     with Store.open(tmp_path / "d", write=False) as store:
-        assert [event.kind for event in store.events()] == ["drill", "drill"]
+        kinds = [event.kind for event in store.events()]
+        assert kinds == ["drill-round"] * 3 + ["drill"] + ["drill-round"] * 3 + ["drill"]
         assert store.responses() == {}
+
+
+def test_an_interrupted_drill_goes_on_or_is_kept(tangy: Tangy, tmp_path: Path) -> None:
+    data = ("--data", tmp_path / "d", "--who", "Ada")
+    right = AnsweredRound(1, "", "Nothing was wrong", "continue", (), "", "continue", 2.0)
+    sheet = Sheet("Ada", "bingo", 3, 2, (right,))
+
+    def interrupt() -> None:
+        with Store.open(tmp_path / "d") as store:
+            store.append(DrillAnswered(sheet=sheet))
+
+    assert tangy("drill", "--plain", "--resume", *data).returncode == 2
+    interrupt()
+    done = tangy("drill", "--plain", *data, stdin=answers(3))
+    assert "interrupted after 1 of 2 rounds" in done.stderr and "Round 1" not in done.stdout
+    assert "Round 2 of 2" in done.stdout
+    interrupt()
+    anew = tangy("drill", "--json", "--rounds", "1", *data, stdin=answers(1))
+    assert "a new drill begins" in anew.stderr and json.loads(anew.stdout)["rounds"] == 1
+    interrupt()
+    assert tangy("drill", "--plain", "--discard", *data, stdin="").stderr == ""
+    kept = json.loads(tangy("drill", "--scores", "--json", *data).stdout)
+    assert [(one["rounds"], len(one["answers"])) for one in kept] == [
+        (2, 2),
+        (2, 1),
+        (1, 1),
+        (2, 1),
+    ]
 
 
 def test_as_a_document_nothing_else_is_printed(tangy: Tangy, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.events import KINDS
 from tangy_profiles.game_records import (
     CallMade,
+    DrillAnswered,
     DrillHeld,
     EffectAccepted,
     FaultDiagnosed,
@@ -151,6 +152,7 @@ def _rehearse(workspace: Workspace) -> None:
         ),
         AnsweredRound(2, "", "", "continue", (), "", "continue", 2.0, None, None),
     )
+    store.append(DrillAnswered(sheet=Sheet("Ada", "bingo", 1, 2, rounds[:1])))
     store.append(DrillHeld(sheet=Sheet("Ada", "bingo", 1, 2, rounds)))
     settings = {"garbage": 1.0, "shift": 0.0}
     append_body(

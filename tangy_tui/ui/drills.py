@@ -1,0 +1,49 @@
+"""Drills in the program: an interrupted one is asked about, and the screen is opened."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_tui.text import program as text
+from tangy_tui.ui.interruption import DrillToHold, ask_about_drill
+
+if TYPE_CHECKING:
+    from tangy_profiles.drill_sheet import Sheet
+    from tangy_tui.ui.program import Program
+
+
+async def hold_drill(
+    program: Program,
+    rounds: int | None = None,
+    seed: int | None = None,
+    who: str = "",
+    past: Sheet | None = None,
+) -> None:
+    """Open a drill: faults to rehearse; of as many rounds as usual unless said otherwise.
+
+    It goes on with a `past` drill, or asks about one that was interrupted.
+    """
+    from tangy_tui.monitoring.drill import ROUNDS, Drill
+    from tangy_tui.ui.screens.drill import DrillScreen
+
+    workspace = program.workspace
+    name = who or workspace.teacher
+    chosen = await ask_about_drill(program, name) if past is None else DrillToHold(past)
+    if chosen is None:
+        return
+    made = await program.in_thread(
+        text.PREPARING_DRILL,
+        lambda: Drill.of(
+            workspace.activity,
+            workspace.robot,
+            workspace.names,
+            workspace.store,
+            who=name,
+            seed=seed,
+            rounds=rounds or ROUNDS,
+            clock=program.clock,
+            past=chosen.past,
+        ),
+    )
+    if made is not None:
+        await program.push_screen(DrillScreen(made))
