@@ -25,17 +25,17 @@ def finding_words(source: str, found: ActivityFlaw) -> str:
     name = repr(found.name)
     match found.flaw:
         case "stage never reached":
-            words = f"stages: no game comes to the stage {name}"
+            words = f"stages: no game reaches the stage {name}"
         case "situation never reached":
-            words = f"stages: this never comes about: {found.name}"
+            words = f"stages: this situation never occurs: {found.name}"
         case "fact never changes":
-            words = f"facts.{found.name}: nothing sets it, and nobody brings it about"
+            words = f"facts.{found.name}: nothing ever sets it"
         case "fact never cleared":
             words = f"facts.{found.name}: once it has changed, no behaviour sets it back"
         case "fact never looked at":
             words = f"facts.{found.name}: no stage, condition or text looks at it"
         case "behaviour never possible":
-            words = f"behaviours.{found.name}: it is never possible; look at 'needs' and 'to'"
+            words = f"behaviours.{found.name}: it can never be chosen; check 'needs' and 'to'"
         case "text lacks a word":
             words = f"behaviours.{found.name}: {found.text!r} lacks a word when it is said"
         case "never ends":

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Name = Callable[[str], str]
 
 NOBODY = "Nobody asks for help."
-ALL_SHOWN = "Everything that can happen was shown."
+ALL_SHOWN = "Everything that can happen has been shown."
 GUIDED = (
     "A guided game: everything that can happen comes about once, so that you can show it. Each "
     "is announced."
@@ -58,7 +58,7 @@ def _by_rule(activity: Activity, rule: StageRule, situation: Situation, who: str
         case "requested or away" if situation.request == "AR":
             return f"{who} asks for help."
         case "requested or away":
-            return "Nobody asks any more."
+            return "Nobody is asking any more."
         case "after":
             return "It is time to end the game."
         case _:

@@ -28,9 +28,9 @@ Document = Mapping[str, Any]
 Source = Literal["predicted", "fitted", "chosen", "measured"]
 SOURCES: Mapping[Source, str] = MappingProxyType(
     {
-        "predicted": "nothing was set by this figure: it tests the program",
-        "fitted": "something was set so that this figure comes out: it tests nothing",
-        "chosen": "it rests on a choice that the paper leaves open: other choices move it",
+        "predicted": "no value was fitted to this figure: it tests the program",
+        "fitted": "a value was fitted to this figure: it tests nothing",
+        "chosen": "it depends on a choice that the paper leaves open: other choices change it",
         "measured": "a time, measured where the program ran",
     }
 )
@@ -86,7 +86,7 @@ def _one_run(here: float | None, paper: float, runs: Mapping[str, Any]) -> str:
         return "Nobody converged here, so there is nothing to compare."
     chance = f"a mean of four users {_varies(runs['sd'], runs['n'])}"
     if runs["n"] > 1 and abs(here - paper) <= SURE * runs["sd"]:
-        return f"No further off than one run may be: {chance}."
+        return f"Within the spread of single runs: {chance}."
     return f"{'Higher' if here > paper else 'Lower'} by {abs(here - paper):.2g}, and {chance}."
 
 
@@ -187,8 +187,8 @@ def _learning(document: Document) -> list[ComparisonRow]:
             "Not measured in this run (--no-typing)."
             if typed is None
             else "The paper's teachers were new to it, spoke, and watched a simulated robot; here "
-            "somebody who knows every command types it as fast as is sensible, so this is what "
-            "the program itself allows at best. "
+            "a typist who knows every command works as fast as is sensible, so this is the best "
+            "that the program allows. "
             f"At an ordinary pace it would be {number(typed['ordinary']['minutes'], 1)} minutes.",
             "measured",
         ),
@@ -292,8 +292,8 @@ def _recovery(document: Document) -> list[ComparisonRow]:
             number(behaviours),
             number(mean),
             f"{abs(mean / behaviours - 1):.0%} {'more' if mean > behaviours else 'fewer'}. "
-            "Repairs take time in which people ask for help, and what a fault made come to "
-            "nothing is done again. The rates of the simulated people were fitted to games without "
+            "Repairs take time in which people ask for help, and Tangy repeats what a fault "
+            "prevented. The rates of the simulated people were fitted to games without "
             "faults of this length.",
             "fitted",
         ),
@@ -301,7 +301,7 @@ def _recovery(document: Document) -> list[ComparisonRow]:
             "Games played to their end",
             f"{paper['games']} of {paper['games']}",
             of_all(document["ended"].get(TO_ITS_END, 0) / games, games),
-            "Here every expert mends what was diagnosed; the others are told of below."
+            "Here every expert mends what was diagnosed; the others are listed below."
             if document["ended"].get(TO_ITS_END, 0) < games
             else "Here every expert mends what was diagnosed.",
             "chosen",

@@ -32,7 +32,7 @@ def left_open_words(situation: str) -> str:
 
 def situation_words(situation: str) -> str:
     """Say where demonstrations disagree."""
-    return f"Different answers were shown to this situation: {situation}."
+    return f"Different answers were shown in this situation: {situation}."
 
 
 def settled_words(answered: str, aside: int) -> str:

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 HELD = {
     "slow": "Something is near: Tangy drives slowly.",
     "stands": "Something is close: Tangy stands. Turn, or back away.",
-    "overridden": "Tangy crawls and stops for nothing. Watch it, and let the key go in time.",
+    "overridden": (
+        "Tangy moves at a crawl and stops for nothing. Watch it, and release the key in time."
+    ),
 }
 """What is said where the robot does not drive as it is told."""
 
@@ -24,7 +26,7 @@ COURTESIES = {
 }
 """What the robot says to people for whom it waits on its way."""
 
-NOT_ACCEPTABLE = "Tangy asks about nothing that could be said to be all right."
+NOT_ACCEPTABLE = "Tangy is asking nothing that you could call all right."
 
 ACCEPT = "Is all well, and shall Tangy go on?"
 MOVE_AGAIN = ("Let the robot move again?", "It goes on with the game at once.")
@@ -48,7 +50,7 @@ def autonomy_words(level: Autonomy) -> str:
         case "alone":
             return "does everything by itself"
         case "unsure":
-            return "asks where it is less sure"
+            return "asks when it is less sure"
         case "each":
             return "asks before everything it does"
         case forgotten:
@@ -163,7 +165,10 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "ended":
             return "You ended the game. Tangy stands still."
         case "seen before":
-            return "It was seen already: expert says whom to call, clear lets Tangy go on."
+            return (
+                "You have seen it already. Type expert to see whom to call, or clear to let "
+                "Tangy go on."
+            )
         case "stopped first":
             return "Not now: Tangy was stopped. Type first: go on."
         case "asks first":
@@ -188,7 +193,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "not halted":
             return "No fault halts Tangy."
         case "reached":
-            return "It is noted that you have reached the expert."
+            return "Noted: you have reached the expert."
         case "nobody named":
             return "No expert is named in the robot's file."
         case "not seen yet":

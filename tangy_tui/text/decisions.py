@@ -35,14 +35,14 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
     times = "once" if len(why.rests_on) == 1 else f"{len(why.rests_on)} times"
     if decision.contested:
         sentences.append(
-            "Demonstrations disagree about it, and nobody has said yet which is right: "
-            "Tangy does not act here, it asks."
+            "Demonstrations disagree here, and nobody has said which is right yet. Tangy asks "
+            "instead of acting."
         )
     elif decision.whatever and not why.rests_on:
         whatever = listed(decision.whatever, "or")
         sentences.append(f"A rule covers it: {done!r}, whatever {whatever}. Nobody showed it here.")
     elif not decision.seen and not decision.sure:
-        sentences.append("Nobody has shown Tangy what to do here: it does not act, it asks.")
+        sentences.append("Nobody has shown Tangy what to do here. It asks instead of acting.")
     elif not why.rests_on:
         sentences.append(f"A teacher said that {done!r} is right here.")
     else:
@@ -52,7 +52,7 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
             sentences.append(f"A teacher said that {right} is right here.")
         if not decision.sure:
             sentences.append(
-                f"Fewer than {SURE:.0%} of the trees agree: Tangy does not act here, it asks."
+                f"Fewer than {SURE:.0%} of the trees agree. Tangy asks instead of acting."
             )
     if votes and (len(decision.votes) > 1 or not decision.seen):
         shares = ", ".join(
@@ -109,7 +109,7 @@ def shown_words(activity: Activity, shown: Shown, name: Callable[[str], str]) ->
     return f"{activity.behaviour_words(shown.step.behaviour)}: {where}, by {shown.teacher}"
 
 
-WHY_HEADINGS = ("It rests on", "Shown here as well", "Shown nearby")
+WHY_HEADINGS = ("Based on", "Shown here as well", "Shown nearby")
 """Heads of the steps that say so, that say otherwise, and of those nearby."""
 VOTES = "Votes of the trees"
 

@@ -36,12 +36,12 @@ CLASS_WORDS: Mapping[str, str] = MappingProxyType(
 
 RELEASE = "The expert was here and says: try it now. Seen: {seen}."
 WELCOME = (
-    "Each round shows what staff see at one moment of a game. Say what it is, and what you do. "
-    "Nothing of it is real, and nothing of it is kept but your score."
+    "Each round shows what staff see at one moment of a game. Say what is wrong and what you "
+    "would do. None of it is real. Tangy keeps only your score."
 )
-KEPT = "What was answered before is kept as an unfinished sheet."
-NOTHING_KEPT = "Nothing was kept: the first round was not answered to its end."
-NOTHING_MOVES = "Nothing is moving: this is a rehearsal, without the robot."
+KEPT = "Your earlier answers are kept as an unfinished drill."
+NOTHING_KEPT = "Nothing was kept, because you did not finish the first round."
+NOTHING_MOVES = "Nothing is moving: this is a rehearsal without the robot."
 HELP = "Type the number or letter of an answer, or quit."
 
 _QUIET = {

@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 
 UNSETTLED: Mapping[Unsettled, str] = {
     "": "",
-    "new": "Nobody has answered so before: Tangy goes on asking here until a teacher settles "
-    "which answer is right.",
+    "new": (
+        "Nobody has given this answer before. Tangy goes on asking here until a teacher settles "
+        "which answer is right."
+    ),
     "otherwise": "A teacher said otherwise before: both are shown before Tangy learns again.",
 }
 
@@ -144,4 +146,4 @@ def changed_lines(activity: Activity, before: str, changed: Sequence[Change]) ->
 
 def grounds(why: Why) -> tuple[tuple[str, Sequence[Shown]], ...]:
     """Return the steps that a decision rests on, and the others, each under its heading."""
-    return ("It rests on", why.rests_on), ("Against it", why.against), ("Nearby", why.near)
+    return ("Based on", why.rests_on), ("Against it", why.against), ("Nearby", why.near)

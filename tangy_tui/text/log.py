@@ -156,7 +156,8 @@ def limits_lines(games: Sequence[Game]) -> Iterator[str]:
     limits = dict.fromkeys(game.asks for game in games if game.asks != (0, 0))
     for visit, most in limits:
         yield (
-            f"Nobody was to be asked in vain more than {counted(visit, 'time')} in a visit, "
+            f"Nobody was to be asked without success more than {counted(visit, 'time')} in a "
+            "visit, "
             f"and {counted(most, 'time')} in a game."
         )
     pauses, seconds = sum(g.pauses[0] for g in games), sum(g.pauses[1] for g in games)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tangy_profiles.reading import plain
 
 BETTER = (
-    "Give a log of a smaller area, one that comes back often to what it knows, or one that a "
+    "Give a log of a smaller area, one that often returns to places it has seen, or one that a "
     "mapping program has corrected, without --match."
 )
 

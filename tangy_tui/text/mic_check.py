@@ -81,7 +81,7 @@ def reason_words(checked: CheckResult) -> str:
         were = "was" if known == 1 else "were"
         why = f"{few} of {figures.commands} commands {were} understood"
     elif not figures.others:
-        why = "none of the other sentences was heard"
+        why = "Tangy heard none of the other sentences"
     else:
         were = "was" if figures.taken == 1 else "were"
         why = f"{figures.taken} of {figures.others} other sentences {were} taken for a command"

@@ -70,7 +70,7 @@ def tally(belief: Beta) -> str:
 
 def method_words(record: Record) -> str:
     """Say how the next strategy is chosen, and for whom that holds."""
-    whose = "for this person" if record.known.own else "as the activity has it"
+    whose = "for this person" if record.known.own else "as the activity sets"
     return f"{record.known.method.words} ({whose})"
 
 
@@ -95,8 +95,8 @@ def prior_words(prior: Beliefs) -> str:
         if start.counts is not None
     ]
     if not lent:
-        return "begins from nothing: every strategy alike"
-    return "begins with what earlier people lend: " + ", ".join(lent)
+        return "starts with every strategy equal"
+    return "starts from what worked with earlier people: " + ", ".join(lent)
 
 
 def entry_words(entry: FeedbackEntry) -> str:
@@ -153,14 +153,14 @@ def method_title(name: str) -> str:
 
 
 PEOPLE_HELP = (
-    "Everybody, with what works and on how many responses that rests. It is said to work when it "
-    "is at least 90% probable that no other way of asking is better; of one that alone is switched "
-    "on nobody can tell. Up and down choose a person."
+    "Everybody, with what works and how many responses show it. A way of asking works if it is at "
+    "least 90% probable that no other is better. If only one is switched on, Tangy cannot tell. "
+    "Up and down choose a person."
 )
 STRATEGIES_HELP = (
     "For each way of asking: the curve of what Tangy believes from 0 (never) to 1 (always), how "
-    "often it was tried and how often the person complied, the mean, the interval in which the "
-    "truth lies with 90%, and the probability of being the best of those that are on. Then how "
+    "often it was tried and how often the person complied, the mean, the 90% interval, and the "
+    "probability of being the best of those that are on. Then how "
     "the next one is chosen, and where the beliefs began. {put_away} switches the chosen one off "
     "for this person, or on again."
 )

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from tangy_tui.speech.lexicon import WordSource
     from tangy_tui.speech.phrase_list import PhraseList
 
-LIST_TITLE = "What can be said or typed"
+LIST_TITLE = "What you can say or type"
 LIST_HELP = (
     "Up and down choose an entry, {filter} searches, {hear} says it aloud. Tangy does not hear a "
     "name yet if it only guesses how it sounds: choose the person and press {pronounce}."

@@ -114,7 +114,7 @@ def settled_words(settled: Settled, activity: Activity) -> str:
         kept = f"From now on “{words}” means: {activity.behaviour(done).question}."
         return kept if settled.answer == "keep" else f"Tangy does not keep “{words}”."
     if not settled.right:
-        return "Left open. Before Tangy learns, it asks again which is right."
+        return "Left open. Tangy asks again which is right before it learns."
     right = listed((activity.behaviour(b).question for b in settled.right), "and")
     are = "is" if len(settled.right) == 1 else "are both"
     return f"{activity.in_words(settled.remark.step.state.situation)}: {right} {are} right."

@@ -24,8 +24,7 @@ RESPONDED = "How people responded"
 NOBODY_ASKED = "Nobody was asked for anything."
 BELIEFS = (
     "Drawn is how likely each person is to comply with each strategy that was used: before "
-    "the session (ring) and after it (dot), with the interval in which the truth lies with "
-    "a probability of 90%."
+    "the session (ring) and after it (dot), with its 90% interval."
 )
 FAULTS = "Faults, and what was done about them"
 NO_FAULTS = "There were no faults."

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="Which activities there are, and what is wrong with their files. Without a verb: list.",
+    help="List activities, check their files, write new ones. Without a verb: list.",
 )
 
 LARGEST_QUESTIONS = 1_000_000  # bytes of a file of questions
@@ -67,7 +67,7 @@ def activity_list(as_json: Json = False) -> None:
 def activity_check(
     files: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[FILE_OR_NAME...]", help="Default: all that ships."),
+        typer.Argument(metavar="[FILE_OR_NAME...]", help="Default: all shipped activities."),
     ] = None,
     faults: Annotated[
         list[Path] | None, typer.Option("--faults", metavar="FILE", help="A file of fault rules.")
@@ -117,7 +117,7 @@ def activity_show(
     activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
     as_json: Json = False,
 ) -> None:
-    """Show what there is in an activity: its stages, facts and behaviours."""
+    """Show an activity: its stages, facts and behaviours."""
     from tangy_profiles.activity import load_activity
     from tangy_profiles.declared.activity import DeclaredActivity
     from tangy_tui.text.activities import activity_lines
@@ -141,7 +141,7 @@ def activity_try(
     seed: Seed = 1,
     as_json: Json = False,
 ) -> None:
-    """Play one game by what the activity's file expects, and tell it step by step."""
+    """Play one game as the activity's file expects it, and print it step by step."""
     from tangy_profiles.activity import load_activity
     from tangy_tui.app.trying import tried_game
     from tangy_tui.text.activities import TRIED, people_did, tried_lines
@@ -201,7 +201,7 @@ def activity_use(
 def activity_new(
     folder: Annotated[Path, typer.Argument(help="Where the files go.")] = Path(),
 ) -> None:
-    """Ask what an activity is about, and write a file for it that can be played as it is."""
+    """Ask about a new activity, and write a file for it that can be played at once."""
     from tangy_tui.text import activity_template as template
 
     title = _asked(template.ASK_TITLE)
@@ -254,7 +254,7 @@ def activity_phrases(
     users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
-    """Show the phrasebook: what can be said for what, and how every word is said."""
+    """Show the phrasebook: what you can say, and how each word is pronounced."""
     from tangy_tui.learning.own_phrases import forget_phrase, own_phrases, personal_activity
     from tangy_tui.speech.phrase_list import list_phrases
 

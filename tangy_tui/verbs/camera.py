@@ -31,7 +31,7 @@ SOURCES = "0 or /dev/video0, http://... or rtsp://..., a video, a picture or a f
 
 def camera(
     source: Annotated[str, typer.Argument(help=f"{SOURCES}.")],
-    seconds: Annotated[float, typer.Option(min=0.1, help="How long it is watched.")] = 5.0,
+    seconds: Annotated[float, typer.Option(min=0.1, help="How long to watch it.")] = 5.0,
     picture: Annotated[
         Path | None, typer.Option(metavar="FILE.png", help="Keep its last picture there.")
     ] = None,
@@ -128,11 +128,11 @@ def _write(frame: Frame, path: Path) -> None:
 def capture(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where the pictures go.")],
     source: Annotated[str, typer.Option("--from", metavar="SOURCE", help=f"{SOURCES}.")],
-    count: Annotated[int | None, typer.Option(min=1, help="At most so many pictures.")] = None,
-    seconds: Annotated[float | None, typer.Option(min=0.1, help="For at most so long.")] = None,
+    count: Annotated[int | None, typer.Option(min=1, help="At most this many pictures.")] = None,
+    seconds: Annotated[float | None, typer.Option(min=0.1, help="For at most this long.")] = None,
     every: Annotated[
         float | None,
-        typer.Option(min=0.0, help="Seconds between two: 1, or 0 (all) of a file or folder."),
+        typer.Option(min=0.0, help="Seconds between pictures: 1, or 0 (all) for a file or folder."),
     ] = None,
     cards: Annotated[
         bool, typer.Option("--cards", help="Read the card in each picture, as read-card does.")

@@ -19,7 +19,7 @@ from tangy_tui.verbs.common import ActivityName, Json, print_json
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
 
-app = typer.Typer(help="Print the cards that Tangy can read, and list what stands on them.")
+app = typer.Typer(help="Print cards that Tangy can read, and list their numbers.")
 
 Count = Annotated[int, typer.Option(min=1, max=LAST_CARD, help="How many cards.")]
 First = Annotated[int, typer.Option(min=1, max=LAST_CARD, help="The number of the first card.")]
@@ -33,7 +33,7 @@ def cards_print(
     count: Count = 40,
     first: First = 1,
     pdf: Annotated[
-        Path | None, typer.Option(help="Write this PDF of cards and the call sheet.")
+        Path | None, typer.Option(help="Write the cards and the call sheet to this PDF.")
     ] = None,
     png: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write a picture of each card, cards.json.")
@@ -41,9 +41,7 @@ def cards_print(
     dpi: Annotated[float, typer.Option(min=40, max=600, help="Dots per inch of pictures.")] = 150,
     paper: Annotated[
         str,
-        typer.Option(
-            help="What the PDF is printed on: a4 or letter (two cards to a sheet), or a5."
-        ),
+        typer.Option(help="The paper of the PDF: a4 or letter (two cards to a sheet), or a5."),
     ] = "a4",
     deck_seed: DeckSeed = USUAL_SEED,
     activity: ActivityName = DEFAULT_ACTIVITY,
@@ -51,7 +49,7 @@ def cards_print(
 ) -> None:
     """Write cards as a PDF to print and cut, with a call sheet for staff, or as pictures.
 
-    A card is always the same for its number and the deck's seed: a lost one is printed again with
+    A card's number and the deck's seed always give the same card: print a lost one again with
     `--first 17 --count 1`. Print in full size ("100 %") and cut along the marks.
     """
     from tangy_profiles.activity import load_activity
@@ -94,7 +92,7 @@ def cards_list(
     activity: ActivityName = DEFAULT_ACTIVITY,
     as_json: Json = False,
 ) -> None:
-    """List the numbers that stand on cards."""
+    """List the numbers on cards."""
     from tangy_profiles.activity import load_activity
     from tangy_profiles.card_face import rows_of, tag_ids
 

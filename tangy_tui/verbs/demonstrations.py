@@ -22,11 +22,13 @@ if TYPE_CHECKING:
     from tangy_tui.learning.library import Edit
 
 app = typer.Typer(
-    rich_markup_mode=None, help="What was demonstrated: list, edit, and settle what disagrees."
+    rich_markup_mode=None, help="List and edit demonstrations, and settle their conflicts."
 )
 
 One = Annotated[str, typer.Argument(metavar="N", help="Its number in the list, or its id.")]
-Unfinished = Annotated[bool, typer.Option("--unfinished", help="Of unfinished demonstrations too.")]
+Unfinished = Annotated[
+    bool, typer.Option("--unfinished", help="Include unfinished demonstrations.")
+]
 Some = Annotated[list[str], typer.Argument(metavar="N...", help="Numbers in the list, or ids.")]
 
 
@@ -37,7 +39,7 @@ def list_them(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """List the demonstrations: teacher, date, length, coverage, and what to mind of them."""
+    """List the demonstrations: teacher, date, length, coverage, and problems."""
     from tangy_tui.learning.demonstration_rows import list_rows
     from tangy_tui.learning.library import read_library
     from tangy_tui.ui import reports
@@ -88,7 +90,7 @@ def delete(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Put demonstrations away; they are not learnt from until they are restored."""
+    """Put demonstrations away; Tangy does not learn from them until you restore them."""
     _change(data, activity, as_json, lambda editor: editor.delete(*demonstrations))
 
 
@@ -100,7 +102,7 @@ def restore(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Take demonstrations into use again that were deleted."""
+    """Restore deleted demonstrations."""
     _change(data, activity, as_json, lambda editor: editor.restore(*demonstrations))
 
 
@@ -112,7 +114,7 @@ def merge(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Make one demonstration of several, in the given order."""
+    """Merge several demonstrations into one, in the given order."""
     _change(data, activity, as_json, lambda editor: editor.merge(*demonstrations))
 
 
@@ -125,7 +127,7 @@ def split(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Make two demonstrations of one: up to a step, and from the next one on."""
+    """Split a demonstration in two after a step."""
     _change(data, activity, as_json, lambda editor: editor.split(demonstration, step))
 
 
@@ -147,7 +149,7 @@ def redo(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Make the change again that was taken back last."""
+    """Redo the change that you took back last."""
     _change(data, activity, as_json, lambda editor: editor.redo(), "Done again: ")
 
 
@@ -159,7 +161,7 @@ def conflicts(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Show the situations to which demonstrations give different answers, side by side."""
+    """Show the situations in which demonstrations differ, side by side."""
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.documents import conflict_document
     from tangy_tui.text.situations import conflict_lines
@@ -190,7 +192,7 @@ def resolve(
         list[str] | None, typer.Option(help="The answer that is right; may be repeated.")
     ] = None,
     instead: Annotated[
-        str | None, typer.Option(help="A behaviour that is right though nobody showed it.")
+        str | None, typer.Option(help="The right behaviour, if nobody showed it.")
     ] = None,
     both: Annotated[bool, typer.Option("--both", help="All answers are right.")] = False,
     unfinished: Unfinished = False,
@@ -199,7 +201,7 @@ def resolve(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Say which answer to a situation is right; the others are not learnt from."""
+    """Say which answer is right in a situation; Tangy does not learn from the others."""
 
     def settle(editor: Editor) -> Edit:
         library = editor.library
@@ -288,7 +290,7 @@ def accepted(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """List what was unexpected in games and a teacher said is all right; take one back."""
+    """List the surprises that a teacher accepted as all right; take one back."""
     from tangy_tui.monitoring.accepted import read_accepted
     from tangy_tui.monitoring.accepted import take_back as take_it_back
     from tangy_tui.monitoring.evidence import mismatch_words

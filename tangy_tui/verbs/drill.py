@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 def drill(
     rounds: Annotated[int, typer.Option(min=1, max=50, help="How many rounds.")] = 6,
     seed: Seed = None,
-    who: Annotated[str | None, typer.Option(help="Who rehearses; default your login name.")] = None,
+    who: Annotated[str | None, typer.Option(help="Who practises; default your login name.")] = None,
     scores: Annotated[bool, typer.Option("--scores", help="List earlier score sheets.")] = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a drill that was interrupted.")
@@ -38,7 +38,9 @@ def drill(
     discard: Annotated[
         bool, typer.Option("--discard", help="Begin a new drill, whatever was interrupted.")
     ] = False,
-    plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
+    plain_lines: Annotated[
+        bool, typer.Option("--plain", help="Use lines instead of a screen.")
+    ] = False,
     activity: ActivityName = "",
     users: Users = REGISTERED,
     data: Data = None,

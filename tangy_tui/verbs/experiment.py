@@ -21,15 +21,13 @@ if TYPE_CHECKING:
     from tangy_tui.experiments.sweep import Where
 
 app = typer.Typer(
-    rich_markup_mode=None, help="The paper's scenarios, run again and put beside what it printed."
+    rich_markup_mode=None, help="Run the paper's scenarios again, beside the figures it printed."
 )
 
 Seed = Annotated[int, typer.Option(min=0, help="Another seed, other games.")]
-Jobs = Annotated[int, typer.Option(help="How many processes work at it; -1: one for each core.")]
-Dask = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Work on this Dask cluster instead.")
-]
-Fresh = Annotated[bool, typer.Option("--fresh", help="Do again what was done before.")]
+Jobs = Annotated[int, typer.Option(help="How many processes to use; -1: one for each core.")]
+Dask = Annotated[str | None, typer.Option(metavar="ADDRESS", help="Use this Dask cluster instead.")]
+Fresh = Annotated[bool, typer.Option("--fresh", help="Run finished parts again, too.")]
 Report = Annotated[
     Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures and tables.")
 ]
@@ -42,7 +40,7 @@ def first(
         int | None, typer.Option(min=1, max=8, help="People in guided games, instead of 1 to 8.")
     ] = None,
     no_typing: Annotated[
-        bool, typer.Option("--no-typing", help="Do not type a game in real time (minutes).")
+        bool, typer.Option("--no-typing", help="Skip typing a game in real time (takes minutes).")
     ] = False,
     report: Report = None,
     activity: ActivityName = DEFAULT_ACTIVITY,
@@ -99,7 +97,7 @@ def third(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Recover: games in which faults are induced, what was diagnosed, and what was done.
+    """Recover: games with induced faults, their diagnoses and recoveries.
 
     They are played on the bench: cards, faces, scans and signs are rendered, and go through the
     drivers and all that a real robot has. --simulated leaves that out.

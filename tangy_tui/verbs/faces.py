@@ -48,18 +48,18 @@ def faces_who(
         str | None, typer.Option("--from", metavar="CAMERA", help=f"Look here instead: {SOURCES}.")
     ] = None,
     together: Annotated[
-        bool, typer.Option("--together", help="All are frames of one person: let them vote.")
+        bool, typer.Option("--together", help="All pictures show one person: combine them.")
     ] = False,
-    seconds: Annotated[float, typer.Option(min=0.5, help="Look so long at most.")] = 10.0,
+    seconds: Annotated[float, typer.Option(min=0.5, help="Look for at most this long.")] = 10.0,
     robot: Robot = USUAL_ROBOT,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Say whose faces are in pictures, or who is before a camera; unknown is an answer.
+    """Say whose faces pictures or a camera show; or that it is nobody Tangy knows.
 
-    `likeness` is 0 for a face like somebody else's and 1 for one's own, as the enrolled pictures
-    have it: from 0.4 on it is somebody's, if nobody else is nearly as like. Nothing is kept.
+    `likeness` runs from 0 (as like as a stranger) to 1 (as like as the person's own pictures).
+    From 0.4 on Tangy recognises the person, unless somebody else is nearly as like. Nothing is kept.
     """
     from tangy_hw.drivers.camera_source import find_camera
     from tangy_hw.perception.pictures import read_picture
@@ -95,7 +95,7 @@ def faces_who(
 
 @app.command("list")
 def faces_list(seed: Seed = None, data: Data = None, as_json: Json = False) -> None:
-    """List whose faces are known, and who agreed to it how."""
+    """List whose faces Tangy knows, and how each person agreed."""
     from tangy_hw.perception.faces.face_store import consented, kept_faces, read_face
     from tangy_profiles.people_records import FaceConsent
 
@@ -140,7 +140,7 @@ def faces_forget(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Forget a person's face, and that they agreed; the rest of what is known of them stays."""
+    """Forget a person's face and consent; everything else about them stays."""
     from tangy_hw.perception.faces.face_store import forget_face
 
     with open_workspace(data, DEFAULT_ACTIVITY, MOST_PEOPLE) as workspace:

@@ -41,18 +41,18 @@ def faces_enrol(
         ),
     ],
     count: Annotated[
-        int, typer.Option(min=3, max=40, help="So many pictures of a camera or video.")
+        int, typer.Option(min=3, max=40, help="How many pictures to take from a camera or video.")
     ] = 15,
-    seconds: Annotated[float, typer.Option(min=1, help="Look so long at most.")] = 60.0,
+    seconds: Annotated[float, typer.Option(min=1, help="Look for at most this long.")] = 60.0,
     consent: Annotated[
         str | None,
         typer.Option(
             metavar="HOW",
-            help="They have agreed: how, and who asked them. It stays in the log: no names.",
+            help="How they agreed, and to whom. The log keeps this, so write no names.",
         ),
     ] = None,
     add: Annotated[
-        bool, typer.Option("--add", help="Add to the pictures that were enrolled before.")
+        bool, typer.Option("--add", help="Add to the pictures enrolled before.")
     ] = False,
     robot: Robot = USUAL_ROBOT,
     seed: Seed = None,

@@ -28,7 +28,7 @@ MOST_SHOWN = 8
 def learn(
     activity: ActivityName = "",
     forest: Annotated[str, typer.Option(help="exact, or paper for its bagging.")] = "exact",
-    name: Annotated[str, typer.Option(help="What to call the policy.")] = "",
+    name: Annotated[str, typer.Option(help="A name for the policy.")] = "",
     unfinished: Annotated[
         bool, typer.Option("--unfinished", help="Learn from unfinished demonstrations too.")
     ] = False,
@@ -108,9 +108,9 @@ def policy(
         typer.Option(help="Two policies (name, digest, last~1) or teachers, row by row."),
     ] = None,
     why: Annotated[
-        str | None, typer.Option(help="Why in this situation: its number in the table, or words.")
+        str | None, typer.Option(help="Explain a situation: its number in the table, or words.")
     ] = None,
-    list_all: Annotated[bool, typer.Option("--list", help="List all policies learnt.")] = False,
+    list_all: Annotated[bool, typer.Option("--list", help="List all learnt policies.")] = False,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

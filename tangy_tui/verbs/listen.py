@@ -42,22 +42,23 @@ def listen(
     ] = None,
     bench: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Count it over all WAVs in DIR, named by what is said."),
+        typer.Option(metavar="DIR", help="Score all WAVs in DIR, named by what is said."),
     ] = None,
     text: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Read sentences in place of sound, one on each line."),
+        typer.Option(metavar="FILE", help="Read sentences instead of sound, one on each line."),
     ] = None,
     mode: Annotated[
         str | None,
-        typer.Option(help="tiers, or paper (n-gram and keywords); else as the activity has it."),
+        typer.Option(help="tiers, or paper (n-gram and keywords); default: as the activity sets."),
     ] = None,
     mic: Annotated[
-        str | None, typer.Option(metavar="SOURCE", help="Listen as it was checked for this one.")
+        str | None,
+        typer.Option(metavar="SOURCE", help="Use the settings found for this microphone."),
     ] = None,
     forget_recordings: Annotated[
         bool,
-        typer.Option("--forget-recordings", help="Delete all that `teach --record` has kept."),
+        typer.Option("--forget-recordings", help="Delete all recordings of `teach --record`."),
     ] = False,
     activity: ActivityName = "",
     seed: Seed = None,

@@ -52,12 +52,13 @@ def live(
     robot: RobotName = USUAL_ROBOT,
     bench: Annotated[
         bool,
-        typer.Option("--bench", help="Without a robot: its devices are simulated, and its people."),
+        typer.Option("--bench", help="Simulate the robot's devices and the people."),
     ] = False,
     games: common.Games = 1,
     users: common.Users = common.REGISTERED,
     headless: Annotated[
-        bool, typer.Option("--headless", help="Without a screen, on the bench as fast as it goes.")
+        bool,
+        typer.Option("--headless", help="Run without a screen; on the bench as fast as possible."),
     ] = False,
     plain_lines: Plain = False,
     activity: common.ActivityName = "",
@@ -66,8 +67,8 @@ def live(
         list[str] | None,
         typer.Option(
             metavar="KIND[@STEP|~P]|FILE",
-            help="Bring about a fault on the bench, as `tangy play --inject` does, or those that "
-            "stand in a file, one on each line. Repeatable.",
+            help="Bring about a fault on the bench, as with `tangy play --inject`, or the faults "
+            "in a file, one on each line. Repeatable.",
         ),
     ] = None,
     teacher: Teacher = None,
@@ -84,7 +85,7 @@ def live(
     lost: Annotated[
         bool,
         typer.Option(
-            "--lost", help="Tangy does not stand at the front: it turns, and finds its place."
+            "--lost", help="Tangy does not stand at the front, so it turns to find its place."
         ),
     ] = False,
     camera: Cameras = None,
@@ -98,8 +99,8 @@ def live(
         list[str] | None,
         typer.Option(
             metavar="PERSON=NUMBER",
-            help="Which card was dealt to somebody, as in Rosa=17; Tangy judges no other before "
-            "them. What is not said it learns when it first sees a card there. Repeatable.",
+            help="A person's card, as in Rosa=17: Tangy judges no other card in front of them. "
+            "Otherwise it learns the card when it first sees one there. Repeatable.",
         ),
     ] = None,
     load: Annotated[
@@ -107,8 +108,7 @@ def live(
         typer.Option(
             min=0,
             max=64,
-            help="Keep so many processes busy beside a bench game, to try it on a machine that is "
-            "short of time.",
+            help="Keep this many processes busy beside a bench game, to try it on a busy machine.",
         ),
     ] = 0,
     mic: Mic = None,

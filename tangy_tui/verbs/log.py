@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="The games that were played: list, step by step, where. Without a verb: list.",
+    help="List the games, or show one step by step. Without a verb: list.",
 )
 
 Which = Annotated[
@@ -36,9 +36,7 @@ Session = Annotated[
         metavar="GAME", help="A number, an id, 'last'; or together: 'all', a day (2026-11-21)."
     ),
 ]
-Of = Annotated[
-    str, typer.Option("--activity", help="The activity's TOML file, if it does not ship.")
-]
+Of = Annotated[str, typer.Option("--activity", help="The activity's TOML file, if it is your own.")]
 
 
 @app.callback(invoke_without_command=True)
@@ -71,7 +69,7 @@ def log_list(data: Data = None, as_json: Json = False) -> None:
 
 @app.command("show")
 def log_show(game: Which, activity: Of = "", data: Data = None, as_json: Json = False) -> None:
-    """Tell one game step by step: what was seen, done and said, responses, faults."""
+    """Show one game step by step: what Tangy saw, did and said, responses, faults."""
     from tangy_tui.monitoring.games import find_game, read_games
     from tangy_tui.monitoring.replay import read_replays
     from tangy_tui.text.log import replay_lines
@@ -122,7 +120,7 @@ def log_world(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Say where a game was played, if the list of games is wrong or does not know.
+    """Set where a game was played, if the list of games is wrong or does not say.
 
     Version 0.6.0 and before did not log it, and the times of a game do not always show it.
     People's responses count only for games of the same world.

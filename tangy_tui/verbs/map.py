@@ -42,7 +42,7 @@ def draw_map(
     resolution: Annotated[float, typer.Option(min=0.01, max=0.5, help="Metres to a cell.")] = 0.05,
     match: Annotated[
         bool,
-        typer.Option("--match", help="The log's poses are the wheels' own: correct by matching."),
+        typer.Option("--match", help="Correct the log's wheel odometry by matching scans."),
     ] = False,
     ascii_only: Ascii = False,
     seed: Seed = None,

@@ -52,7 +52,7 @@ def mic(
     context: typer.Context,
     data: Data = None,
     socket: Annotated[
-        Path | None, typer.Option(help="Where Tangy listens, if it was given --mic socket:PATH.")
+        Path | None, typer.Option(help="The socket that Tangy was given as --mic socket:PATH.")
     ] = None,
 ) -> None:
     """Hand standard input on, where no verb is given."""

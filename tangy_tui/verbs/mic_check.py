@@ -36,10 +36,10 @@ def check(
         typer.Option(metavar="SOURCE", help="arecord, socket, - (standard input) or FILE.wav."),
     ] = "arecord",
     forget: Annotated[
-        bool, typer.Option("--forget", help="Listen as usual again with this microphone.")
+        bool, typer.Option("--forget", help="Use the usual settings again with this microphone.")
     ] = False,
     listed: Annotated[
-        bool, typer.Option("--list", help="Print what is to be said, and check nothing.")
+        bool, typer.Option("--list", help="Print what to say, and check nothing.")
     ] = False,
     activity: ActivityName = "",
     data: Data = None,

@@ -49,7 +49,7 @@ WhoseGames = Annotated[
     str,
     typer.Option(
         "--world",
-        help="Whose games count: simulated, bench or live; default those of the last game.",
+        help="Whose games count: simulated, bench or live; default: as in the last game.",
     ),
 ]
 Strategy = Annotated[str, typer.Argument(help="A persuasive strategy of the activity.")]
@@ -166,7 +166,7 @@ def people_feedback(
         int | None, typer.Option(help="The number in the history of the request it answers.")
     ] = None,
     seen: Annotated[
-        bool, typer.Option("--seen", help="Staff asked themselves: the log has no request for it.")
+        bool, typer.Option("--seen", help="Staff asked the person: the log has no request.")
     ] = False,
     activity: ActivityName = "",
     seed: Seed = None,
@@ -175,7 +175,7 @@ def people_feedback(
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
-    """Say later what a person did about a request that waits for an answer."""
+    """Answer a waiting request later: say what the person did."""
     with _changing(data, activity, users, person, as_json, world) as (workspace, found):
         memory = workspace.memory(_world(world))
         _known(strategy, workspace.activity.strategies, "strategy")
@@ -217,8 +217,8 @@ def people_method(
         typer.Argument(
             metavar="WORDS...",
             help="thompson or bayes-ucb; uniform or people (where beliefs begin); a share that is "
-            "kept, such as 0.98, with each interaction or day (1: all is kept). What is not said "
-            "stays as it is. Or: default.",
+            "kept, such as 0.98, with each interaction or day (1: all is kept). "
+            "Options you leave out stay as they are. Or: default.",
         ),
     ],
     activity: ActivityName = "",
@@ -227,9 +227,9 @@ def people_method(
     users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
-    """Choose how Tangy persuades one person; what is not said stays as it is for them.
+    """Choose how Tangy persuades one person; options you leave out stay as they are.
 
-    Only `default` goes back to how the activity has it.
+    Only `default` returns to what the activity sets.
     """
     from tangy_profiles.persuading import DEFAULT
 
@@ -248,9 +248,9 @@ def people_undo(
     users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
-    """Take back the last void, feedback, switch or method of a person; again: the one before.
+    """Undo the last void, feedback, switch or method of a person; again: the one before.
 
-    A name is not taken back: rename again.
+    A new name is not undone: rename the person again.
     """
     from tangy_tui.text.people import change_words
 

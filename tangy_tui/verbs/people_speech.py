@@ -32,8 +32,8 @@ def people_pronounce(
         ),
     ] = None,
     hear: Annotated[bool, typer.Option("--hear", help="Say it aloud.")] = False,
-    accept: Annotated[bool, typer.Option("--accept", help="Take what is suggested.")] = False,
-    forget: Annotated[bool, typer.Option("--forget", help="Drop what was noted.")] = False,
+    accept: Annotated[bool, typer.Option("--accept", help="Accept the suggestion.")] = False,
+    forget: Annotated[bool, typer.Option("--forget", help="Drop the noted pronunciation.")] = False,
     sink: Sink = "auto",
     seed: Seed = None,
     data: Data = None,
@@ -75,7 +75,9 @@ def people_voice(
     voice: Annotated[
         str | None, typer.Option(help="A voice such as en-us, en-gb or en-us+f3.")
     ] = None,
-    usual: Annotated[bool, typer.Option("--usual", help="As with everybody else.")] = False,
+    usual: Annotated[
+        bool, typer.Option("--usual", help="Use the same voice as with everybody else.")
+    ] = False,
     seed: Seed = None,
     data: Data = None,
     users: Users = REGISTERED,

@@ -51,7 +51,7 @@ SPEED = 20.0  # times life, as on the screen
 def play(
     games: common.Games = 1,
     users: common.Users = common.REGISTERED,
-    headless: Annotated[bool, typer.Option("--headless", help="Without a screen.")] = False,
+    headless: Annotated[bool, typer.Option("--headless", help="Run without a screen.")] = False,
     plain_lines: Plain = False,
     activity: common.ActivityName = "",
     policy: PolicyName = "",
@@ -75,7 +75,7 @@ def play(
     speed: Annotated[
         float | None,
         typer.Option(
-            min=1, max=1000, help="Times life; 20, or 1 where Tangy speaks or cameras are real."
+            min=1, max=1000, help="Times real speed; 20, or 1 with voice or real cameras."
         ),
     ] = None,
     resume: Resume = False,
@@ -172,7 +172,9 @@ def play(
 def demo(
     seed: Annotated[int, typer.Option(help="Another seed, other games.")] = 1,
     data: common.Data = None,
-    plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
+    plain_lines: Annotated[
+        bool, typer.Option("--plain", help="Use lines instead of a screen.")
+    ] = False,
     as_json: common.Json = False,
     ascii_only: common.Ascii = False,
 ) -> None:

@@ -31,18 +31,16 @@ PolicyName = Annotated[
 ]
 Teacher = Annotated[
     str | None,
-    typer.Option("--teacher", help="Who answers where Tangy asks; 'scripted' knows the game."),
+    typer.Option("--teacher", help="Who answers when Tangy asks; 'scripted' knows the game."),
 ]
 Plain = Annotated[
     bool,
-    typer.Option(
-        "--plain", help="By lines, for any terminal: type help for all that staff can do."
-    ),
+    typer.Option("--plain", help="Use lines instead of a screen: type help for what staff can do."),
 ]
 Expert = Annotated[
     str,
     typer.Option(
-        "--expert", help="Who clears what halts Tangy; 'scripted' mends it. Default: you."
+        "--expert", help="Who clears critical faults; 'scripted' mends them. Default: you."
     ),
 ]
 SCRIPTED = "scripted"

@@ -30,14 +30,14 @@ app = typer.Typer(
 @app.callback(invoke_without_command=True)
 def program(
     context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Say the version.")] = False,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
     robot: Annotated[
-        str | None, typer.Option("--robot", help="Whose games are run: a robot, or its TOML.")
+        str | None, typer.Option("--robot", help="The robot to use: its name, or its TOML.")
     ] = None,
     data: Data = None,
     ascii_only: Ascii = False,
     link: Annotated[
-        str, typer.Option("--link", help="How fast the way to your terminal is: auto, slow, fast.")
+        str, typer.Option("--link", help="Speed of the link to your terminal: auto, slow, fast.")
     ] = "",
 ) -> None:
     """Open the program, where no verb is given; options before a verb are the verb's."""

@@ -32,19 +32,19 @@ def read_card(
     ] = None,
     called: Annotated[
         str | None,
-        typer.Option(help="What was called, as in 5,17,62: say how the person is doing."),
+        typer.Option(help="The numbers called, as in 5,17,62: also say how the person is doing."),
     ] = None,
     together: Annotated[
         bool,
-        typer.Option("--together", help="All are pictures of one card: make one reading of them."),
+        typer.Option("--together", help="All pictures show one card: combine them."),
     ] = False,
     draw: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Write each picture there with what was read on it."),
+        typer.Option(metavar="DIR", help="Write each picture there, with its reading drawn on it."),
     ] = None,
     bench: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Count how well labelled pictures in DIR are read."),
+        typer.Option(metavar="DIR", help="Score the readings of labelled pictures in DIR."),
     ] = None,
     method: Annotated[
         str, typer.Option(help="tags, or paper (grid lines, textures, red blobs) to compare.")

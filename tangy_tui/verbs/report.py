@@ -39,7 +39,8 @@ Also = Annotated[
 WhichWorld = Annotated[
     str,
     typer.Option(
-        "--world", help="Which games: live, bench, simulated. Default: the first there are."
+        "--world",
+        help="Which games: live, bench, simulated. Default: the first of these with games.",
     ),
 ]
 Full = Annotated[

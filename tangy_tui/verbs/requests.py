@@ -21,7 +21,7 @@ SOURCES = "buttons, buttons:/dev/input/event5, mqtt://HOST/TOPIC or signs:CAMERA
 
 def requests(
     source: Annotated[str, typer.Argument(help=f"{SOURCES}.")],
-    seconds: Annotated[float, typer.Option(min=0.1, help="How long is listened.")] = 30.0,
+    seconds: Annotated[float, typer.Option(min=0.1, help="How long to listen.")] = 30.0,
     table: Annotated[
         str,
         typer.Option(

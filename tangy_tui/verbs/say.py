@@ -23,15 +23,15 @@ SINKS = "auto, aplay, pw-play, paplay, afplay or null (silence that takes as lon
 
 
 def say(
-    text: Annotated[str | None, typer.Argument(help="What is said; quote it.")] = None,
+    text: Annotated[str | None, typer.Argument(help="What to say, in quotes.")] = None,
     rate: Annotated[int | None, typer.Option(help="Words a minute, 80 to 260.")] = None,
     voice: Annotated[str | None, typer.Option(help="A voice, such as en-us or en-gb+f3.")] = None,
     sink: Annotated[str, typer.Option(help=f"Where it is heard: {SINKS}.")] = "auto",
-    out: Annotated[Path | None, typer.Option(help="Write this WAV file, play nothing.")] = None,
-    voices: Annotated[bool, typer.Option("--voices", help="List the voices there are.")] = False,
-    forget: Annotated[
-        bool, typer.Option("--forget", help="Delete the spoken lines that are kept.")
-    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Write this WAV file instead of playing.")
+    ] = None,
+    voices: Annotated[bool, typer.Option("--voices", help="List the voices.")] = False,
+    forget: Annotated[bool, typer.Option("--forget", help="Delete the cached speech.")] = False,
     activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,

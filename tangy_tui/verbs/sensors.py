@@ -38,9 +38,11 @@ def sensors(
     camera: Cameras = None,
     robot: RobotName = USUAL_ROBOT,
     seconds: Annotated[
-        float, typer.Option(min=0.1, help="How long they are looked at, without a screen.")
+        float, typer.Option(min=0.1, help="How long to watch, without a screen.")
     ] = 3.0,
-    plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
+    plain_lines: Annotated[
+        bool, typer.Option("--plain", help="Use lines instead of a screen.")
+    ] = False,
     deck_seed: DeckSeed = USUAL_SEED,
     activity: ActivityName = "",
     seed: Seed = None,

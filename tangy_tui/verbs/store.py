@@ -8,12 +8,12 @@ from tangy_profiles.reading import plain
 from tangy_tui.text.store import accepted, log_checked
 from tangy_tui.verbs.common import Data, Json, print_json, print_line
 
-app = typer.Typer(rich_markup_mode=None, help="The log that everything is kept in: check it.")
+app = typer.Typer(rich_markup_mode=None, help="Check the log in which Tangy keeps everything.")
 
 
 @app.command("check")
 def store_check(data: Data = None, as_json: Json = False) -> None:
-    """Read the whole log and name what is wrong with it; the exit status is 1 if anything is."""
+    """Read the whole log and list its problems; the exit status is 1 if there are any."""
     from tangy_profiles.errors import StoreError
     from tangy_profiles.store import Store
     from tangy_tui.app.workspace import data_folder
@@ -42,7 +42,7 @@ def store_check(data: Data = None, as_json: Json = False) -> None:
 
 @app.command("accept")
 def store_accept(data: Data = None, as_json: Json = False) -> None:
-    """Accept that events of the log are gone for good, so that Tangy no longer says so."""
+    """Accept that events of the log are gone for good, so that Tangy stops reminding you."""
     from tangy_profiles.losses import loss_words
     from tangy_profiles.store import Store
     from tangy_tui.app.workspace import data_folder

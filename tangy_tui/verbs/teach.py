@@ -35,27 +35,27 @@ if TYPE_CHECKING:
 
 def teach(
     activity: common.ActivityName = "",
-    script: Annotated[Path | None, typer.Option(help="Take the lines from a file.")] = None,
+    script: Annotated[Path | None, typer.Option(help="Read the lines from a file.")] = None,
     mic: Mic = None,
     hands_free: HandsFree = False,
     spoken_answers: SpokenAnswers = False,
     mode: Mode = None,
     plain_lines: Annotated[
-        bool, typer.Option("--plain", help="By lines, for any terminal.")
+        bool, typer.Option("--plain", help="Use lines instead of a screen, on any terminal.")
     ] = False,
     record: Record = False,
     voice: WithVoice = False,
     teacher: Annotated[
-        str | None, typer.Option(help="Whose demonstration it is; 'scripted' for the built-in one.")
+        str | None, typer.Option(help="Who teaches; 'scripted' for the built-in teacher.")
     ] = None,
     games: common.Games = 1,
     speed: Annotated[
         float | None,
-        typer.Option(min=0.1, max=1000, help="Watch the scripted teacher, x times life."),
+        typer.Option(min=0.1, max=1000, help="Watch the scripted teacher, at x times real speed."),
     ] = None,
     users: common.Users = common.REGISTERED,
     guided: Annotated[
-        bool, typer.Option("--guided", help="A game in which every situation comes about.")
+        bool, typer.Option("--guided", help="A game in which every situation occurs.")
     ] = False,
     again: Annotated[
         str | None,

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 Stop = Annotated[bool, typer.Option("--stop", help="Stop the robot now, and leave.")]
 By = Annotated[str, typer.Option("--by", help="Your name; the log shows it with a STOP.")]
-Lines = Annotated[bool, typer.Option("--plain", help="By lines, for any terminal.")]
+Lines = Annotated[
+    bool, typer.Option("--plain", help="Use lines instead of a screen, on any terminal.")
+]
 JsonLines = Annotated[
     bool, typer.Option("--json", help="Print a JSON document on each line, as things happen.")
 ]

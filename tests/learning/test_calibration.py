@@ -374,7 +374,7 @@ class TestChecking:
             (Figures(6, 5, 0, 3, 1), ""),
             (Figures(6, 0, 0, 3, 0), "none of 6 commands were understood"),
             (Figures(6, 2, 2, 3, 0), "only 4 of 6 commands were understood"),
-            (Figures(6, 6, 0, 0, 0), "none of the other sentences was heard"),
+            (Figures(6, 6, 0, 0, 0), "Tangy heard none of the other sentences"),
             (Figures(6, 6, 0, 3, 2), "2 of 3 other sentences were taken for a command"),
             (Figures(6, 6, 0, 1, 1), "1 of 1 other sentences was taken for a command"),
         ],

@@ -96,8 +96,8 @@ async def test_it_shows_counts_mean_interval_best_and_settled(
         assert "  .73 .49-.91" in praise  # Beta(8, 3)
         assert "settled" in praise
         assert "★" not in line_with(pilot, "neutral", "0 of 3")
-        assert "Thompson sampling (as the activity has it)" in pilot.text()
-        assert "begins from nothing" in pilot.text()
+        assert "Thompson sampling (as the activity sets)" in pilot.text()
+        assert "starts with every strategy equal" in pilot.text()
 
 
 async def test_the_history_stands_game_by_game_with_its_times(
@@ -223,7 +223,7 @@ async def test_another_method_is_chosen_and_the_activitys_again(
         )
         assert "Bayes-UCB from earlier people" in pilot.text()
         assert "(for this person)" in pilot.text()
-        assert "begins with what earlier people lend" in pilot.text()
+        assert "starts from what worked with earlier people" in pilot.text()
         await pilot.press("P", "0", "y")
         await pilot.pause()
         assert workspace.memory().feedback.method("user1") is None

@@ -87,7 +87,7 @@ async def test_votes_come_first_and_then_the_draws(
         for strategy, number in choice.draws.items():
             assert strategy in seen
             assert f"{number:.3f}" in seen
-        assert f"It rests on {len(why.rests_on)} step" in seen
+        assert f"Based on {len(why.rests_on)} step" in seen
 
 
 async def test_enter_opens_the_step_where_it_was_demonstrated(

@@ -361,7 +361,7 @@ def test_while_tangy_asks_a_typed_stop_stops_and_nothing_asked_is_done(
 def test_while_tangy_asks_it_says_why_and_what_it_sees(workspace: Workspace) -> None:
     why, *others = asked(workspace, "why", "Where")
     assert why == "Situation: the game has not begun."
-    assert "Nobody has shown Tangy what to do here: it does not act, it asks." in others
+    assert "Nobody has shown Tangy what to do here. It asks instead of acting." in others
     assert "Votes of the trees: call number 100%." in others
     assert (
         others[-1]

@@ -89,7 +89,7 @@ def test_in_words_it_is_what_a_nurse_would_say(people: Tangy) -> None:
     assert "user2: nothing is known of User 2 yet, last seen 3 weeks ago" in told
     assert "user3: nothing is known of User 3 yet\n" in told
     shown = people("show", "Rosa").stdout
-    for words in ("0.49 to 0.91", "settled", "Thompson sampling (as the activity has it)"):
+    for words in ("0.49 to 0.91", "settled", "Thompson sampling (as the activity sets)"):
         assert words in shown
     assert "no response yet" in people("history", "Rosa").stdout
 
@@ -154,8 +154,8 @@ def test_a_reason_of_undecodable_bytes_is_kept_and_shown_all_the_same(people: Ta
 
 def test_undo_says_what_it_takes_back(people: Tangy) -> None:
     told = " ".join(people("undo", "--help").stdout.split())
-    assert "Take back the last void, feedback, switch or method of a person" in told
-    assert "A name is not taken back: rename again." in told
+    assert "Undo the last void, feedback, switch or method of a person" in told
+    assert "A new name is not undone: rename the person again." in told
 
 
 def test_undecodable_bytes_are_replaced_in_every_name_that_is_kept(
@@ -206,7 +206,7 @@ def test_a_method_of_ones_own_is_chosen_in_words(people: Tangy) -> None:
     }  # fmt: skip
     alpha, beta = chosen["beliefs"]["praise"]["prior"]
     assert 2 < alpha + beta <= 3, "one earlier person is worth one response"
-    assert "begins with what earlier people lend" in people("show", "user2").stdout
+    assert "starts from what worked with earlier people" in people("show", "user2").stdout
     assert document(people("method", "user2", "default", "--json"))["method"]["own"] is False
 
 
@@ -217,8 +217,8 @@ def test_what_is_not_said_of_a_method_stays_as_it_is(people: Tangy) -> None:
     told = people("method", "Rosa", "people", "0.9").stdout
     assert "Method: Bayes-UCB from earlier people, forgetting 10% a day (for this" in told
     told = people("method", "Rosa", "default").stdout
-    assert "Method: Thompson sampling (as the activity has it)." in told
-    assert "stays as it is" in people("method", "--help").stdout
+    assert "Method: Thompson sampling (as the activity sets)." in told
+    assert "stay as they are" in people("method", "--help").stdout
 
 
 @pytest.mark.parametrize(

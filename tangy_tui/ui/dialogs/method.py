@@ -132,12 +132,12 @@ class MethodDialog(Dialog[MethodChoice | None]):
             ("2", "begin from", PRIORS[chosen.prior]),
             ("3", "forget    ", FORGETTING.get(fades, other)),
         )
-        whose = "chosen for this person" if self._own else "as the activity has it"
+        whose = "chosen for this person" if self._own else "as the activity sets"
         parts: list[str | tuple[str, str] | Content] = []
         for key, what, words in settings:
             parts += [(key, "$primary bold"), (f"  {what}  ", "$ink-dim"), f"{words}\n"]
         parts += [("\nIt is ", "$ink-dim"), whose, ".\n\n"]
-        for key, words in (("Y", "use it"), ("0", "as the activity has it"), ("N", "leave it")):
+        for key, words in (("Y", "use it"), ("0", "as the activity sets"), ("N", "leave it")):
             parts += [(key, "$primary bold"), f"  {words}", "" if key == "N" else "\n"]
         return Content.assemble(*parts)
 
