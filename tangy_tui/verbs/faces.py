@@ -59,7 +59,8 @@ def faces_who(
     """Say whose faces pictures or a camera show; or that it is nobody Tangy knows.
 
     `likeness` runs from 0 (as like as a stranger) to 1 (as like as the person's own pictures).
-    From 0.4 on Tangy recognises the person, unless somebody else is nearly as like. Nothing is kept.
+    From 0.4 on Tangy recognises the person, unless somebody else is nearly as like. It keeps
+    nothing.
     """
     from tangy_hw.drivers.camera_source import find_camera
     from tangy_hw.perception.pictures import read_picture
