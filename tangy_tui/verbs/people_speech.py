@@ -32,7 +32,7 @@ def people_pronounce(
         ),
     ] = None,
     hear: Annotated[bool, typer.Option("--hear", help="Say it aloud.")] = False,
-    accept: Annotated[bool, typer.Option("--accept", help="Accept the suggestion.")] = False,
+    accept: Annotated[bool, typer.Option("--accept", help="Accept what Tangy suggests.")] = False,
     forget: Annotated[bool, typer.Option("--forget", help="Drop the noted pronunciation.")] = False,
     sink: Sink = "auto",
     seed: Seed = None,
