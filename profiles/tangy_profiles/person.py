@@ -14,7 +14,14 @@ from tangy_profiles.voice import VoicePreference
 
 MOST_PEOPLE = 24
 LONGEST_NAME = 40  # characters
+GUEST = "guest"
+"""Begins the ids of guests, who take part on one day; a number follows."""
 AS_EVERYBODY = VoicePreference()
+
+
+def is_guest(id: str) -> bool:
+    """Say whether an id is that of a guest."""
+    return id.startswith(GUEST) and id.removeprefix(GUEST).isdigit()
 
 
 def folded(name: str) -> str:

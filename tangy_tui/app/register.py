@@ -9,7 +9,7 @@ from datetime import datetime
 from tangy_profiles.defaults import REGISTERED, TO_BEGIN_WITH
 from tangy_profiles.errors import TangyError
 from tangy_profiles.people_records import PersonAdded, PersonArchived
-from tangy_profiles.person import MOST_PEOPLE, Person, load_people
+from tangy_profiles.person import GUEST, MOST_PEOPLE, Person, load_people
 from tangy_profiles.store import Store
 
 
@@ -95,7 +95,7 @@ def add_person(store: Store, *, guest: bool = False) -> str:
         raise TangyError(f"{MOST_PEOPLE} people take part already: archive somebody first.")
     taken = {str(event.person) for event in store.events(PersonAdded)}
     if guest:
-        id = next(f"guest{n}" for n in range(1, len(taken) + 2) if f"guest{n}" not in taken)
+        id = next(f"{GUEST}{n}" for n in range(1, len(taken) + 2) if f"{GUEST}{n}" not in taken)
     else:
         taken |= {person.id for person in load_people(TO_BEGIN_WITH)}
         free = [person.id for person in load_people(MOST_PEOPLE) if person.id not in taken]

@@ -13,6 +13,7 @@ from tangy_profiles.store import Store
 from tangy_tui.app.watching import WATCH_SECONDS, Guest, WatchedLog
 from tangy_tui.text import watching as text
 from tangy_tui.text.log import game_words, moment_lines
+from tangy_tui.text.register import staff_names
 
 
 class WatchingLines:
@@ -31,7 +32,7 @@ class WatchingLines:
         """
         self.guest = Guest(folder)
         self._log = WatchedLog(store)
-        self._name = self._log.name
+        self._name = staff_names(self._log.name)
         self._write, self._as_json = write, as_json
         self._said = ""
         self._there = False

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+
+from tangy_profiles.person import is_guest
 
 
 def added_words(name: str, id: str) -> str:
@@ -31,8 +33,22 @@ def guest_added_words(name: str, id: str) -> str:
     return f"{name} is a guest today (id {id}). Tangy forgets the name tomorrow."
 
 
+GUEST_NOTE = "Guest: "
+"""Begins the line of a guest in a list of people."""
+
+
+def labelled(id: str, name: str) -> str:
+    """Return what staff read of a person: guests as such."""
+    return f"{name} (guest)" if is_guest(id) else name
+
+
+def staff_names(name: Callable[[str], str]) -> Callable[[str], str]:
+    """Return what gives the names that staff read, from what gives those that Tangy says."""
+    return lambda id: labelled(id, name(id))
+
+
 def with_guests(names: Mapping[str, str], guests: Iterable[str]) -> dict[str, str]:
     """Return what people are called in reports, by id: guests as such, also once forgotten."""
     numbered = {id: re.sub(r"\D+", "Guest ", id, count=1) for id in guests}
-    called = {id: f"{names[id]} (guest)" if id in names else numbered[id] for id in numbered}
+    called = {id: labelled(id, names[id]) if id in names else numbered[id] for id in numbered}
     return {**names, **called}

@@ -7,6 +7,7 @@ from typing import assert_never
 
 from tangy_tui.app.set_up import Check, CheckName, SetUp
 from tangy_tui.text.missing_devices import missing_words
+from tangy_tui.text.register import staff_names
 
 TITLE = "Set up"
 PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
@@ -216,7 +217,7 @@ def activities_line(titles: Iterable[str]) -> str:
 
 def lines_of(setup: SetUp) -> list[str]:
     """Describe the set-up line by line."""
-    name = setup.workspace.name
+    name = staff_names(setup.workspace.name)
     people = (
         f"  {seat}. {name(person)}: {AWAY if person in setup.away else HERE}"
         for seat, person in enumerate(setup.seats, 1)

@@ -78,15 +78,18 @@ async def ask_about_drill(program: Program, who: str) -> DrillToHold | None:
 
 async def _report(program: Program, workspace: Workspace, past: PastGame) -> None:
     """Write the report of an ended game into the data folder, and say where it is."""
+    from tangy_tui.app.register import guest_ids
     from tangy_tui.monitoring.games import find_games, read_games
     from tangy_tui.monitoring.session import read_session
     from tangy_tui.pages import page
     from tangy_tui.pages.session import session_page
+    from tangy_tui.text.register import with_guests
     from tangy_tui.ui.dialogs.message import MessageDialog
 
     activity, store = workspace.activity, workspace.store
     found = find_games(read_games(store), past.beginning.game)
-    session = read_session(store, found, {activity.name: activity}, workspace.names)
+    names = with_guests(workspace.names, guest_ids(store))
+    session = read_session(store, found, {activity.name: activity}, names)
     path = store.folder / f"report-{past.beginning.game}.html"
     try:
         page.write(path, session_page(session), "the report")

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from rich.cells import cell_len
 
 from tangy_profiles.beliefs import Beta
+from tangy_profiles.person import is_guest
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
 from tangy_tui.text.people import (
@@ -18,6 +19,7 @@ from tangy_tui.text.people import (
     sentence,
     tally,
 )
+from tangy_tui.text.register import GUEST_NOTE
 from tangy_tui.text.times import on_day
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine
@@ -35,7 +37,8 @@ def people_lines(records: Sequence[Record], width: int) -> list[ChoiceLine]:
     """Write one sentence for each person, the name standing out."""
     lines = []
     for record in records:
-        words = shorten(clean(sentence(record)), width)
+        guest = GUEST_NOTE if is_guest(record.person.id) else ""
+        words = shorten(f"{guest}{clean(sentence(record))}", width)
         before, name, after = words.partition(clean(record.person.name))
         lines.append(
             ChoiceLine(((before, "text"), (name, "person"), (after, "text")), record.person.id)

@@ -15,8 +15,8 @@ from tangy_tui.app.register import add_person, archive_person, guest_ids, partic
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
+from tangy_tui.text import set_up as text
 from tangy_tui.text.register import with_guests
-from tangy_tui.text.set_up import TEAMS_PLAY
 
 
 def ids(workspace: Workspace) -> list[str]:
@@ -122,7 +122,7 @@ def test_teams_are_set_up_as_they_are(data_folder: Path) -> None:
     setup, said = SetUp.of(workspace), list[str]()
     lines = iter(["guest Anna", "words gentle", "time 20", "begin"])
     assert SetUpLines(setup, lambda: next(lines, None), said.append).run()
-    assert TEAMS_PLAY in said and guest_ids(workspace.store) == []
+    assert text.TEAMS_PLAY in said and guest_ids(workspace.store) == []
     assert tuple(setup.seats) == workspace.activity.teams and setup.minutes == 20
     workspace.close()
 
@@ -132,6 +132,7 @@ def test_a_guest_takes_part_on_that_day_alone_and_is_forgotten_then(data_folder:
     workspace = Workspace(data_folder, now=lambda: now[0])
     guest = let_join(workspace, "Anna", guest=True)
     assert list(workspace.names)[-1] == guest and workspace.name(guest) == "Anna"
+    assert text.lines_of(SetUp.of(workspace))[5].strip() == "5. Anna (guest): here"
     assert with_guests(workspace.store.names(), guest_ids(workspace.store))[guest] == "Anna (guest)"
     workspace.close()
 

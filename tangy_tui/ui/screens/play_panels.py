@@ -17,6 +17,7 @@ from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.games import NO_UNSEEN_FAULT, NOTHING_DECIDED, SEEN
 from tangy_tui.text.keys import with_keys
+from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -121,7 +122,7 @@ class PlayPanels(TangyScreen[Tally]):
 
     def show_staff(self) -> None:
         """Show what staff have to see now."""
-        world, name = self._supervision.world, self._workspace.name
+        world, name = self._supervision.world, staff_names(self._workspace.name)
         scene = world.scene()
         view = self._watch.look(scene, tuple(self._workspace.names), world.seconds, world)
         show_view(

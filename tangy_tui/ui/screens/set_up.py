@@ -18,6 +18,7 @@ from tangy_tui.app.set_up import CHECKS, SetUp
 from tangy_tui.text import set_up as text
 from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.program import NOTHING_MOVES
+from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
@@ -129,7 +130,7 @@ class SetUpScreen(TangyScreen[bool]):
         lines.border_subtitle = text.summary_words(setup.checks())
 
     def _people(self) -> list[SetUpLine]:
-        setup, name = self.setup, self.setup.workspace.name
+        setup, name = self.setup, staff_names(self.setup.workspace.name)
         lines = [SetUpLine("head", "people", text.PEOPLE, text.people_words(setup))]
         several, seat = len(setup.tables) > 1, 0
         for table, sitting in enumerate(setup.tables):

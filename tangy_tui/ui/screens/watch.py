@@ -21,6 +21,7 @@ from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted
 from tangy_tui.text import watching as text
 from tangy_tui.text.log import game_words, moment_lines
+from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel
@@ -60,6 +61,7 @@ class WatchScreen(TangyScreen[None]):
         """
         super().__init__()
         self._guest, self._log = guest, WatchedLog(store)
+        self._called = staff_names(self._log.name)
         self._who, self._note = who, note
         self._view: GameView | None = None
         self._there = False
@@ -128,7 +130,7 @@ class WatchScreen(TangyScreen[None]):
             log.write(game_words(news.game))
         for moment in news.moments:
             kind = _kind(moment)
-            for line in moment_lines(moment, news.replay.timed, news.activity, self._log.name):
+            for line in moment_lines(moment, news.replay.timed, news.activity, self._called):
                 log.write(line, kind)
                 kind = "text" if kind == "text" else "dim"
             if isinstance(moment.what, Done) and moment.what.said:
@@ -160,7 +162,7 @@ class WatchScreen(TangyScreen[None]):
         left.remove_children(".panel")
         self._activity = self._log.activity(view.activity)
         room = load_room()
-        seated = room.placed([Person(one, self._log.name(one)) for one in people])
+        seated = room.placed([Person(one, self._called(one)) for one in people])
         label = str if self._activity is None else self._activity.deck.label
         left.mount(panel(RoomView(room, seated, label=label)), before="#called")
         if self._activity is not None and self._activity.deck.columns:
