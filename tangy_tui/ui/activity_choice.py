@@ -18,13 +18,24 @@ async def choose_at_home(program: Program) -> None:
     """Ask which activity it is to be from now on, and take it up."""
     from tangy_tui.ui.screens.home import HomeScreen
 
-    await choose_activity(program, program.workspace.change_activity)
+    before = program.workspace.profile
+    try:
+        await choose_activity(program, program.workspace.change_activity)
+    except TangyError as error:
+        program.say(str(error), bad=True)
+        return
+    if program.workspace.profile != before:
+        program.say(chosen_words(program.workspace.activity.title))
     if isinstance(program.screen, HomeScreen):
         program.screen.show_activity(program.workspace.activity.title)
 
 
 async def choose_activity(program: Program, take: Callable[[str], object]) -> None:
-    """Ask which activity it is to be from now on, and `take` it up, or say why that cannot be."""
+    """Ask which activity it is to be from now on, and `take` it up.
+
+    Raises:
+        TangyError: it cannot be taken up.
+    """
     from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 
     workspace = program.workspace
@@ -32,15 +43,10 @@ async def choose_activity(program: Program, take: Callable[[str], object]) -> No
     wanted = await program.push_screen_wait(ChooseDialog(CHOOSE_ACTIVITY, options))
     if wanted is None or wanted == workspace.profile:
         return
-    try:
-        take(wanted)
-    except TangyError as error:
-        program.say(str(error), bad=True)
-        return
+    take(wanted)
     await program.speaker.speak_of(workspace.activity)
     if program.hearing is not None:
         program.hearing.ears.understand_by(workspace.phrasebook())
-    program.say(chosen_words(workspace.activity.title))
 
 
 def choices(workspace: Workspace) -> list[tuple[str, str, str]]:

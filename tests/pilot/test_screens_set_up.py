@@ -14,13 +14,15 @@ from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.health import OK, STALE
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.text import set_up as text
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.tablet import qr_lines
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.set_up import SetUpScreen
 from tangy_tui.ui.terminal import TerminalKind
-from tests.pilot.conftest import Run, StillClock
+from tangy_tui.ui.widgets.room_view import RoomView
+from tests.pilot.conftest import LARGE, Run, StillClock
 from tests.pilot.live_games import HeldLink, live_world
 from tests.support.waiting import until_shown
 
@@ -175,6 +177,35 @@ async def test_a_guest_and_a_new_name_are_taken_in_on_the_page(run: Run, setting
         await opened(pilot)
         await pilot.press("home", "T", *"Rosa", "enter")
         await until_shown(pilot, lambda: setting.workspace.name("user1") == "Rosa")
+
+
+async def test_a_wide_page_draws_all_at_their_seats(run: Run, setting: Setting) -> None:
+    async with run(app=setting.program(), size=LARGE) as pilot:
+        await opened(pilot)
+        await pilot.press("J", *"Anna", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("down", "enter")
+        await until_shown(pilot, lambda: len(setting.setup.seats) == 5)
+        await opened(pilot)
+        await pilot.press("home", "enter")
+        await pilot.pause()
+        (room,) = pilot.app.screen.query(RoomView)
+        assert room.display and list(room.scene.doing) == setting.setup.seats
+        assert [person for person, doing in room.scene.doing.items() if doing] == ["user1"]
+
+
+async def test_what_is_told_covers_no_line_of_the_page(run: Run, setting: Setting) -> None:
+    setting.setup.world = live_world(setting.workspace, setting.link)
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        shown = pilot.lines()[2:]
+        await pilot.press("J")
+        await pilot.pause()
+        assert text.SEATED in pilot.lines()[1]
+        assert pilot.lines()[2:] == shown and not pilot.app.screen.query("Toast")
+        await pilot.press("enter")
+        await pilot.pause()
+        assert text.SEATED not in pilot.text()
 
 
 async def test_who_holds_a_card_before_the_robot_is_here(run: Run, setting: Setting) -> None:

@@ -4,30 +4,37 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from functools import partial
 from time import monotonic
 from typing import ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.content import Content
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import FRONT
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import CHECKS, SetUp
 from tangy_tui.text import set_up as text
 from tangy_tui.text.missing_devices import missing_words
-from tangy_tui.text.program import NOTHING_MOVES
+from tangy_tui.text.program import NOT_POSSIBLE, NOTHING_MOVES
 from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.tablet import TabletDialog
 from tangy_tui.ui.joining import ask_new_name, ask_who_joins
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import key_line, panel
+from tangy_tui.ui.panels import WIDE, key_line, panel
+from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.set_up_list import SetUpLine, SetUpList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
@@ -45,8 +52,13 @@ class SetUpScreen(TangyScreen[bool]):
     """People, choices and checks on one page. Dismissed with whether the game is to begin."""
 
     DEFAULT_CSS = """
-    SetUpScreen #setup { height: 1fr; }
+    SetUpScreen #page { height: 1fr; }
+    SetUpScreen #setup { width: 1fr; height: 1fr; }
+    SetUpScreen #setup.-told { border-title-color: $warning; border-title-style: bold; }
+    SetUpScreen #seats { display: none; width: 1fr; }
+    SetUpScreen.-wide #seats { display: block; }
     """
+    HORIZONTAL_BREAKPOINTS = WIDE
     HELP = (
         "Set a game up from top to bottom. Up and down choose a line, left and right a table. On a "
         "person Enter says whether they are here; space takes hold of them, the arrows carry them "
@@ -77,11 +89,14 @@ class SetUpScreen(TangyScreen[bool]):
         self._switch_on = switch_on
         self._choose = choose
         self._busy = self._stopped = False
+        self._drawn: object = None
 
     def compose(self) -> ComposeResult:
         """Lay out the page."""
         yield StatusLine()
-        yield panel(SetUpList(), text.TITLE)
+        with Horizontal(id="page"):
+            yield panel(SetUpList(), text.TITLE)
+            yield Vertical(id="seats")
         yield key_line(
             "begin",
             ("↵", "change"),
@@ -104,10 +119,31 @@ class SetUpScreen(TangyScreen[bool]):
         if self.setup.world is not None:
             self.setup.world.link.stop(STOPPED)  # before anything is drawn
         elif not self._busy:
-            self.notify(NOTHING_MOVES, markup=False)
+            self._say(NOTHING_MOVES)
             return
         self._stopped = True
-        self.notify(text.STOPPED, severity="warning", markup=False)
+        self._say(text.STOPPED)
+
+    def _say(self, words: str) -> None:
+        """Say something in the upper edge of the page, where it covers no line; "" no more."""
+        lines = self.query_one(SetUpList)
+        lines.border_title = Content(clean(words or text.TITLE))
+        lines.set_class(bool(words), "-told")
+
+    def _draw_seats(self) -> None:
+        """Draw the room with all at their seats, beside the lines where there is room for it."""
+        workspace = self.setup.workspace
+        name = staff_names(workspace.name)
+        people = [replace(person, name=name(person.id)) for person in workspace.people]
+        if self._drawn != (people, workspace.room):
+            self._drawn = people, workspace.room
+            seats = self.query_one("#seats", Vertical)
+            seats.remove_children()
+            seats.mount(panel(RoomView(workspace.room, people, id=None), text.SEATS))
+        away = self.setup.away
+        doing = {one.id: text.AWAY_SHORT if one.id in away else "" for one in people}
+        for room in self.query(RoomView):
+            room.show(Scene(FRONT, (), doing, (), None))
 
     # ------------------------------------------------------------------------------- the lines
 
@@ -128,6 +164,7 @@ class SetUpScreen(TangyScreen[bool]):
         lines = self.query_one(SetUpList)
         lines.show([*self._people(), *self._game(), *self._checks()])
         lines.border_subtitle = text.summary_words(setup.checks())
+        self._draw_seats()
 
     def _people(self) -> list[SetUpLine]:
         setup, name = self.setup, staff_names(self.setup.workspace.name)
@@ -176,6 +213,7 @@ class SetUpScreen(TangyScreen[bool]):
     def on_set_up_list_turned(self, event: SetUpList.Turned) -> None:
         """Change a line by left and right."""
         event.stop()
+        self._say("")
         line, by = event.line, event.by
         if line.kind == "choice":
             self._turn(line.id, by)
@@ -184,14 +222,16 @@ class SetUpScreen(TangyScreen[bool]):
     def on_set_up_list_carried(self, event: SetUpList.Carried) -> None:
         """Let a person sit where another sits."""
         event.stop()
+        self._say("")
         if self.setup.world is not None:
-            self.notify(text.SEATED, markup=False)
+            self._say(text.SEATED)
         self.setup.change_seats(event.line.id, event.to.id)
         self._show()
 
     def on_set_up_list_entered(self, event: SetUpList.Entered) -> None:
         """Change a line by Enter."""
         event.stop()
+        self._say("")
         line = event.line
         if line.kind == "person":
             self.setup.toggle(line.id)
@@ -215,11 +255,11 @@ class SetUpScreen(TangyScreen[bool]):
             case "minutes":
                 setup.turn_minutes(by)
             case "activity" if setup.world is not None:
-                self.notify(text.OTHER_ACTIVITY, markup=False)
+                self._say(text.OTHER_ACTIVITY)
             case "activity" if self._choose is not None and not self._busy:
                 self.run_worker(self._ask(self._choose), name="activity", group="check")
             case "patterns":
-                self.notify(text.pattern_keys(setup), markup=False)
+                self._say(text.PATTERNS_HOW)
 
     def action_pattern(self, number: int) -> None:
         """Play for a pattern by its number, or not any more."""
@@ -234,7 +274,7 @@ class SetUpScreen(TangyScreen[bool]):
         """Ask who else is there, and whether for good."""
         if self.setup.world is not None or self.setup.teams_play:
             why = text.SEATED if self.setup.world is not None else text.TEAMS_PLAY
-            self.notify(why, markup=False)
+            self._say(why)
         elif not self._busy:
             self.run_worker(self._ask(self._join), name="join", group="check")
 
@@ -258,7 +298,7 @@ class SetUpScreen(TangyScreen[bool]):
         try:
             await ask()
         except TangyError as error:
-            self.notify(clean(str(error)), severity="warning", markup=False)
+            await self.app.push_screen_wait(MessageDialog(str(error), title=NOT_POSSIBLE))
         self._show()
 
     # ------------------------------------------------------------------------------ the checks
@@ -277,9 +317,9 @@ class SetUpScreen(TangyScreen[bool]):
             if setup.world is None:
                 setup.world = await self._switch_on()
         elif setup.world is None:
-            self.notify(text.SWITCH_FIRST, markup=False)
+            self._say(text.SWITCH_FIRST)
         elif self._stopped:
-            self.notify(text.STOPPED, markup=False)
+            self._say(text.STOPPED)
         elif name == "tablet" and setup.world.link.tablet_page:
             self.app.push_screen(TabletDialog(setup.world.link.screen, setup.world.link.code))
         elif name == "cards":
@@ -289,20 +329,20 @@ class SetUpScreen(TangyScreen[bool]):
             if setup.world.knows_faces:
                 seen = await asyncio.to_thread(setup.look_at_face)
             known = text.face_seen_words(setup.workspace.name(seen)) if seen else text.NO_FACE
-            self.notify(known, markup=False)
+            self._say(known)
         elif name == "sound" and setup.said:
             setup.heard = True
         elif name == "sound":
             said = await asyncio.to_thread(setup.speak, text.SOUND)
-            self.notify(text.SAID if said else text.NO_SOUND, markup=False)
+            self._say(text.SAID if said else text.NO_SOUND)
 
     async def _look_at_card(self) -> None:
         """Read a card; whose it is, is here."""
         setup = self.setup
-        self.notify(text.CARD_HOW, markup=False)
+        self._say(text.CARD_HOW)
         card = await asyncio.to_thread(setup.look_at_card)
         if not card:
-            self.notify(text.NO_CARD, severity="warning", markup=False)
+            self._say(text.NO_CARD)
             return
         name = setup.workspace.name
         options = [Option(person, name(person)) for person in setup.seats]
@@ -312,7 +352,7 @@ class SetUpScreen(TangyScreen[bool]):
             holder = await self.app.push_screen_wait(dialog)
         if holder:
             setup.comes_with(int(card), holder)
-            self.notify(text.card_seen_words(card, name(holder)), markup=False)
+            self._say(text.card_seen_words(card, name(holder)))
 
     def action_begin(self) -> None:
         """Begin the game, if that is meant; what is not ready is said first."""
