@@ -141,6 +141,7 @@ TEACHING: dict[str, TeachingWord] = {
     **dict.fromkeys(("pause listening", "stop listening"), Perform("listen", on=False)),
     **dict.fromkeys(("listen", "listen again"), Perform("listen", on=True)),
     "guided game": Perform("guided"),
+    **dict.fromkeys(("rule", "make it a rule", "make a rule"), Perform("rule")),
     **dict.fromkeys(("play", "play a game", "let tangy play"), Perform("begin")),
     **dict.fromkeys(("my name", "change my name", "who am i"), Perform("name")),
 }

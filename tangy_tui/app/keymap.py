@@ -64,6 +64,7 @@ ACTIONS: tuple[KeyAction, ...] = (
     _line("next", ("f7", "g"), "next"),
     _line("guided", ("f8",), "guided"),
     _line("again", ("ctrl+r",), "again"),
+    _line("rule", ("f10",), "rule"),
     _line("shown", ("ctrl+o",), "shown"),
     # games
     KeyAction("begin", ("B",), "begin"),

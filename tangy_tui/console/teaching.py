@@ -24,6 +24,7 @@ from tangy_tui.app.command_grammar import (
 )
 from tangy_tui.app.tour import Tour
 from tangy_tui.console.after_teaching import AfterTeaching
+from tangy_tui.console.step_rules import rules_to_type
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.teaching_events import (
     Again,
@@ -264,6 +265,8 @@ class TeachingLines:
             self._inquire(word)
         elif isinstance(word, TeachAs) or word == Perform("name"):
             self._write(self._named(word.name if isinstance(word, TeachAs) else ""))
+        elif word == Perform("rule"):
+            self._write_all(rules_to_type(self._teaching))
         elif isinstance(word, Perform):
             self._perform(word)
         elif isinstance(word, AgainFrom):

@@ -16,7 +16,13 @@ from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import shown_steps
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.teaching_events import NoRule, Ruled, RuleUndone, SameWhatever
+from tangy_tui.learning.teaching_events import (
+    NoRule,
+    RuleChoice,
+    Ruled,
+    RuleUndone,
+    SameWhatever,
+)
 
 
 class StepRules:
@@ -26,6 +32,25 @@ class StepRules:
         """Take the activity, and the log that rules are noted in."""
         self._activity, self._store = activity, store
         self._noted: list[tuple[str, Ruled, int]] = []
+
+    @property
+    def possible(self) -> bool:
+        """Whether a step can become a rule: where the activity declares what Tangy goes by."""
+        return isinstance(self._activity, DeclaredActivity)
+
+    def choices(self, shown: Demonstration) -> tuple[RuleChoice, ...] | NoRule:
+        """Return the rules that the last step of a demonstration can get, the widest first."""
+        activity = self._activity
+        if not shown.steps:
+            return NoRule("no step")
+        step = shown.steps[-1]
+        facts = tuple(seen_facts(step.state.situation))
+        if not isinstance(activity, DeclaredActivity) or not facts:
+            return NoRule("no facts")
+        offered = [facts] if len(facts) == 1 else [facts, *((one,) for one in facts)]
+        covers = [(one, len(self._covered(activity, step, one))) for one in offered]
+        found = tuple(RuleChoice(one, number) for one, number in covers if number)
+        return found or NoRule("all shown")
 
     def note(self, shown: Demonstration, command: SameWhatever) -> Ruled | NoRule:
         """Add a rule to the last step of a demonstration, or say why it cannot be."""

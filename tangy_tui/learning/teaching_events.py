@@ -176,6 +176,14 @@ class StepUndone:
 
 
 @dataclass(frozen=True, slots=True)
+class RuleChoice:
+    """A rule that a step can get: the facts it leaves out, and how many situations it covers."""
+
+    facts: tuple[str, ...]
+    covers: int
+
+
+@dataclass(frozen=True, slots=True)
 class Ruled:
     """Step `number` got a rule: whatever some `facts` are, it is the same; `covers` is where."""
 

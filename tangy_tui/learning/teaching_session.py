@@ -114,7 +114,7 @@ class TeachingSession:
         self.guided, self._first = guided, again
         self._verifier: Verifier
         self._undone: list[Step] = []
-        self._rules = StepRules(activity, store)
+        self.rules = StepRules(activity, store)
         self._announcements, self._logged = Announcements(), False
         self._people = {person.id: person for person in people}
         self._names = {person.id: person.name for person in people}
@@ -201,7 +201,7 @@ class TeachingSession:
             case Reply():
                 return self._told(self._verifier.reply(command))
             case SameWhatever():
-                return [self._rules.note(self.demonstration, command)]
+                return [self.rules.note(self.demonstration, command)]
             case Undo():
                 return self._undo()
             case Redo():
@@ -352,7 +352,7 @@ class TeachingSession:
     def _undo(self) -> list[TeachingEvent]:
         if not self.demonstration.steps:
             return [Refused("no step to undo")]
-        if (rule := self._rules.take_back(self.demonstration)) is not None:
+        if (rule := self.rules.take_back(self.demonstration)) is not None:
             return [rule]
         last, number = self.demonstration.steps[-1], len(self.demonstration.steps)
         shorter = self.demonstration.without_last()

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.scene import ArrangedSituation
 from tangy_profiles.state import FRONT, ActivityState, Situation
 from tangy_tui.text.situations import card_words
@@ -101,7 +103,17 @@ def unseen_words(activity: Activity, missing: Sequence[Situation], room: int) ->
     if not missing:
         return f"✓ {ALL_SHOWN}"
     names = [_short(activity, situation) for situation in missing]
-    said = f"Still to show ({len(names)}): "
+    said = _joined(len(missing), names, room)
+    if "…" in said and isinstance(activity, DeclaredActivity):
+        stages = Counter(situation.stage for situation in missing)
+        by_stage = [f"{stage} ({n})" if n > 1 else stage for stage, n in stages.items()]
+        return _joined(len(missing), by_stage, room)
+    return said
+
+
+def _joined(count: int, names: Sequence[str], room: int) -> str:
+    """Name as many as there is room for; count the others."""
+    said = f"Still to show ({count}): "
     for number, label in enumerate(names):
         joint = " · " if number else ""
         rest = len(names) - number

@@ -42,6 +42,7 @@ NAMES: Mapping[str, Named] = MappingProxyType(
         "next": Named("Another game", "next game"),
         "guided": Named("Teach in a guided game", "guided"),
         "again": Named("Show the game again from the chosen step", "again"),
+        "rule": Named("Make the last step a rule: the same whatever ...", "rule"),
         "shown": Named("What you have shown so far", "shown"),
         "begin": Named("Begin the game", "begin"),
         "inside": Named("How Tangy decides, or what staff need", "how it decides"),

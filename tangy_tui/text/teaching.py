@@ -16,6 +16,7 @@ from tangy_tui.learning.teaching_events import (
     NewWording,
     NoRule,
     Overlooked,
+    RuleChoice,
     Ruled,
     RuleUndone,
     Settled,
@@ -31,6 +32,7 @@ from tangy_tui.text.situations import step_words, verification_lines
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
+    from tangy_profiles.demonstration import Step
     from tangy_tui.learning.teaching_session import TeachingSession
 
 
@@ -111,6 +113,8 @@ def again_words(first: int, last: int) -> tuple[str, str]:
 
 
 DISCARD, KEEP = "discard it", "go on with it"
+GO_BACK, GO_ON = "go back", "go on here"
+RULES = "To make the last step a rule, type one of these:"
 
 
 def discard_words(steps: int) -> tuple[str, str]:
@@ -174,6 +178,37 @@ def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:
     if isinstance(event, Ruled):
         return f"   Step {rule.number} is now a rule: {same}. It covers {covers}."
     return f"The rule of step {rule.number} is taken back: {same}. The step stays."
+
+
+def ruled_step(step: str, facts: Sequence[str]) -> str:
+    """Write a step that is a rule: its words, and the facts that make no difference."""
+    return f"{step} · rule: whatever {listed(facts, 'or')}"
+
+
+def rule_question(step: Step, activity: Activity) -> str:
+    """Ask which facts make no difference to a step, so that it becomes a rule."""
+    return f"{activity.behaviour_words(step.behaviour)}: the same whatever ..."
+
+
+def whatever_words(choice: RuleChoice) -> str:
+    """Name the facts that a rule leaves out, as the rest of a sentence."""
+    return f"the {listed(choice.facts, 'or')} is"
+
+
+def covers_words(covers: int) -> str:
+    """Say how many situations a rule covers that nobody has shown."""
+    return f"covers {counted(covers, 'more situation')}"
+
+
+def rule_lines(choices: Sequence[RuleChoice]) -> list[str]:
+    """List what can be typed to make the last step a rule."""
+    return [
+        RULES,
+        *(
+            f"  the same whatever {whatever_words(one)} ({covers_words(one.covers)})"
+            for one in choices
+        ),
+    ]
 
 
 def _no_rule(event: NoRule) -> str:

@@ -89,12 +89,22 @@ class TeachingPicture:
                 self._log.write(words, "good")
             case Ruled() | RuleUndone() | NoRule():
                 self._log.write(text.rule_words(event, self._teaching.activity), "good")
+                if not isinstance(event, NoRule):
+                    self._rule(event)
             case StepUndone():
                 self._screen.query_one(Transcript).remove_last()
             case Begun(_, resumed):
                 self.beginning(resumed)
             case Finished(demonstration):
                 self._log.write(text.complete_words(len(demonstration.steps)), "good")
+
+    def _rule(self, event: Ruled | RuleUndone) -> None:
+        """Show the last step as the rule that it is now, or as the step that it is again."""
+        rule = event if isinstance(event, Ruled) else event.rule
+        activity, steps = self._teaching.activity, self._screen.query_one(Transcript)
+        words = step_words(activity, rule.step, self._teaching.name)
+        steps.remove_last()
+        steps.append(text.ruled_step(words, rule.facts) if isinstance(event, Ruled) else words)
 
     def step(self, event: Executed) -> None:
         """Show a step that was carried out."""

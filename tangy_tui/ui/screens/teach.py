@@ -38,13 +38,13 @@ from tangy_tui.text.questions import REJECTED, not_understood_words
 from tangy_tui.text.refusals import refused_words
 from tangy_tui.text.who import renamed_teacher
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.dialogs.remark import remark_dialog
 from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel, room_panel
 from tangy_tui.ui.screens import teach_keys
+from tangy_tui.ui.screens.teach_choices import add_rule, put_away, show_again
 from tangy_tui.ui.screens.teach_hearing import TeachHearing
 from tangy_tui.ui.screens.teach_keys import NOT_WATCHING, WATCHING
 from tangy_tui.ui.screens.teach_letters import type_letter
@@ -217,21 +217,18 @@ class TeachScreen(TangyScreen[bool]):
 
     def again(self, id: str, kept: int) -> None:
         """Show a demonstration again from the step after `kept`, if the teacher means it."""
-        self.run_worker(self._again(Again(id, kept)), name="again")
+        self.run_worker(show_again(self, Again(id, kept)), name="again")
 
-    async def _again(self, command: Again) -> None:
-        present = self.teaching.demonstration
-        steps = len(present.steps)
-        if command.demonstration == present.id and 0 <= command.kept < steps:
-            first = command.kept + 1
-            asked = text.again_words(first, steps)
-            dialog = ConfirmDialog(*asked, yes="go back", no="go on here")
-            if not await self._alone(dialog):
-                self._listener.open(True)
-                return
-        self._apply(command)
+    def action_rule(self) -> None:
+        """Let the last step hold for more situations, whatever some of its facts are."""
+        self.query_one(CommandBar).ready()
+        self.run_worker(add_rule(self), name="rule")
 
-    async def _alone(self, dialog: Screen[T]) -> T:
+    def listen(self) -> None:
+        """Take commands again."""
+        self._listener.open(True)
+
+    async def alone(self, dialog: Screen[T]) -> T:
         """Wait for an answer; no command is taken before it has been acted upon."""
         self._listener.open(False)
         answer = await self.app.push_screen_wait(dialog)
@@ -299,14 +296,7 @@ class TeachScreen(TangyScreen[bool]):
     def action_discard(self) -> None:
         """Put the present game away, if that is meant, and begin another."""
         self.query_one(CommandBar).ready()
-        self.run_worker(self._discard(), name="discard")
-
-    async def _discard(self) -> None:
-        steps = len(self.teaching.demonstration.steps)
-        dialog = ConfirmDialog(*text.discard_words(steps), yes=text.DISCARD, no=text.KEEP)
-        if not steps or await self._alone(dialog):
-            self._apply(Discard())
-        self._listener.open(True)
+        self.run_worker(put_away(self), name="discard")
 
     def action_perform(self, action: str) -> None:
         """Do what a key of the program does."""
@@ -376,14 +366,14 @@ class TeachScreen(TangyScreen[bool]):
 
     async def _remark(self, remark: Remark) -> None:
         """Let a remark be answered in place; one on a spoken step is answered by its word."""
-        answer = await self._alone(remark_dialog(remark, self.teaching))
+        answer = await self.alone(remark_dialog(remark, self.teaching))
         if answer == "later":
             self._picture.remark(remark)  # it stood in the dialog, and is read here from now on
         self._apply(Settle(answer))
 
     async def _verify(self, asked: Asked | Offered) -> None:
         """Put the question, and give its answer to the session when its dialog has gone."""
-        answer = await self._alone(dialog_for(asked, self._listener.aloud))
+        answer = await self.alone(dialog_for(asked, self._listener.aloud))
         self._apply(answer.reply)
 
     @property

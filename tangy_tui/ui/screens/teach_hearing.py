@@ -14,7 +14,12 @@ from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Say
 from tangy_tui.text.teaching import BY_KEY, HANDS_FREE
 from tangy_tui.ui.hearing import Hearing
-from tangy_tui.ui.screens.teach_keys import HEARING_KEYS, KEYS
+from tangy_tui.ui.screens.teach_keys import (
+    HEARING_KEYS,
+    KEYS,
+    RULE_HEARING_KEYS,
+    RULE_KEYS,
+)
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 
@@ -50,7 +55,10 @@ class TeachHearing:
     @property
     def keys(self) -> tuple[str, ...]:
         """The keys of the screen."""
-        return HEARING_KEYS if self.hearing is not None else KEYS
+        heard = self.hearing is not None
+        if self._teaching.rules.possible:
+            return RULE_HEARING_KEYS if heard else RULE_KEYS
+        return HEARING_KEYS if heard else KEYS
 
     @property
     def help(self) -> str:

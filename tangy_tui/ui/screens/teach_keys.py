@@ -12,11 +12,21 @@ KEYS = ("undo", "redo", "why", "learn", "next", "shown", "again", "library", "ba
 HEARING_KEYS = ("talk", "undo", "redo", "why", "learn", "next", "listen", "back:home", "help")
 """The same where there is a microphone."""
 
+RULE_KEYS = (
+    *("undo", "why", "rule", "shown", "learn", "next"),
+    *("redo", "again", "library", "back:home", "help"),
+)
+RULE_HEARING_KEYS = (
+    *("talk", "undo", "why", "rule", "shown", "learn", "next"),
+    *("redo", "listen", "back:home", "help"),
+)
+"""The same in an activity whose steps can become rules."""
+
 TOUR_KEYS = ("undo", "redo", "back:skip the tour", "help")
 TOUR_GOES_ON = "open:go on"
 """The same while a new teacher is shown around."""
 
-NOT_WATCHING = ("undo", "redo", "again", "next", "discard", "perform")
+NOT_WATCHING = ("undo", "redo", "again", "next", "discard", "perform", "rule")
 """What only the teacher does."""
 
 WATCHING = (("up down", "a step"), "why", "shown", "back:leave", "help")
@@ -41,6 +51,7 @@ BINDINGS: list[BindingType] = [
     *bind("next"),
     *bind("guided", "perform('guided')"),
     *bind("again"),
+    *bind("rule"),
     *bind("shown", "coverage"),
     *bind("listen", "app.listen"),
     *bind("name", "perform('name')"),

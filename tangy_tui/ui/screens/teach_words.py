@@ -41,6 +41,8 @@ def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> N
             screen.action_coverage()
         case "help" | "phrases":
             _perform(screen, Perform(word))
+        case Perform("rule"):
+            screen.action_rule()
         case Perform():
             _perform(screen, word)
 

@@ -1,0 +1,52 @@
+"""What a teacher is asked before it is done: going back, putting a game away, making a rule."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_tui.learning.teaching_events import Again, Discard, NoRule, SameWhatever
+from tangy_tui.text import teaching as text
+from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+
+if TYPE_CHECKING:
+    from tangy_tui.ui.screens.teach import TeachScreen
+
+
+async def show_again(screen: TeachScreen, command: Again) -> None:
+    """Show a demonstration again, if the teacher means to take back steps of this one."""
+    present = screen.teaching.demonstration
+    steps = len(present.steps)
+    if command.demonstration == present.id and 0 <= command.kept < steps:
+        asked = text.again_words(command.kept + 1, steps)
+        dialog = ConfirmDialog(*asked, yes=text.GO_BACK, no=text.GO_ON)
+        if not await screen.alone(dialog):
+            screen.listen()
+            return
+    screen.follow(command)
+
+
+async def put_away(screen: TeachScreen) -> None:
+    """Put the present game away, if the teacher means it."""
+    steps = len(screen.teaching.demonstration.steps)
+    dialog = ConfirmDialog(*text.discard_words(steps), yes=text.DISCARD, no=text.KEEP)
+    if not steps or await screen.alone(dialog):
+        screen.follow(Discard())
+    screen.listen()
+
+
+async def add_rule(screen: TeachScreen) -> None:
+    """Make the last step a rule: the teacher chooses which facts make no difference to it."""
+    choices = screen.teaching.rules.choices(screen.teaching.demonstration)
+    if isinstance(choices, NoRule):
+        screen.follow(SameWhatever())  # tells why there is none
+        return
+    activity, step = screen.teaching.activity, screen.teaching.demonstration.steps[-1]
+    options = [
+        Option(str(number), text.whatever_words(one), text.covers_words(one.covers))
+        for number, one in enumerate(choices)
+    ]
+    chosen = await screen.alone(ChooseDialog(text.rule_question(step, activity), options))
+    if chosen is not None:
+        screen.follow(SameWhatever(choices[int(chosen)].facts))
+    screen.listen()

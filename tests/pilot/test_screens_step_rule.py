@@ -1,0 +1,99 @@
+"""A key makes the last step a rule; the rule stands with the step, and undo takes it back first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tangy_profiles.declared.situations import seen_facts
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.teaching_session import TeachingSession
+from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import Run, StillClock, screen_text
+from tests.support.waiting import until_shown
+
+STAGE = "listen"
+
+
+def listening(workspace: Workspace) -> TeachingSession:
+    """Return a session whose last step was taken while an answer is waited for."""
+    session = workspace.teaching("Mary", 1)
+    session.begin()
+    teacher = ScriptedTeacher(session)
+    while not session.demonstration.steps or session.demonstration.steps[-1].state.stage != STAGE:
+        session.apply(teacher.command())
+    return session
+
+
+def rules(workspace: Workspace) -> int:
+    library = read_library(workspace.store, workspace.activity.name)
+    return sum(bool(one.whatever) for one in library.resolutions)
+
+
+async def test_a_key_makes_the_last_step_a_rule_and_undo_takes_it_back(
+    run: Run, tmp_path: Path
+) -> None:
+    workspace = Workspace(tmp_path, activity="trivia")
+    listening(workspace)
+    session = workspace.teaching("Mary", 1)
+    screen = TeachScreen(workspace, session)
+    async with run(app=Program(workspace, clock=StillClock()), size=(80, 24)) as pilot:
+        await pilot.app.push_screen(screen)
+        await until_shown(pilot, lambda: bool(screen.query_one(Transcript).steps))
+        steps = list(screen.query_one(Transcript).steps)
+        assert "f10 rule" in screen_text(pilot.app)
+        await pilot.press("f10")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("enter")
+        await until_shown(pilot, lambda: rules(workspace) > 0)
+        facts = seen_facts(session.demonstration.steps[-1].state.situation)
+        await until_shown(pilot, lambda: screen.query_one(Transcript).steps[-1] != steps[-1])
+        assert all(fact in screen.query_one(Transcript).steps[-1] for fact in facts)
+        await pilot.press("f2")
+        await until_shown(pilot, lambda: rules(workspace) == 0)
+        await until_shown(pilot, lambda: list(screen.query_one(Transcript).steps) == steps)
+
+
+async def test_esc_makes_no_rule_and_the_word_does_as_the_key(run: Run, tmp_path: Path) -> None:
+    workspace = Workspace(tmp_path, activity="trivia")
+    listening(workspace)
+    screen = TeachScreen(workspace, workspace.teaching("Mary", 1))
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        await pilot.app.push_screen(screen)
+        await until_shown(pilot, lambda: bool(screen.query_one(Transcript).steps))
+        await pilot.press(*"rule", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
+        assert rules(workspace) == 0
+
+
+async def test_a_game_with_cards_offers_no_rule(run: Run, workspace: Workspace) -> None:
+    screen = TeachScreen(workspace, workspace.teaching("Mary", 1))
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        await pilot.app.push_screen(screen)
+        await until_shown(pilot, lambda: "undo" in screen_text(pilot.app))
+        assert "f10" not in screen_text(pilot.app)
+        await pilot.press("f10")
+        await until_shown(pilot, lambda: "Show a step first" in screen_text(pilot.app))
+
+
+async def test_a_small_screen_names_every_stage_that_is_still_to_show(
+    run: Run, tmp_path: Path
+) -> None:
+    workspace = Workspace(tmp_path, activity="trivia")
+    listening(workspace)
+    screen = TeachScreen(workspace, workspace.teaching("Mary", 1))
+    async with run(app=Program(workspace, clock=StillClock()), size=(80, 24)) as pilot:
+        await pilot.app.push_screen(screen)
+        await until_shown(pilot, lambda: "Still to show" in screen_text(pilot.app))
+        unseen = screen_text(pilot.app).partition("Still to show")[2].partition("\n>")[0]
+        seen = {step.state.stage for step in screen.teaching.demonstration.steps}
+        left = {one.stage for one in workspace.activity.situations} - seen
+        assert left
+        assert all(stage in unseen for stage in left)
+        assert "more" not in unseen
