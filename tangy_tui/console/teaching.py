@@ -375,7 +375,10 @@ class TeachingLines:
             if isinstance(event, Finished):
                 self._write_all(self._seen()[:1])
                 self._write(GAME_OVER)
-            if isinstance(event, Executed | StepUndone) and not self._teaching.world.over:
+            if (
+                isinstance(event, Executed | StepUndone)
+                and not self._teaching.demonstration.finished
+            ):
                 self._where()
         if self._tour is not None and self._tour.follow(events):
             self._tell_of_tour()

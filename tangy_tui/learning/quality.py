@@ -75,8 +75,8 @@ def _course(activity: Activity, entry: LibraryEntry) -> Iterator[str]:
     shown = entry.demonstration
     if not shown.finished:
         yield "not finished"
-    elif shown.replayable and (stage := _missed_end(activity, shown)):
-        yield f"stopped before the stage {stage!r}"
+    elif shown.replayable and (ending := missed_end(activity, shown)):
+        yield f"ended before “{activity.behaviour(ending).question}”"
     if entry.taken_back:
         yield f"{_counted(entry.taken_back, 'step')} taken back"
     failed = sum(not step.completed for step in shown.steps)
@@ -84,11 +84,11 @@ def _course(activity: Activity, entry: LibraryEntry) -> Iterator[str]:
         yield f"{_counted(failed, 'step')} that could not be carried out"
 
 
-def _missed_end(activity: Activity, shown: Demonstration) -> str:
-    """Return the stage that ends a game, if there is one and a complete game never came to it."""
-    ends = [rule.stage for rule in activity.stage_rules if rule.condition == "after"]
+def missed_end(activity: Activity, shown: Demonstration) -> str:
+    """Return the behaviour that ends a game, where a demonstration never came to that stage; ""."""
+    ends = {r.stage: r.behaviour for r in activity.stage_rules if r.condition == "after"}
     reached = {step.state.stage for step in shown.steps}
-    return "" if not ends or reached.intersection(ends) else ends[0]
+    return "" if reached.intersection(ends) else next(iter(ends.values()), None) or ""
 
 
 def _answers(entry: LibraryEntry, library: Library, conflicts: Sequence[Conflict]) -> Iterator[str]:

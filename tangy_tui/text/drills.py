@@ -264,7 +264,7 @@ def left_words(drill: Drill) -> str:
 
 
 GO_ON = ("resume", "go on with it", "your answers so far count")
-NEW_DRILL = ("new", "begin a new one", "the other one is kept as an unfinished sheet")
+NEW_DRILL = ("new", "begin a new one", "the other one is kept as an unfinished drill")
 NO_INTERRUPTED_DRILL = (
     "No drill was interrupted: there is nothing to go on with. Leave --resume out."
 )
@@ -278,7 +278,7 @@ def interrupted_words(sheet: Sheet) -> str:
 
 def begins_anew(sheet: Sheet) -> str:
     """Say that a new drill begins beside an interrupted one, which is kept unfinished."""
-    return f"{interrupted_words(sheet)} It is kept as an unfinished sheet, and a new drill begins."
+    return f"{interrupted_words(sheet)} It is kept as an unfinished drill, and a new drill begins."
 
 
 def goes_on(sheet: Sheet) -> str:
@@ -291,7 +291,7 @@ SEE_NOW = "What you see"
 SAW = "What you saw"
 WAS_RIGHT = "What was right"
 LEAVE = "Leave the drill?"
-LEAVE_DETAIL = "Your answers are kept as an unfinished sheet."
+LEAVE_DETAIL = "Your answers are kept as an unfinished drill."
 SHEET_KEPT = "The sheet is kept."
 
 

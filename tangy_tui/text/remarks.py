@@ -59,11 +59,16 @@ def remark_words(remark: Remark, activity: Activity, name: Name, game: str = "")
             others = "Nobody did." if waiting is None else f"{name(waiting)} is waiting."
             return f"{to} did not ask for help. {others}"
         case EndedEarly(lacks=lacks):
-            return f"The game ended early: nobody got to “{activity.behaviour(lacks).question}”."
+            return ended_early(activity, lacks)
         case NewWording(words=words):
             return f"You said “{words}”, which Tangy did not know. Does it mean: {done}?"
         case _:
             assert_never(remark)
+
+
+def ended_early(activity: Activity, lacks: str) -> str:
+    """Say that a game ended before the behaviour that ends it."""
+    return f"The game ended early: nobody got to “{activity.behaviour(lacks).question}”."
 
 
 def answer_words(remark: Remark, activity: Activity) -> tuple[str, ...]:

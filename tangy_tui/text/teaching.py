@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.reading import nearest
+from tangy_tui.learning.quality import missed_end
 from tangy_tui.learning.teaching_events import (
     Announced,
     Begun,
@@ -27,7 +28,7 @@ from tangy_tui.learning.teaching_events import (
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
 from tangy_tui.text.coach import GUIDED, arranged_words
 from tangy_tui.text.numbers import counted, listed
-from tangy_tui.text.remarks import remark_lines, settled_words
+from tangy_tui.text.remarks import ended_early, remark_lines, settled_words
 from tangy_tui.text.situations import step_words, verification_lines
 
 if TYPE_CHECKING:
@@ -67,8 +68,8 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
                 ]
             begun = f"A new demonstration by {teaching.teacher} (game {demonstration.seed})."
             return [begun, GUIDED] if demonstration.guided else [begun]
-        case Finished(demonstration):
-            return [f"The game is over; {len(demonstration.steps)} steps were demonstrated."]
+        case Finished():
+            return [complete_words(teaching)]
 
 
 CHOOSE_STEP, CANCEL = "Choose a step", "Cancel"
@@ -163,9 +164,14 @@ def left_words(steps: int) -> str:
     return f"Tangy keeps {counted(steps, 'step')} of this game. Teach goes on from there."
 
 
-def complete_words(steps: int) -> str:
-    """Say that a game was shown to its end."""
-    return f"The game is complete: {counted(steps, 'step')}."
+def complete_words(teaching: TeachingSession) -> str:
+    """Say that a game was shown to its end, or that its teacher ended it before that."""
+    shown, activity = teaching.demonstration, teaching.activity
+    steps = counted(len(shown.steps), "step")
+    ending = "" if teaching.world.over else missed_end(activity, shown)
+    if ending:
+        return f"{ended_early(activity, ending)} Tangy learns from its {steps}."
+    return f"The game is complete: {steps}."
 
 
 def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:

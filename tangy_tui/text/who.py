@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 WHO = "Who are you?"
-WHO_DETAIL = "Tangy keeps with each game who has shown it, and tells teachers apart by their names."
+WHO_DETAIL = "Tangy notes who taught each game, so that it can tell teachers apart."
 NAME_KEYS = "enter keeps the name   esc not now"
 TYPE_NAME = "Type your name and press Enter, or just Enter to be called {}."
 TYPE_A_NAME = "Type your name and press Enter."

@@ -95,8 +95,8 @@ class TeachingPicture:
                 self._screen.query_one(Transcript).remove_last()
             case Begun(_, resumed):
                 self.beginning(resumed)
-            case Finished(demonstration):
-                self._log.write(text.complete_words(len(demonstration.steps)), "good")
+            case Finished():
+                self._log.write(text.complete_words(self._teaching), "good")
 
     def _rule(self, event: Ruled | RuleUndone) -> None:
         """Show the last step as the rule that it is now, or as the step that it is again."""
@@ -163,8 +163,8 @@ class TeachingPicture:
                 note=f"game {shown.seed}, {shown.teacher}",
             )
         )
-        self._now(self._told(text.OVER) if teaching.world.over else self._coach(state))
-        if teaching.world.over:
+        self._now(self._told(text.OVER) if shown.finished else self._coach(state))
+        if shown.finished:
             self._screen.query_one(SayableList).show(text.AFTERWARDS)
         else:
             self._screen.query_one(SayableList).show(teaching.sayable)

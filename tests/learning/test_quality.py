@@ -82,7 +82,7 @@ def test_a_game_that_never_came_to_its_end_is_noted(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     short = replace(good[0], steps=good[0].steps[:4])
-    assert notes(activity, library_of(store, short), 1) == ["stopped before the stage 'end'"]
+    assert notes(activity, library_of(store, short), 1) == ["ended before “celebrate the win”"]
 
 
 def test_disagreement_names_the_other_demonstration_until_it_is_settled(

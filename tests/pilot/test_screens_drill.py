@@ -266,7 +266,7 @@ async def test_other_keys_do_nothing_and_help_helps(
         assert isinstance(pilot.app.screen, HelpScreen)
         text = " ".join(pilot.text().split())
         assert "0 to 4 Answer" in text
-        assert "kept as an unfinished sheet" in text
+        assert "kept as an unfinished drill" in text
         await pilot.press("escape")
         await pilot.pause()
         assert on_top(pilot, screen)

@@ -240,8 +240,8 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(workspace: Worksp
         learn="tangy learn --data d",
     )
     asyncio.run(session.run())
-    over = next(line for line in said if line.startswith("The game is over; "))
-    assert over.endswith(" steps were demonstrated.")
+    over = next(line for line in said if line.startswith("The game is complete: "))
+    assert over.endswith(" steps.")
     after = said[said.index(over) + 1 :]
     assert after[:2] == [
         "9 of 11 situations were shown.",

@@ -61,7 +61,7 @@ class DrillScreen(TangyScreen[None]):
     HELP = (
         f"{WELCOME} Answer by the number or letter. Some rounds have no fault: then Tangy goes on "
         "by itself. One point for each right answer; the time is told, and not scored. "
-        "Esc leaves; what you answered is kept as an unfinished sheet."
+        "Esc leaves. Your answers are kept as an unfinished drill."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("1,2,3,4,0", "nothing", "Answer", key_display="0 to 4"),

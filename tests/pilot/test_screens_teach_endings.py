@@ -1,0 +1,96 @@
+"""A game that its teacher ends by words: discarded, finished early, or shown from the start."""
+
+from __future__ import annotations
+
+from textual.pilot import Pilot
+from textual.widgets import Static
+
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.library import read_library
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.widgets.log_view import LogView
+from tests.pilot.conftest import Run, StillClock, screen_text
+from tests.pilot.test_screens_teach import say
+
+
+def program(workspace: Workspace) -> Program:
+    """Make the program with a new game of Ann's."""
+
+    async def start(started: Program) -> None:
+        await started.push_screen(TeachScreen(workspace, workspace.teaching("ann", 1)))
+
+    return Program(workspace, start, clock=StillClock())
+
+
+async def type_words(pilot: Pilot[None], words: str) -> None:
+    """Type what has no question."""
+    await pilot.press(*["space" if letter == " " else letter for letter in words], "enter")
+    await pilot.pause()
+
+
+def now(pilot: Pilot[None]) -> str:
+    """Return the line that says what is going on."""
+    return str(pilot.app.screen.query_one("#now", Static).render())
+
+
+async def test_a_game_that_is_finished_early_says_so_at_once_and_is_over(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await say(pilot, "greet everyone")
+        await type_words(pilot, "finish the demonstration")
+        told = screen_text(pilot.app.screen.query_one(LogView))
+        assert "nobody got to" in told and "1 step" in told
+        assert "The game is over" in now(pilot)
+        await type_words(pilot, "call number")
+        assert len(pilot.app.screen_stack) == 2  # the game takes no command any more
+    (entry,) = read_library(workspace.store, workspace.activity.name).entries.values()
+    assert entry.demonstration.finished and len(entry.demonstration.steps) == 1
+
+
+async def test_undo_takes_a_finish_back_and_the_game_goes_on(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await say(pilot, "greet everyone")
+        await say(pilot, "call number")
+        await type_words(pilot, "that is all")
+        await pilot.press("f2")
+        await pilot.pause()
+        assert "The game is over" not in now(pilot)
+        await say(pilot, "call number")
+    (entry,) = read_library(workspace.store, workspace.activity.name).entries.values()
+    assert [s.behaviour for s in entry.demonstration.steps] == ["greeting", "call number"]
+    assert not entry.demonstration.finished
+
+
+async def test_discarding_asks_first_and_a_new_game_begins(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await say(pilot, "greet everyone")
+        await type_words(pilot, "discard game")
+        assert isinstance(pilot.app.screen, ConfirmDialog)
+        await pilot.press("n")
+        await pilot.pause()
+        (kept,) = read_library(workspace.store, workspace.activity.name).entries.values()
+        assert not kept.hidden
+        await type_words(pilot, "discard game")
+        await pilot.press("y")
+        await pilot.pause()
+        screen = pilot.app.screen
+        assert isinstance(screen, TeachScreen) and not screen.teaching.demonstration.steps
+    (entry,) = read_library(workspace.store, workspace.activity.name).entries.values()
+    assert entry.hidden
+
+
+async def test_starting_over_goes_back_to_the_first_step(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await say(pilot, "greet everyone")
+        await say(pilot, "call number")
+        await type_words(pilot, "start over")
+        assert isinstance(pilot.app.screen, ConfirmDialog)
+        await pilot.press("y")
+        await pilot.pause()
+        screen = pilot.app.screen
+        assert isinstance(screen, TeachScreen) and not screen.teaching.demonstration.steps
