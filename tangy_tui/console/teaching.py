@@ -358,6 +358,7 @@ class TeachingLines:
     def _tell(self, events: Sequence[TeachingEvent]) -> None:
         if self._ears is not None:
             self._ears.follow(events)
+        over = self._teaching.demonstration.finished
         for event in events:
             match event:
                 case Begun():
@@ -375,10 +376,7 @@ class TeachingLines:
             if isinstance(event, Finished):
                 self._write_all(self._seen()[:1])
                 self._write(GAME_OVER)
-            if (
-                isinstance(event, Executed | StepUndone)
-                and not self._teaching.demonstration.finished
-            ):
+            if isinstance(event, Executed | StepUndone) and not over:
                 self._where()
         if self._tour is not None and self._tour.follow(events):
             self._tell_of_tour()
