@@ -100,6 +100,11 @@ class SetUp:
             self.workspace.seat(self.seats)
 
     @property
+    def calls(self) -> bool:
+        """Whether numbers are called, at a pace."""
+        return bool(self.workspace.activity.deck.columns)
+
+    @property
     def teams_play(self) -> bool:
         """Whether teams take part, and not people one by one."""
         return bool(self.workspace.activity.teams)

@@ -233,7 +233,8 @@ def lines_of(setup: SetUp) -> list[str]:
 
 def _game_lines(setup: SetUp) -> list[str]:
     """Describe the choices for the game; without patterns there are fewer."""
-    pace = f"Pace: {pace_words(setup.pace)}. Time: {minutes_words(setup.minutes)}."
+    pace = f"Pace: {pace_words(setup.pace)}. " if setup.calls else ""
+    pace = f"{pace}Time: {minutes_words(setup.minutes)}."
     if not setup.workspace.activity.rules.patterns:
         return [pace, f"Tangy's words: {strength_words(setup)}."]
     return [

@@ -72,6 +72,11 @@ def next_words(
     return f"Next: {done}{f' ({notes})' if notes else ''}{because}."
 
 
+def said_words(said: str) -> str:
+    """Quote what Tangy said last."""
+    return f"Tangy said: {said}"
+
+
 def person_words(person: PersonNow) -> str:
     """Say how a person is, with the times that matter."""
     seen = "" if person.unvisited is None else f"visit {clock_words(person.unvisited)} ago"

@@ -73,6 +73,11 @@ class GamePicture:
         self._supervision = supervision
         self._policy = supervision.policy
 
+    @property
+    def said(self) -> str:
+        """What Tangy said with the last step of the present game, "" before that."""
+        return self.grounds[-1].acted.speech if self.grounds else ""
+
     def begin(self) -> None:
         """Show what is known before the first game."""
         self._show_policy()

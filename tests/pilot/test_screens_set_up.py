@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from textual.app import ComposeResult
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import STAFF
@@ -15,6 +16,8 @@ from tangy_profiles.health import OK, STALE
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text import set_up as text
+from tangy_tui.text.staff_view import said_words
+from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.tablet import qr_lines
@@ -22,6 +25,8 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.set_up import SetUpScreen
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.set_up_list import SetUpList
+from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tests.pilot.conftest import LARGE, Run, StillClock
 from tests.pilot.live_games import HeldLink, live_world
 from tests.support.waiting import until_shown
@@ -235,6 +240,35 @@ async def test_who_is_seen_by_the_robot_is_here(run: Run, setting: Setting) -> N
         await pilot.press("end", "up", "enter")
         await until_shown(pilot, lambda: not setting.setup.away)
         assert setting.setup.face == "user3"
+
+
+async def test_nothing_is_asked_about_calls_where_nothing_is_called(
+    run: Run, data_folder: Path
+) -> None:
+    workspace = Workspace(data_folder, activity="trivia")
+    setting = Setting(workspace)
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        ids = {line.id for line in pilot.app.screen.query_one(SetUpList).choices}
+        assert "activity" in ids and ids.isdisjoint({"pace", "patterns", "several", "visits"})
+    workspace.close()
+
+
+class Panel(TangyScreen[None]):
+    """A screen with the panel of staff alone."""
+
+    def compose(self) -> ComposeResult:
+        yield StaffPanel()
+
+
+async def test_a_long_question_is_read_whole_where_nothing_is_called(run: Run) -> None:
+    asked = "Reds, question 1: How many minutes has an hour? thirty, sixty or ninety?"
+    async with run(Panel()) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.show("", said_words(asked), ["1:01 so far"], [("Reds", "no visit yet", "text")])
+        await pilot.pause()
+        read = " ".join(pilot.text().split())
+        assert "sixty or" in read and "ninety?" in read and "1:01 so far" in read
 
 
 def test_an_activity_that_nobody_has_taught_is_not_chosen(

@@ -129,7 +129,7 @@ class PlayPanels(TangyScreen[Tally]):
             self.query_one(StaffPanel),
             self.query_one(CallBoard),
             view,
-            ViewSource(world, self.control, self.minutes, name),
+            ViewSource(world, self.control, self.minutes, name, self.picture.said),
         )
 
     def action_sensors(self) -> None:

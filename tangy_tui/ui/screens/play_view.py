@@ -21,12 +21,16 @@ BEFORE = 4
 
 @dataclass(frozen=True, slots=True)
 class ViewSource:
-    """What a view is shown with: the world, who controls the game, the minutes, names."""
+    """What a view is shown with: the world, who controls the game, the minutes, names.
+
+    `said` is what Tangy said last, "" for nothing yet.
+    """
 
     world: World
     control: GameController
     minutes: int
     name: Callable[[str], str]
+    said: str = ""
 
 
 def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewSource) -> None:
@@ -56,6 +60,8 @@ def _next(shown: ViewSource) -> str:
     words = ""
     if found is not None:
         words = text.next_words(world.activity, *found, shown.name, calls_first)
+    elif shown.said:  # where it is not known what comes next, staff need to know what was asked
+        words = text.said_words(shown.said)
     return words if control.going else f"{text.PAUSED} {words}".strip()
 
 
@@ -63,6 +69,11 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
     """Return what stands beside the call: with the last few calls, or without."""
     world, label = shown.world, shown.world.activity.deck.label
     before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1] if last)
+    if not world.activity.deck.columns:  # nothing is called
+        return [
+            text.time_words(view, shown.minutes),
+            text.tangy_words(shown.control.autonomy.level, battery_of(world)),
+        ]
     count = f"{len(view.called)} called" if view.called else text.NOTHING_CALLED
     planned = world if isinstance(world, PlannedGame) else None
     patterns = getattr(planned, "patterns", None)

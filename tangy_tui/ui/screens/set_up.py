@@ -192,6 +192,8 @@ class SetUpScreen(TangyScreen[bool]):
             ("minutes", "Time", text.minutes_words(setup.minutes)),
         ]
         rules = setup.workspace.activity.rules
+        if not setup.calls:
+            rows = [row for row in rows if row[0] != "pace"]
         if not rules.patterns:
             rows = [row for row in rows if row[0] not in ("patterns", "several", "visits")]
         head = SetUpLine("head", "game", text.GAME, text.pattern_keys(setup))

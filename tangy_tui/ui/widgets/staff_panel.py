@@ -73,7 +73,9 @@ class StaffPanel(RowView, can_focus=True):
         width, height = self._rows.width, self._rows.height
         if not self.is_attached or width < 10:
             return
-        next_lines = wrap(clean(self._next), width)[: 2 if height > 11 else 1]
+        empty = not self._call and not self._board  # as where nothing is called
+        most = 3 if empty else 2 if height > 11 else 1
+        next_lines = wrap(clean(self._next), width)[:most]
         rows: list[Row] = [((line, "strong"),) for line in next_lines]
         rows += self._block(width, height)
         rows += self._everybody(width, max(1, height - len(rows)))
