@@ -293,6 +293,22 @@ class CallMade(EventRecord):
     said: Sparse[str] = ""
 
 
+@kind("answer not clear")
+class AnswerNotClear(EventRecord):
+    """A person's answer was not sure enough to be judged.
+
+    `certainty` is the probability that it was `said`, `source` what observed it. The person was
+    `asked_again`, or had been often enough.
+    """
+
+    game: str
+    fact: str
+    said: str
+    certainty: float
+    source: str
+    asked_again: bool = True
+
+
 @kind("effect accepted")
 class EffectAccepted(EventRecord):
     """A teacher said that what followed a behaviour is all right."""

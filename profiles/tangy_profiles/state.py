@@ -152,6 +152,17 @@ class Response(NamedTuple):
     seconds: float
 
 
+class UnclearAnswer(NamedTuple):
+    """An answer that was not sure enough to be judged: `asked_again` says if Tangy asked again."""
+
+    person: str
+    fact: str
+    said: str
+    certainty: float
+    source: str
+    asked_again: bool
+
+
 class Outcome(NamedTuple):
     """The outcome of an executed action.
 
@@ -166,3 +177,5 @@ class Outcome(NamedTuple):
     response: Response | None
     speech: str = ""
     image: str = ""
+    unclear: tuple[UnclearAnswer, ...] = ()
+    """The answers that were not judged, in their order."""

@@ -37,11 +37,11 @@ def game_world(
         TangyError: faults are to come in an activity that has none.
     """
     if isinstance(activity, DeclaredActivity):
-        from tangy_sim.worlds.declared_world import DeclaredWorld
+        from tangy_sim.worlds.declared_world import UNCLEAR, DeclaredWorld
 
         if injections:
             raise TangyError(f"No fault can be brought about in {activity.title} yet.")
-        return DeclaredWorld(activity, people, seed=seed)
+        return DeclaredWorld(activity, people, seed=seed, unclear=UNCLEAR)
     if live is not None:
         from tangy_tui.app.partly_live_world import PartlyLiveWorld
 

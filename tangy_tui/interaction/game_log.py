@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tangy_profiles.game_records import GameStep
+from tangy_profiles.game_records import AnswerNotClear, GameStep
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.state import Response
@@ -52,6 +52,16 @@ class GameLog:
                 memory=remembered(self._world),
             )
         )
+        for one in outcome.unclear:
+            unclear = AnswerNotClear(
+                game=game,
+                fact=one.fact,
+                said=one.said,
+                certainty=one.certainty,
+                source=one.source,
+                asked_again=one.asked_again,
+            )
+            self._store.append(unclear, person=one.person)
         if outcome.response is not None:
             self._response(game, outcome.response)
         elif choice is not None and outcome.completed:  # what they did may be known later

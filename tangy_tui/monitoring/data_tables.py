@@ -13,7 +13,7 @@ from typing import Any
 from tangy_tui.monitoring.attention import attention_in, calls_in
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.house import RobotLog
-from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted
+from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted, Unclear
 
 Cell = str | int | float | bool | None
 Row = Mapping[str, Cell]
@@ -165,6 +165,11 @@ def _staff(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
         match moment.what:
             case Noted(what=what, by=by):
                 yield {**when, "kind": "note", "fault": None, "what": what, "by_person": bool(by)}
+            case Unclear():
+                yield {
+                    **when, "kind": "unclear", "fault": None, "what": "answer not clear",
+                    "by_person": False,
+                }  # fmt: skip
             case Moved(fault=fault, move=move) if move.by:
                 yield {
                     **when, "kind": "move", "fault": fault.id, "what": move.kind, "by_person": True,

@@ -10,6 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.codec import written
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import (
+    AnswerNotClear,
     CallMade,
     ChangeKind,
     FaultDiagnosed,
@@ -28,7 +29,7 @@ from tangy_tui.monitoring.games import Game
 
 IN_GAMES = (
     *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
-    *(CallMade, GameResumed, GameChange, GameEnding),
+    *(CallMade, GameResumed, GameChange, GameEnding, AnswerNotClear),
 )
 
 
@@ -85,13 +86,23 @@ class Noted:
     """The number of a call that counts no more; 0: of none."""
 
 
+@dataclass(frozen=True, slots=True)
+class Unclear:
+    """A person's answer was not clear, and was not judged."""
+
+    person: str
+    asked_again: bool
+
+
 OF_ITS_OWN: tuple[ChangeKind, ...] = (
     *("others first", "played on", "won", "claimed"),
     *("visit", "visit put off", "visit over", "calls first"),
 )
 """Changes that the activity's rules bring about. Of the others, staff's actions tell."""
 
-What: TypeAlias = Done | AnsweredRequest | Diagnosed | Moved | Noted | CallMade | GameChange
+What: TypeAlias = (
+    Done | AnsweredRequest | Diagnosed | Moved | Noted | Unclear | CallMade | GameChange
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +147,8 @@ class Moment:
                 return {"kind": "staff", "what": what, "by": by}
             case Moved(fault, move):
                 return {"kind": "recovery", "fault": fault.id, "move": written(move)}
+            case Unclear(person, asked_again):
+                return {"kind": "unclear", "person": person, "asked_again": asked_again}
             case CallMade() as made:
                 return {"kind": "call", **made.body}
             case GameChange() as change:
@@ -246,6 +259,8 @@ def _replay(
                 what = Noted(words, by, taken)
             case CallMade() as what:
                 pass
+            case AnswerNotClear(asked_again=asked_again):
+                what = Unclear(event.person or "", asked_again)
             case FaultDiagnosed(fault=id, seconds=at) if id in faults and id not in moved:
                 replay.seconds = max(replay.seconds, at)
                 moved[id] = 0

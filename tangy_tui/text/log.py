@@ -9,7 +9,7 @@ from tangy_profiles.game_records import CallMade, GameChange
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
-from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted
+from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted, Unclear
 from tangy_tui.monitoring.session import Progress, Session
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_words
@@ -79,6 +79,9 @@ def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list
             ]
         case Noted(what, by):
             return [f"*  {what}{f', by {by}' if by else ''}."]
+        case Unclear(person, asked_again):
+            again = ": Tangy asks again" if asked_again else ", and Tangy has asked often enough"
+            return [f"*  {name(person)} did not answer clearly{again}."]
         case CallMade(role=role, way=way, stage=stage, said=said_then):
             return [f"*  {logged_words(role, way, stage, said_then)}"]
         case GameChange() as change:

@@ -102,8 +102,12 @@ def test_whoever_answers_unclearly_is_asked_again_as_often_as_the_caps_allow(
             world.tell("user1", right(world), certainty=0.5, source="speech")
 
     link.meanwhile = meanwhile
-    for _ in range(4):
-        do(world, "allow time")
+    unclear = [one for _ in range(4) for one in do(world, "allow time").unclear]
+    assert [one.asked_again for one in unclear].count(True) == world.activity.asking.visit
+    assert not unclear[-1].asked_again
+    assert {(one.person, one.certainty, one.source) for one in unclear} == {
+        ("user1", 0.5, "speech")
+    }
     again = [text for text in link.said if text in {one.format(name="Ann") for one in ASK_AGAIN}]
     assert len(again) == world.activity.asking.visit
     assert not world.may_ask_again("user1") and world.observe().stage == "listen"

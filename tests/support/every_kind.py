@@ -8,6 +8,7 @@ from tangy_hw.perception.faces import face_store
 from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.events import KINDS
 from tangy_profiles.game_records import (
+    AnswerNotClear,
     CallMade,
     DrillAnswered,
     DrillHeld,
@@ -109,6 +110,8 @@ def _play(workspace: Workspace) -> None:
     take_back(workspace.store, "bingo", 1)
     called = {"game": fault.body["game"], "fault": fault.body["fault"], "role": "expert"}
     append_body(workspace.store, CallMade, {**called, "way": "command", "stage": "sent"})
+    heard = {"fact": "answer", "said": "B", "certainty": 0.4, "source": "staff"}
+    append_body(workspace.store, AnswerNotClear, {"game": fault.body["game"], **heard})
     append_body(workspace.store, GameResumed, {"game": fault.body["game"], "steps": 1, "by": "Ada"})
     changed = {"game": fault.body["game"], "steps": 1, "what": "played on", "person": "user1"}
     append_body(workspace.store, GameChange, changed)

@@ -32,7 +32,7 @@ from tangy_profiles.past_game import (
     PastGame,
 )
 from tangy_profiles.scene import Scene
-from tangy_profiles.state import EVERYBODY, FRONT, ActivityState, Outcome, Response
+from tangy_profiles.state import EVERYBODY, FRONT, ActivityState, Outcome, Response, UnclearAnswer
 
 if TYPE_CHECKING:
     from typing import Any
@@ -77,6 +77,7 @@ class DeclaredLiveWorld(LiveWorld):
         self._told.clear()
         self.unsure = None
         self._asked_again: dict[str, int] = {}
+        self._not_clear: list[UnclearAnswer] = []
 
     def resume(self, past: PastGame) -> ActivityState:
         """Go on where a game was interrupted, with the facts that the log kept of it.
@@ -164,10 +165,11 @@ class DeclaredLiveWorld(LiveWorld):
             fact, who, raw = observed.told
             self.game.now = self.link.time - self._started
             if observed.certainty < CERTAIN:
+                self._note_unclear()  # nobody has asked again about the one before
                 self.unsure = observed
                 continue
             if self.unsure is not None and self.unsure.told.who == who:
-                self.unsure = None
+                self._note_unclear()  # said again without being asked
             self._asked_again.pop(who or "", None)
             if fact == ASKING and who is not None:
                 self.requests.ask_for(who)
@@ -201,7 +203,8 @@ class DeclaredLiveWorld(LiveWorld):
         if not self.broken and not self.over:
             self._let_people_act()
         seconds = max(0.0, self.link.time - began)
-        return Outcome(done.completed, seconds, (), response, speech, image)
+        unclear, self._not_clear = tuple(self._not_clear), []
+        return Outcome(done.completed, seconds, (), response, speech, image, unclear)
 
     def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
         """Say, show, gesture and drive; return what was said and shown.
@@ -286,15 +289,28 @@ class DeclaredLiveWorld(LiveWorld):
         """Whether a person is asked again after an unclear answer, or has been often enough."""
         return person is not None and self._asked_again.get(person, 0) < self.activity.asking.visit
 
+    def _note_unclear(self, *, asked_again: bool = False) -> None:
+        """Keep for the log which answer was not judged, and forget it otherwise."""
+        observed, self.unsure = self.unsure, None
+        if observed is None:
+            return
+        fact, who, said = observed.told
+        if who is None:
+            return
+        self._not_clear.append(
+            UnclearAnswer(who, fact, said, observed.certainty, observed.source, asked_again)
+        )
+
     def _ask_again(self) -> float:
         """Ask a person again whose answer was not clear; return how many s that took.
 
         Raises:
             DeviceError: it could not be said or shown.
         """
-        unsure, self.unsure = self.unsure, None
-        person = None if unsure is None else unsure.told.who
-        if person is None or not self.may_ask_again(person):
+        person = None if self.unsure is None else self.unsure.told.who
+        asks = self.may_ask_again(person)
+        self._note_unclear(asked_again=asks)
+        if person is None or not asks:
             return 0.0
         began, times = self.link.time, self._asked_again.get(person, 0)
         self._asked_again[person] = times + 1

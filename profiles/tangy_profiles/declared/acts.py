@@ -53,10 +53,10 @@ def _possible(game: DeclaredGame) -> Iterator[Act]:
                 yield from (Act(fact.name, who, value) for value in values if value != now)
 
 
-def take_in(game: DeclaredGame, act: Act) -> bool:
-    """Let a game observe an act, as a device would tell it."""
+def take_in(game: DeclaredGame, act: Act, certainty: float = 1.0) -> bool:
+    """Let a game observe an act, as a device would tell it that is so sure (a probability)."""
     fact = game.declaration.facts[act.fact]
-    return game.observe(act.fact, act.who, raw(game, fact, act.value))
+    return game.observe(act.fact, act.who, raw(game, fact, act.value), certainty)
 
 
 def raw(game: DeclaredGame, fact: Fact, value: str) -> str:

@@ -7,15 +7,17 @@ act. Streams for items, people and compliance are seeded apart; only `Random.ran
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import floor
 from random import Random
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.declared.acts import Act, acts, take_in
+from tangy_profiles.declared.acts import Act, acts, raw, take_in
 from tangy_profiles.declared.game import DeclaredGame, Execution
 from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
+from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.speech import words
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.faults import Remedy
@@ -25,12 +27,15 @@ from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.scene import Scene
-from tangy_profiles.state import EVERYBODY, ActivityState, Outcome, Response
+from tangy_profiles.state import EVERYBODY, ActivityState, Outcome, Response, UnclearAnswer
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.users import load_users
 
 SECONDS_A_WORD, PAUSE = 0.4, 8.0  # s
+ASKING_AGAIN = 6.0  # s until a person has answered once more
+UNCLEAR = 0.05
+"""The chance that an answer in a simulated game cannot be understood, as in a noisy room."""
 
 
 class DeclaredWorld:
@@ -48,7 +53,17 @@ class DeclaredWorld:
         *,
         seed: int,
         preferences: Preferences | None = None,
+        unclear: float = 0.0,
     ) -> None:
+        """Make the room.
+
+        Args:
+            activity: what is played.
+            people: those who take turns.
+            seed: of the random generators.
+            preferences: how each person responds to each strategy.
+            unclear: the chance that an answer that is to be judged cannot be understood.
+        """
         self.activity: Activity = activity
         self._declaration = activity.declaration
         self.people = tuple(people)
@@ -57,6 +72,8 @@ class DeclaredWorld:
         )
         self._items = Random(f"{seed}/items").random
         self._people_draw = Random(f"{seed}/people").random
+        self._unclear = unclear
+        self._clarity = Random(f"{seed}/clarity").random
         self._compliance = Random(f"{seed}/compliance")
         self.begin()
 
@@ -76,6 +93,7 @@ class DeclaredWorld:
         self.game = DeclaredGame(self._declaration, self.people, order)
         self.over = False
         self._did: dict[str, str] = {}
+        self._not_clear: list[UnclearAnswer] = []
         return self.observe()
 
     def resume(self, past: PastGame) -> ActivityState:
@@ -107,12 +125,14 @@ class DeclaredWorld:
         )
         seconds = 1.0 + SECONDS_A_WORD * len(speech.split())
         self._did.clear()
+        self._not_clear.clear()
         response = self._respond(done, action)
         self._pass(seconds)
         self.over = game.over
         if not game.over:
             self._let_people_act()
-        return Outcome(done.completed, seconds + PAUSE, (), response, speech, image)
+        seconds += PAUSE + ASKING_AGAIN * sum(one.asked_again for one in self._not_clear)
+        return Outcome(done.completed, seconds, (), response, speech, image, tuple(self._not_clear))
 
     def who(self, place: str) -> str:
         """Return who sits at a person's place; here always that person."""
@@ -154,7 +174,28 @@ class DeclaredWorld:
     def _let_people_act(self) -> None:
         self.game.now += PAUSE
         for act in acts(self.game, drawn=self._people_draw):
-            self._take_in(act)
+            if self._understood(act):
+                self._take_in(act)
+
+    def _understood(self, act: Act) -> bool:
+        """Say whether an act can be understood; a person is asked again who answers unclearly.
+
+        An answer that is not clear is observed as what it is: nothing that can be judged.
+        """
+        fact, most = self._declaration.facts[act.fact], self.activity.asking.visit
+        if not fact.checks or act.who is None or not self._unclear:
+            return True
+        for asked in range(most + 1):
+            if self._clarity() >= self._unclear:
+                return True
+            certainty = floor(100 * CERTAIN * self._clarity()) / 100
+            take_in(self.game, act, certainty)
+            said = raw(self.game, fact, act.value)
+            self._not_clear.append(
+                UnclearAnswer(act.who, act.fact, said, certainty, "simulated", asked < most)
+            )
+            self.game.now += ASKING_AGAIN if asked < most else 0.0
+        return False
 
     def _take_in(self, act: Act) -> None:
         if take_in(self.game, act) and act.who is not None:

@@ -18,7 +18,7 @@ from tangy_profiles.store import Store
 from tangy_tui.app.game_view import GameView
 from tangy_tui.app.watching import WATCH_SECONDS, Guest, NobodyThere, WatchedLog
 from tangy_tui.monitoring.fault import Diagnosed, Moved
-from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted
+from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted, Unclear
 from tangy_tui.text import watching as text
 from tangy_tui.text.log import game_words, moment_lines
 from tangy_tui.text.register import staff_names
@@ -35,6 +35,7 @@ KINDS: dict[type, Kind] = {
     Diagnosed: "warn",
     Moved: "dim",
     Noted: "dim",
+    Unclear: "warn",
     CallMade: "warn",
     GameChange: "dim",
 }

@@ -1,0 +1,65 @@
+"""Simulated people answer unclearly at times: they are asked again, and are never judged by it."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from tangy_profiles.declared.checking import expected_moves
+from tangy_profiles.declared.judging import CERTAIN
+from tangy_profiles.state import Outcome
+from tangy_sim.worlds.declared_world import DeclaredWorld
+from tests.support.declared import declared
+
+PEOPLE = ("user1", "user2", "user3")
+
+
+def games(unclear: float, count: int) -> tuple[list[Outcome], int]:
+    """Play games as the file expects; return what came of each step, and how many ended."""
+    activity, taught = declared("trivia"), expected_moves(declared("trivia"))
+    world = DeclaredWorld(activity, PEOPLE, seed=4, unclear=unclear)
+    found, ended = list[Outcome](), 0
+    for number in range(count):
+        if number:
+            world.begin()
+        while not world.over and len(found) < 400 * count:
+            move = taught.move(world.game)
+            assert move is not None
+            action = activity.action(activity.behaviours[move[0]], move[1], None)
+            found.append(world.execute(action))
+        ended += world.over
+    return found, ended
+
+
+def test_an_unclear_answer_is_asked_for_again_and_games_come_to_their_end() -> None:
+    found, ended = games(unclear=0.4, count=10)
+    unclear = [one for outcome in found for one in outcome.unclear]
+    assert ended == 10
+    assert len(unclear) > 10
+    assert all(0.0 <= one.certainty < CERTAIN for one in unclear)
+    most = declared("trivia").asking.visit
+    for outcome in found:
+        asked = Counter(one.person for one in outcome.unclear if one.asked_again)
+        assert all(times <= most for times in asked.values())
+
+
+def test_what_is_never_clear_is_never_judged() -> None:
+    activity = declared("trivia")
+    world = DeclaredWorld(activity, PEOPLE, seed=4, unclear=1.0)
+    taught = expected_moves(activity)
+    for _ in range(60):
+        move = taught.move(world.game)
+        assert move is not None
+        world.execute(activity.action(activity.behaviours[move[0]], move[1], None))
+        assert not any(fact == "answer" for fact, _ in world.game.values)
+
+
+def test_with_clear_answers_the_games_are_as_without_the_chance() -> None:
+    activity = declared("trivia")
+    usual = DeclaredWorld(activity, PEOPLE, seed=4)
+    taught = expected_moves(activity)
+    found, _ = games(unclear=0.0, count=1)
+    for outcome in found:
+        move = taught.move(usual.game)
+        assert move is not None
+        action = activity.action(activity.behaviours[move[0]], move[1], None)
+        assert usual.execute(action) == outcome
