@@ -319,3 +319,10 @@ NO_CRY_AFTER = frozenset(
     )
 )
 """Words after which stopping is a noun, or what somebody does, may do or must not do."""
+MAY_BE_MISHEARD = frozenset(("to", "you", "i", "the", "at", "and", "a"))
+"""Those of them that are short and weak, so that other words are often heard as them."""
+REPORTS_OR_ASKS = re.compile(
+    r"(?:where|when|what|who|which|how|why|does|do|did|is|are|was|has|have|he|she|they|my|his|her)"
+    r"\b"
+)
+"""How sentences begin that tell of stopping, or ask about it."""

@@ -18,8 +18,10 @@ from tangy_tui.language.stop_patterns import (
     CRIES,
     ENDS_A_THOUGHT,
     FORBIDS,
+    MAY_BE_MISHEARD,
     NO_CRY_AFTER,
     NO_CRY_BEFORE,
+    REPORTS_OR_ASKS,
     alarm,
     before,
     cry,
@@ -81,6 +83,13 @@ def prepare() -> None:
 def stops_whatever_follows(words: str) -> bool:
     """Say whether what was said so far stops the robot, and no word after it can change that."""
     return bool(_CLEAR.search(words)) and stops(words)
+
+
+def ends_in_stop(words: str) -> bool:
+    """Say whether words that may have been misheard end in a cry to stop, whatever came before."""
+    *before, last = words.split(" ")
+    cried = last in CRIES and bool(before) and before[-1] not in NO_CRY_AFTER - MAY_BE_MISHEARD
+    return cried and REPORTS_OR_ASKS.match(words) is None
 
 
 def _is_aimed(clause: str) -> bool:

@@ -4,8 +4,8 @@ In the usual mode each utterance is decoded twice: by an n-gram model of the phr
 everyday words can stand anywhere, which says what the words were, and by a grammar of the phrases
 with a branch for any phones, which says how well anything at all can explain the sound. The
 difference of the two scores tells words that were said from words that merely fit best. Ears of
-their own listen for what stops the robot (`stop_decoder`). In the paper's mode there is just the
-n-gram model of the phrases.
+their own listen for what stops the robot (`stop_decoder`); they answer first, and where they are
+sure nothing else is waited for. In the paper's mode there is just the n-gram model of the phrases.
 
 pocketsphinx holds the interpreter's lock, so this runs in a process of its own: see `worker`.
 """
@@ -17,7 +17,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from tangy_tui.speech.bandwidth import widened
 from tangy_tui.speech.evidence import RATE, AcousticEvidence, Expecting, Wanted
 from tangy_tui.speech.forked_worker import ForkedWorker
 from tangy_tui.speech.language import (
@@ -28,13 +27,15 @@ from tangy_tui.speech.language import (
     phrase_model,
     words_of,
 )
-from tangy_tui.speech.noise_reduction import cleaned, surrounded
+from tangy_tui.speech.noise_reduction import cleared, surrounded
 from tangy_tui.speech.pocketsphinx_search import NO_PATH, add_model, best_path, make_search
 from tangy_tui.speech.stop_decoder import StopDecoder
 
 SHORTEST = 0.1  # s; less cannot hold a word, and an empty buffer raises IndexError
 MODEL = "en-us/"
 AMONG_STOPS = 1_500  # everyday words that the ears for stopping know
+HINTS = frozenset(("stop", "stops", "stopped", "halt", "freeze", "emergency"))
+"""Words of which both decoders have to hear one where a stop is in doubt."""
 UNKNOWN_MARGIN = -0.5  # that of most speech which is no command
 
 # How sure the paper's n-gram model is: a logistic over two figures of the best path, its score a
@@ -104,7 +105,7 @@ class TwoDecoders:
         few = dict(list(open_words.items())[:AMONG_STOPS])
         self._stops = StopDecoder(wanted.stops, wanted.no_stops, few, known, wanted.game)
         self._open = False
-        self._beside = ForkedWorker(self._by_grammar)
+        self._beside = ForkedWorker(self._by_words)
         self._beside_stops = ForkedWorker(self._stops.hear)
 
     def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
@@ -113,23 +114,24 @@ class TwoDecoders:
         seconds = len(pcm) / 2 / RATE
         if seconds < SHORTEST or not self._said[expecting]:
             return AcousticEvidence(seconds=seconds)
-        whole = surrounded(pcm)
-        pcm = cleaned(whole)
-        if pcm == whole:  # in noise nobody can tell what is missing
-            pcm = widened(pcm)
         self._beside_stops.ask(pcm)
+        pcm = cleared(surrounded(pcm))
         self._beside.ask((pcm, expecting))
-        words, score, _ = best_path(self._words, pcm, expecting)
-        phrase, garbage = self._beside.answer()
-        stop = self._beside_stops.answer()
+        stop, sure = self._beside_stops.answer()  # first, while it has a processor of its own
+        if sure:
+            return AcousticEvidence(stop, "", UNKNOWN_MARGIN, 1.0, seconds, stop)
+        phrase, garbage, _ = best_path(self._grammar, pcm, expecting)
+        words, score = self._beside.answer()
+        if HINTS.isdisjoint(words.split()):
+            stop = ""  # which only one of the two decoders heard, and not for sure
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or a path that breaks off in the middle of a phrase
         return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop)
 
-    def _by_grammar(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
-        phrase, score, _ = best_path(self._grammar, *asked)
-        return phrase, score
+    def _by_words(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
+        words, score, _ = best_path(self._words, *asked)
+        return words, score
 
     def begin(self, expecting: Expecting) -> None:
         """Begin an utterance that comes in pieces."""

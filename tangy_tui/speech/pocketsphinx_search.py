@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +59,13 @@ def best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float]
     words = [_log(s.lscore) for s in decoder.seg() if not s.word.startswith(NOISES)]
     frames = len(pcm) / 2 / RATE * FRAMES_A_SECOND
     return str(best.hypstr), _log(best.score) / frames, sum(words) / max(1, len(words))
+
+
+def next_best(decoder: Any, most: int) -> Iterator[str]:
+    """Yield the likeliest sentences of what `best_path` has decoded last, best first."""
+    for _, guess in zip(range(most), decoder.nbest() or (), strict=False):
+        if guess is not None:  # as the search gives where it has no more
+            yield str(guess.hypstr)
 
 
 def _log(score: float) -> float:

@@ -342,10 +342,22 @@ def _answer(said: dict[str, Any]) -> dict[str, Any]:
 
 
 def cpu_seconds(pid: int | None) -> float | None:
-    """Return the CPU time in s that a process has used; None where the system does not tell it."""
+    """Return the CPU time in s of a process and of those it started; None where that is unknown."""
+    try:
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8").split()
+    except OSError:
+        children = []
+    own = _ticks(pid)
+    if own is None:
+        return None
+    return (own + sum(_ticks(int(child)) or 0 for child in children)) / os.sysconf("SC_CLK_TCK")
+
+
+def _ticks(pid: int | None) -> int | None:
+    """Return the ticks of CPU time that a process has used; None if it is not there."""
     try:
         told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-        return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
+        return int(told[11]) + int(told[12])
     except (OSError, ValueError, IndexError):
         return None
 

@@ -1,30 +1,45 @@
 """Ears for stopping alone: every utterance goes through them, whatever else is listened for.
 
-Two models of one decoder. The first knows how people stop a robot or a game and how they talk of
-stopping other things, with everyday words between them: where its words stop the robot, it was a
-stop. The second knows nothing but stops: where a word of stopping was heard, and a stop explains
-the sound nearly as well as any other sentence does, it stops in doubt.
+One n-gram model knows how people stop a robot or a game and how they talk of stopping other things,
+with everyday words between them. Where its likeliest words stop the robot, it was a stop for sure.
+Where only one of the next likely sentences does, it may have been one: a synthetic or foreign voice
+is often heard as "tell the robot" before it is heard as "stop the robot".
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from itertools import islice
+from typing import Any, NamedTuple
 
-from tangy_tui.language.stop_sentence import stops
-from tangy_tui.speech.language import dictionary, open_model, phrase_model, words_of
-from tangy_tui.speech.pocketsphinx_search import NO_PATH, add_model, best_path, make_search
+from tangy_tui.language.stop_sentence import ends_in_stop, stops
+from tangy_tui.speech.language import dictionary, open_model, words_of
+from tangy_tui.speech.noise_reduction import cleared
+from tangy_tui.speech.pocketsphinx_search import add_model, best_path, make_search, next_best
 
 SHARE = 0.05  # of everyday words between those of stopping
-DOUBT = 0.2  # by which a stop may explain the sound worse, in log P a frame
-STARTS_DOUBT = frozenset(("stop", "halt", "freeze", "emergency", "don't", "still", "off", "robot"))
+DOUBTED = 5  # different sentences, the likeliest ones, of which one may be a stop
+SEGMENTATIONS = 60  # of the likeliest paths that are looked through for them
 ACTIVE = 1500
+ACCENTS = {
+    "stop": ("S T AO P", "S T AH P"),
+    "stopped": ("S T AO P T",),
+    "robot": ("R OW B AO T", "R OW B AH T"),
+}
+"""How British and other voices say what the American dictionary has in one way alone."""
 
 Known = Mapping[str, Sequence[str]]
 
 
+class HeardStop(NamedTuple):
+    """The sentence that stops the robot, "" if there was none, and whether it is beyond doubt."""
+
+    sentence: str = ""
+    sure: bool = False
+
+
 class StopDecoder:
-    """Finds cries to stop. Its limits were set on the first half of `bench/stop_sayings.toml`."""
+    """Finds cries to stop. Its limits were set on `bench/stop_sayings.toml`."""
 
     def __init__(
         self,
@@ -49,23 +64,22 @@ class StopDecoder:
         if not texts:
             return
         words = words_of((*texts, *others)) | everyday.keys()
-        self._search = make_search(
-            dictionary({w: known[w] for w in words}), bestpath=True, active=ACTIVE
-        )
+        said = {word: (*known[word], *ACCENTS.get(word, ())) for word in words}
+        self._search = make_search(dictionary(said), bestpath=True, active=ACTIVE)
         add_model(self._search, "all", open_model((*others, *texts), everyday, SHARE))
-        add_model(self._search, "stops", phrase_model(texts))
 
-    def hear(self, pcm: bytes) -> str:
-        """Return the sentence that stops the robot, "" if an utterance was none."""
+    def hear(self, pcm: bytes) -> HeardStop:
+        """Return the sentence of an utterance (16 kHz mono s16le) that stops the robot."""
         if self._search is None:
-            return ""
-        words, score, _ = best_path(self._search, pcm, "all")
+            return HeardStop()
+        words, _, _ = best_path(self._search, cleared(pcm), "all")
         if stops(words, self._game):
-            return words
-        if score <= NO_PATH or STARTS_DOUBT.isdisjoint(words.split()):
-            return ""
-        stop, likely, _ = best_path(self._search, pcm, "stops")
-        return stop if likely >= score - DOUBT and stops(stop, self._game) else ""
+            return HeardStop(words, sure=True)
+        guesses = dict.fromkeys(next_best(self._search, SEGMENTATIONS))
+        for guess in islice(guesses, DOUBTED):
+            if stops(guess, self._game):
+                return HeardStop(guess)
+        return HeardStop(words) if ends_in_stop(words) else HeardStop()
 
 
 def _sayable(texts: Sequence[str], known: Known) -> list[str]:

@@ -1,12 +1,11 @@
 """How many spoken sentences that stop the robot do so, and how many others.
 
 Run by hand: `python -m tests.bench.spoken_stops` (needs flite, festival and espeak-ng). The
-sentences are those of `stop_sayings.toml`; those at even places set the limits of `stop_decoder`,
-figures are quoted on the others (`--half 0` counts the first ones). Each is said by some of the
-voices, in turn. White noise, or the babble of other voices, is added to whole sentences. Other talk
-is what asks for nothing, or for something else, and holds no word of stopping. Everything goes
-through the real decoder. A synthetic voice is not a person; those of espeak are the hardest to
-hear.
+sentences of `stop_sayings.toml` set the limits of `stop_decoder` (`--set`); figures are quoted on
+those of `stop_quotes.toml`, which chose nothing. Each is said by some of the voices, in turn. White
+noise, or the babble of other voices, is added to whole sentences. Other talk is what asks for
+nothing, or for something else, and holds no word of stopping. Everything goes through the real
+decoder. A synthetic voice is not a person; those of espeak are the hardest to hear.
 """
 
 from __future__ import annotations
@@ -33,7 +32,8 @@ from tangy_tui.speech.understanding import understand, wanted
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 from tests.bench.speech import BOOK
 
-SAYINGS = Path(__file__).parent / "stop_sayings.toml"
+HERE = Path(__file__).parent
+SETS, QUOTES = HERE / "stop_sayings.toml", HERE / "stop_quotes.toml"
 FESTIVAL = {"kal_diphone": "kal_diphone", "slt_hts": "cmu_us_slt_arctic_hts"}
 VOICES = (
     *("slt", "rms", "awb", "kal", *FESTIVAL, "en-gb", "en-gb+m3", "en-us+f2"),
@@ -55,15 +55,16 @@ class Said(NamedTuple):
     voice: str
 
 
-def sayings(half: int, voices: int) -> Iterator[Said]:
-    """Yield what is said: each sentence of a half by so many voices."""
-    read = tomllib.loads(SAYINGS.read_text(encoding="utf-8"))
+def sayings(file: Path, voices: int) -> Iterator[Said]:
+    """Yield what is said: each sentence of a file by so many voices, other talk by one."""
+    read = tomllib.loads(file.read_text(encoding="utf-8"))
     for kind in ("stops", "others"):
-        for place, text in enumerate(read[kind][half::2]):
+        for place, text in enumerate(read[kind]):
             for number in range(voices):
                 yield Said(kind, text, VOICES[(place + 5 * number) % len(VOICES)])
-    talk = [text for texts in (FAR, NEAR, list(WORDINGS)) for text in texts[half::2]]
-    for place, text in enumerate(talk[:: max(1, len(talk) // TALK)]):
+    known = [text for texts in (FAR, NEAR, list(WORDINGS)) for text in texts]
+    talk = read.get("talk") or known[:: max(1, len(known) // TALK)]
+    for place, text in enumerate(talk):
         yield Said("talk", text, VOICES[place % len(VOICES)])
 
 
@@ -125,14 +126,15 @@ class Voices:
 def main() -> None:
     """Print the table."""
     options = argparse.ArgumentParser(description="Count spoken stops.")
-    options.add_argument("--half", type=int, default=1, choices=(0, 1))
-    options.add_argument("--voices", type=int, default=3, help="of each sentence")
+    options.add_argument("--set", action="store_true", help="count those that set the limits")
+    options.add_argument("--voices", type=int, default=1, help="of each sentence")
+    options.add_argument("--every", type=int, default=1, help="take every so many sentences alone")
     options.add_argument("--noises", nargs="*", default=("clean", "20", "10", "b10"))
     options.add_argument("--show", action="store_true", help="list what went wrong")
     chosen = options.parse_args()
     decoder = make_decoder(wanted(BOOK, USUAL))
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
-    said = list(sayings(chosen.half, chosen.voices))
+    said = list(sayings(SETS if chosen.set else QUOTES, chosen.voices))[:: chosen.every]
     with tempfile.TemporaryDirectory() as folder:
         voices = Voices(Path(folder))
         voices.say(said)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import os
+import signal
+import sys
 from collections.abc import AsyncIterator, Callable
 from functools import partial
 from pathlib import Path
@@ -15,7 +17,12 @@ from tangy_hw.audio.wav import RATE
 from tangy_profiles.worker_log import KEPT, MOST
 from tangy_tui.speech import recogniser as room
 from tangy_tui.speech.evidence import LONGEST, AcousticEvidence, Wanted
-from tangy_tui.speech.recogniser import END_SECONDS, Recogniser, SpeechUnavailable
+from tangy_tui.speech.recogniser import (
+    END_SECONDS,
+    Recogniser,
+    SpeechUnavailable,
+    cpu_seconds,
+)
 from tests.learning.speech_fakes import PATIENCE, Workers, soon
 
 WANTED = Wanted(("call number",))
@@ -344,3 +351,16 @@ class TestClosing:
 
 def _runs(recogniser: Recogniser) -> bool:
     return recogniser.pid is not None
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+async def test_what_a_process_has_others_do_counts_as_its_work() -> None:
+    busy = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'while True: pass'])"
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-c", busy, start_new_session=True
+    )
+    try:
+        await soon(lambda: (cpu_seconds(process.pid) or 0.0) > 1.0)
+    finally:
+        os.killpg(process.pid, signal.SIGKILL)
+        await process.wait()

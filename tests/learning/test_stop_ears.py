@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import ClassVar
 
 import pytest
 
+from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
@@ -13,7 +16,10 @@ from tangy_tui.language.steering import IN_GAMES
 from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.learning.verification import Reply, Say, StopCommand
-from tangy_tui.speech.evidence import USUAL, AcousticEvidence
+from tangy_tui.speech import decoder as speech_decoder
+from tangy_tui.speech import stop_decoder
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence, Wanted
+from tangy_tui.speech.stop_decoder import DOUBTED, HeardStop, StopDecoder
 from tangy_tui.speech.understanding import answer, commanded, replied, understand, wanted
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
@@ -95,3 +101,82 @@ def test_a_stop_that_was_found_stops_unless_both_decoders_heard_steering() -> No
     said = heard("undo that", "don't move", 0.5)
     assert understand(said, BOOK, USUAL) == StopCommand("don't move")
     assert understand(replace(said, phrase="undo that"), BOOK, USUAL) == Say("undo that", 1.0, None)
+
+
+class GuessingSearch:
+    """Stands in for the search: whatever the sound is, it has these guesses, best first."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *guesses: str) -> None:
+        for name, does in (
+            ("make_search", lambda *_, **__: self),
+            ("add_model", lambda *_: None),
+            ("best_path", lambda *_: (guesses[0], -2.0, 0.0)),
+            ("next_best", lambda *_: iter(guesses)),
+        ):
+            monkeypatch.setattr(stop_decoder, name, does)
+
+    def hear(self) -> HeardStop:
+        known = {"stop": ("S T AA P",), "the": ("DH AH",)}
+        decoder = StopDecoder(["stop"], [], {"the": 1.0}, known)
+        return decoder.hear(bytes(RATE))
+
+
+NO_STOPS = ("the dog", "the door", "a dog", "a door", "the log", "the lock")
+
+
+def test_the_likeliest_words_stop_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    heard = GuessingSearch(monkeypatch, "hey stop", *NO_STOPS).hear()
+    assert heard == HeardStop("hey stop", sure=True)
+
+
+@pytest.mark.parametrize(("better", "stops"), [(1, True), (DOUBTED - 1, True), (DOUBTED, False)])
+def test_one_of_the_next_likely_sentences_stops_in_doubt(
+    monkeypatch: pytest.MonkeyPatch, better: int, stops: bool
+) -> None:
+    twice = [guess for guess in NO_STOPS[:better] for _ in range(2)]  # cut at other places
+    heard = GuessingSearch(monkeypatch, *twice, "hey stop").hear()
+    assert heard == (HeardStop("hey stop") if stops else HeardStop())
+
+
+def test_words_that_end_in_a_cry_stop_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert GuessingSearch(monkeypatch, "kill that robot to stop").hear().sentence
+    assert not GuessingSearch(monkeypatch, "where does the bus stop").hear().sentence
+
+
+class TwoAnswers:
+    """Stands in for the processes beside the decoder; the one for the words may not be asked."""
+
+    found = HeardStop()
+    words = ""
+    asked: ClassVar[list[str]] = []
+
+    def __init__(self, work: Callable[[object], object]) -> None:
+        self.name = work.__name__
+
+    def ask(self, asked: object) -> None:
+        """Take a question."""
+
+    def answer(self) -> object:
+        self.asked.append(self.name)
+        return self.found if self.name == "hear" else (self.words, -2.0)
+
+    def close(self) -> None:
+        """Nothing was started."""
+
+
+@pytest.mark.parametrize(
+    ("sure", "words", "stops"),
+    [(True, "call number", True), (False, "they stop", True), (False, "call number", False)],
+)
+def test_a_stop_beyond_doubt_waits_for_no_other_words_one_in_doubt_needs_them(
+    monkeypatch: pytest.MonkeyPatch, sure: bool, words: str, stops: bool
+) -> None:
+    monkeypatch.setattr(speech_decoder, "ForkedWorker", TwoAnswers)
+    monkeypatch.setattr(TwoAnswers, "found", HeardStop("hey stop", sure))
+    monkeypatch.setattr(TwoAnswers, "words", words)
+    monkeypatch.setattr(TwoAnswers, "asked", [])
+    decoder = speech_decoder.make_decoder(Wanted(("call number",), ("yes",)))
+    evidence = decoder.decode(bytes(2 * RATE), "commands")
+    assert evidence.stop == ("hey stop" if stops else "")
+    assert evidence.words == ("hey stop" if sure else words)
+    assert len(TwoAnswers.asked) == (1 if sure else 2)

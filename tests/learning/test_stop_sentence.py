@@ -11,7 +11,12 @@ from hypothesis import strategies as st
 from tangy_profiles.activity import load_activity, read_activity
 from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.language.stop_sentence import STOPS, stops, stops_whatever_follows
+from tangy_tui.language.stop_sentence import (
+    STOPS,
+    ends_in_stop,
+    stops,
+    stops_whatever_follows,
+)
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 from tests.learning.stop_sentences import (
     MENTIONING,
@@ -157,3 +162,22 @@ def test_a_long_line_is_judged_at_once(once: str) -> None:
 )
 def test_what_names_the_robot_stops_it_whatever_follows(words: str, clear: bool) -> None:
     assert stops_whatever_follows(words) is clear
+
+
+@pytest.mark.parametrize(
+    ("heard", "meant"),
+    [
+        ("kill that robot to stop", True),
+        ("we you stop", True),
+        ("stop", False),
+        ("the bus stop", False),
+        ("where does the bus stop", False),
+        ("she wants to stop", False),
+        ("we will never stop", False),
+        ("stop the kettle", False),
+    ],
+)
+def test_words_that_may_be_misheard_end_in_a_cry_unless_they_tell_or_ask(
+    heard: str, meant: bool
+) -> None:
+    assert ends_in_stop(heard) == meant
