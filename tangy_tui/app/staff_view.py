@@ -54,8 +54,13 @@ class StaffWatch:
     def begin(self, now: float) -> None:
         """Begin a game at a time in s."""
         self._began = now
+        self._ended: float | None = None
         self._asks: dict[str, float] = {}
         self._visited: dict[str, float] = {}
+
+    def end(self, now: float) -> None:
+        """Let the clock stand from a time in s on: the game is over."""
+        self._ended = now
 
     def resume(self, now: float, past: PastGame) -> None:
         """Go on with a game at a time in s, by when its steps were over and whom they were for."""
@@ -68,6 +73,7 @@ class StaffWatch:
 
     def look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
         """Take a look at a time in s, and return what there is to see."""
+        now = now if self._ended is None else min(now, self._ended)
         for person in [one for one in self._asks if one not in scene.requests]:
             del self._asks[person]
         for person in scene.requests:

@@ -253,6 +253,9 @@ def test_the_clock_of_a_live_game_is_the_time_played_and_not_the_time_it_was_dea
     shown = watch.look(after.world.scene(), after.world.people, after.world.seconds, after.world)
     for seconds in (shown.seconds, after.control.supervision.seconds):
         assert seconds == pytest.approx(played)
+    watch.end(after.world.seconds)
+    later = after.world.seconds + 600.0
+    assert watch.look(after.world.scene(), (), later, after.world).seconds == shown.seconds
     after.control.apply(GoOn())
     after.next(3)
     played = after.control.supervision.game.log.seconds

@@ -348,9 +348,11 @@ class PlayScreen(PlayStaff):
                 self._watch.begin(seconds)
             elif isinstance(event, ResumedGame) and self._past is not None:
                 self._watch.resume(seconds, self._past)
-            elif isinstance(event, GameEnded) and event.stopped is not None and not known:
-                self._halted = True
-                self.run_worker(self._say_why(event.stopped, text.LEADS_HOME), name="why")
+            elif isinstance(event, GameEnded):
+                self._watch.end(seconds)
+                if event.stopped is not None and not known:
+                    self._halted = True
+                    self.run_worker(self._say_why(event.stopped, text.LEADS_HOME), name="why")
         if events and (not self.skipping or self._supervision.over):
             self.show_staff()
         self.show_status()

@@ -51,7 +51,8 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
 def _next(shown: ViewSource) -> str:
     control, world = shown.control, shown.world
     if control.supervision.over:
-        return text.OVER if control.supervision.games else ""
+        said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""
+        return f"{text.OVER} {said}".rstrip() if control.supervision.games else ""
     if control.stopped:
         return text.STOPPED
     found = next_step(world, control.supervision.policy)

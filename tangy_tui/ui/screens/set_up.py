@@ -16,8 +16,6 @@ from textual.content import Content
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
-from tangy_profiles.scene import Scene
-from tangy_profiles.state import FRONT
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import CHECKS, SetUp
 from tangy_tui.text import set_up as text
@@ -54,7 +52,6 @@ class SetUpScreen(TangyScreen[bool]):
     DEFAULT_CSS = """
     SetUpScreen #page { height: 1fr; }
     SetUpScreen #setup { width: 1fr; height: 1fr; }
-    SetUpScreen #setup.-told { border-title-color: $warning; border-title-style: bold; }
     SetUpScreen #seats { display: none; width: 1fr; }
     SetUpScreen.-wide #seats { display: block; }
     """
@@ -93,14 +90,16 @@ class SetUpScreen(TangyScreen[bool]):
 
     def compose(self) -> ComposeResult:
         """Lay out the page."""
+        kind = getattr(self.app, "kind", None)
+        in_ascii = kind is not None and kind.ascii
         yield StatusLine()
         with Horizontal(id="page"):
             yield panel(SetUpList(), text.TITLE)
             yield Vertical(id="seats")
         yield key_line(
             "begin",
-            ("↵", "change"),
-            ("␣", "move"),
+            ("enter" if in_ascii else "↵", "change"),
+            ("space" if in_ascii else "␣", "move"),
             ("1-9", "played for"),
             "join",
             "rename",
@@ -126,24 +125,21 @@ class SetUpScreen(TangyScreen[bool]):
 
     def _say(self, words: str) -> None:
         """Say something in the upper edge of the page, where it covers no line; "" no more."""
-        lines = self.query_one(SetUpList)
-        lines.border_title = Content(clean(words or text.TITLE))
-        lines.set_class(bool(words), "-told")
+        ink = "$warning bold" if words else ""
+        title = Content.assemble((clean(words or text.TITLE), ink))
+        self.query_one(SetUpList).border_title = title
 
     def _draw_seats(self) -> None:
-        """Draw the room with all at their seats, beside the lines where there is room for it."""
-        workspace = self.setup.workspace
+        """Draw those who are here at their seats, beside the lines where there is room for it."""
+        workspace, away = self.setup.workspace, self.setup.away
         name = staff_names(workspace.name)
-        people = [replace(person, name=name(person.id)) for person in workspace.people]
-        if self._drawn != (people, workspace.room):
-            self._drawn = people, workspace.room
+        here = [replace(one, name=name(one.id)) for one in workspace.people if one.id not in away]
+        if self._drawn != (here, workspace.room):
+            self._drawn = here, workspace.room
             seats = self.query_one("#seats", Vertical)
             seats.remove_children()
-            seats.mount(panel(RoomView(workspace.room, people, id=None), text.SEATS))
-        away = self.setup.away
-        doing = {one.id: text.AWAY_SHORT if one.id in away else "" for one in people}
-        for room in self.query(RoomView):
-            room.show(Scene(FRONT, (), doing, (), None))
+            if here:
+                seats.mount(panel(RoomView(workspace.room, here, id=None), text.SEATS))
 
     # ------------------------------------------------------------------------------- the lines
 
