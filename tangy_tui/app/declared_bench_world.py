@@ -41,6 +41,6 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
     def _listen(self) -> None:
         """Hear what people of the bench have done since."""
         acts = self.truth()["acts"]
-        for fact, who, raw in acts[self._passed_on :]:
-            self.take(Observed(TypedObservation(fact, who or None, raw), 1.0, "staff"))
+        for fact, who, raw, sure in acts[self._passed_on :]:
+            self.take(Observed(TypedObservation(fact, who or None, raw), sure, "staff"))
         self._passed_on = len(acts)

@@ -37,7 +37,8 @@ def game_world(
         TangyError: faults are to come in an activity that has none.
     """
     if isinstance(activity, DeclaredActivity):
-        from tangy_sim.worlds.declared_world import UNCLEAR, DeclaredWorld
+        from tangy_sim.worlds.clarity import UNCLEAR
+        from tangy_sim.worlds.declared_world import DeclaredWorld
 
         if injections:
             raise TangyError(f"No fault can be brought about in {activity.title} yet.")

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.speech import with_names
 from tangy_profiles.declared.whom import first_addressee
+from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.person import load_people
 from tangy_sim.device_simulator.declared_people import DeclaredPeople
 from tangy_sim.device_simulator.declared_reception import DeclaredReception
@@ -43,7 +45,7 @@ def test_people_act_only_where_the_game_gives_them_reason_to() -> None:
     people = DeclaredPeople(activity, PEOPLE, Faults(), seed=1)
     ears = DeclaredReception(activity, PEOPLE)
     sentences = ("Welcome to the quiz!", "Which planet do we live on? Mars, Earth or Saturn?")
-    answered = 0
+    answered = unclear = 0
     for _ in range(50):
         people.begin(people.now)
         for text in (sentences[0], f"User 1, question 1: {sentences[1]}"):
@@ -54,4 +56,14 @@ def test_people_act_only_where_the_game_gives_them_reason_to() -> None:
             people.step(people.now + 20)
         assert {act[:2] for act in people.game.acts} <= {("answer", "user1")}
         answered += len(people.game.acts)
+        clear = [sure for *_, sure in people.game.acts if sure >= CERTAIN]
+        assert len(clear) <= 1
+        unclear += len(people.game.acts) - len(clear)
+        if people.game.acts and not clear:
+            asked = ears.hear(ASK_AGAIN[0].replace("{name}", "User 1"))
+            assert asked is not None and (asked.again, asked.person) == (True, "user1")
+            people.hear(asked)
+            people.step(people.now + 20)
+            assert len(people.game.acts) == 2
+    assert unclear
     assert 5 < answered < 45

@@ -14,12 +14,14 @@ from random import Random
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.memory import GameMemory, game_from
 from tangy_profiles.declared.vocabulary import ASKING, NO, YES
 from tangy_profiles.person import Person
 from tangy_sim.device_simulator.faults import Faults
 from tangy_sim.device_simulator.people import CLEAR, TURNS_DOWN, People, Sitter
 from tangy_sim.device_simulator.speech_reception import Heard
+from tangy_sim.worlds.clarity import UNCLEAR, Clarity
 from tangy_sim.worlds.compliance import respond
 from tangy_sim.worlds.users import SimulatedUser
 
@@ -34,12 +36,14 @@ class DeclaredPeople(People):
     ) -> None:
         self._declaration = activity.declaration
         self._draw = Random(f"{seed}/people").random
+        self._clarity = Clarity(seed, UNCLEAR)
         super().__init__(activity, people, faults, seed=seed)
 
     def begin(self, now: float) -> None:
         """Begin a game at a time in s."""
         super().begin(now)
         self._began = now
+        self._unheard: dict[str, Act] = {}  # what each answered that was not clear
         self.known = DeclaredGame(self._declaration, self.ids)
         """The game as the people at the table understand it."""
 
@@ -70,6 +74,11 @@ class DeclaredPeople(People):
         """Understand a sentence of the robot, now that it was said, and act on it."""
         if heard.fault:
             self._asked_to_help(heard)
+            return
+        if heard.again:
+            act = self._unheard.pop(heard.person, None)
+            if act is not None and not self.game.over:
+                self._after(ACTS, partial(self._acts, act))
             return
         behaviour, game = heard.behaviour, self.known
         if behaviour is None or self.game.over:
@@ -115,12 +124,19 @@ class DeclaredPeople(People):
             return
         fact = game.declaration.facts[act.fact]
         said = act.value if act.fact == ASKING else raw(game, fact, act.value)
-        if self.game.over or not game.observe(act.fact, act.who, said):
+        if self.game.over:
+            return
+        sure = self._clarity.certainty() if fact.checks and act.who is not None else 1.0
+        if sure < CERTAIN and act.who is not None:
+            self._unheard[act.who] = act
+            self.game.acts.append((act.fact, act.who, said, sure))
+            return
+        if not game.observe(act.fact, act.who, said):
             return
         if act.fact == ASKING and act.who is not None:
             self.sitters[act.who].asks_since = self.now
         else:
-            self.game.acts.append((act.fact, act.who or "", said))
+            self.game.acts.append((act.fact, act.who or "", said, sure))
 
     def _may(self, act: Act) -> bool:
         """Say whether people have reason to do something now, where their habit says when."""

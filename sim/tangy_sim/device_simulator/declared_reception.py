@@ -13,6 +13,7 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.model import Items
 from tangy_profiles.declared.speech import SLOT
+from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.person import Person
 from tangy_sim.device_simulator.speech_reception import Heard
 
@@ -41,6 +42,10 @@ class DeclaredReception:
             for strategy, texts in one.says.items()
             for text in texts
         ]
+        self._again = [
+            re.compile(re.escape(_plain(text)).replace(re.escape("{name}"), f"(?P<name>{names})"))
+            for text in ASK_AGAIN
+        ]
         self._sentences = sorted(sentences, key=lambda one: -one.letters)
 
     def hear(self, text: str) -> Heard | None:
@@ -55,7 +60,8 @@ class DeclaredReception:
                 continue
             person = self._people.get(found.groupdict().get("name") or "", "")
             return Heard(one.behaviour, one.strategy, person, rows=tuple(rows))
-        return None
+        asked = next((found for one in self._again if (found := one.fullmatch(plain))), None)
+        return Heard(person=self._people[asked["name"]], again=True) if asked else None
 
     def _rows(self, columns: tuple[str, ...], said: Mapping[str, str]) -> list[int]:
         """Return the rows of the items that have in their columns what was said."""

@@ -70,8 +70,8 @@ class GameProgress:
     responses: list[Response] = field(default_factory=list)
     spoken: list[str] = field(default_factory=list)
     """Who said aloud that they would like help, because signs cannot be seen."""
-    acts: list[tuple[str, str, str]] = field(default_factory=list)
-    """Called with observations that no sensor sees: the fact, the person, the value."""
+    acts: list[tuple[str, str, str, float]] = field(default_factory=list)
+    """Observations that no sensor sees: the fact, the person, the value, how sure it is."""
 
 
 class People:

@@ -35,6 +35,8 @@ class Heard:
     fault: str = ""
     rows: tuple[int, ...] = ()
     """The rows of an activity's items that it can be about."""
+    again: bool = False
+    """Whether the person is asked to say their answer again."""
 
 
 @dataclass(frozen=True)

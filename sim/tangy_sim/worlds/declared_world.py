@@ -7,7 +7,6 @@ act. Streams for items, people and compliance are seeded apart; only `Random.ran
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import floor
 from random import Random
 
 from tangy_profiles.activity import Activity
@@ -28,14 +27,13 @@ from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import EVERYBODY, ActivityState, Outcome, Response, UnclearAnswer
+from tangy_sim.worlds.clarity import Clarity
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.users import load_users
 
 SECONDS_A_WORD, PAUSE = 0.4, 8.0  # s
 ASKING_AGAIN = 6.0  # s until a person has answered once more
-UNCLEAR = 0.05
-"""The chance that an answer in a simulated game cannot be understood, as in a noisy room."""
 
 
 class DeclaredWorld:
@@ -72,8 +70,7 @@ class DeclaredWorld:
         )
         self._items = Random(f"{seed}/items").random
         self._people_draw = Random(f"{seed}/people").random
-        self._unclear = unclear
-        self._clarity = Random(f"{seed}/clarity").random
+        self._clarity = Clarity(seed, unclear)
         self._compliance = Random(f"{seed}/compliance")
         self.begin()
 
@@ -183,12 +180,12 @@ class DeclaredWorld:
         An answer that is not clear is observed as what it is: nothing that can be judged.
         """
         fact, most = self._declaration.facts[act.fact], self.activity.asking.visit
-        if not fact.checks or act.who is None or not self._unclear:
+        if not fact.checks or act.who is None:
             return True
         for asked in range(most + 1):
-            if self._clarity() >= self._unclear:
+            certainty = self._clarity.certainty()
+            if certainty >= CERTAIN:
                 return True
-            certainty = floor(100 * CERTAIN * self._clarity()) / 100
             take_in(self.game, act, certainty)
             said = raw(self.game, fact, act.value)
             self._not_clear.append(
