@@ -21,6 +21,9 @@ from tangy_profiles.state import FRONT
 AT_ONE_TABLE = 8
 """People who sit at the one table of a common room; more need a hall."""
 
+SEAT = "seat"
+"""What a seat is called in a room whose file has no word for it."""
+
 
 @dataclass(frozen=True)
 class Point:

@@ -56,6 +56,16 @@ class TestHearing:
         asked = "{call}" in template or "{numbers}" in template
         assert heard.numbers == (numbers if asked else ())
 
+    @pytest.mark.parametrize(("behaviour", "strategy"), WAYS)
+    def test_people_answer_to_their_seats_as_the_screen_names_them(
+        self, behaviour: str, strategy: str
+    ) -> None:
+        template = ACTIVITY.behaviours[behaviour].speech[strategy]
+        numbers = (7,) if "{call}" in template else (71, 5)
+        heard = HEARING.hear(ACTIVITY.fill(template, "Seat 2", numbers))
+        assert heard is not None
+        assert heard.person == (PEOPLE[1].id if "{name}" in template else "")
+
     def test_calls_for_help_are_understood_and_whom_they_are_about(self) -> None:
         rules = [rule for rule in load_faults(ROBOT).rules if rule.aloud]
         assert rules

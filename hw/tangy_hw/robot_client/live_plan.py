@@ -16,7 +16,7 @@ from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_profiles.health import OK
 from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.robot import Robot
-from tangy_profiles.room import Room
+from tangy_profiles.room import SEAT, Room
 
 SET_ASIDE: tuple[ChangeKind, ...] = ("others first", "played on", "left")
 """Changes by which somebody's request is over, also while the sign stays up."""
@@ -24,8 +24,6 @@ SET_ASIDE: tuple[ChangeKind, ...] = ("others first", "played on", "left")
 
 Posture: TypeAlias = Mapping[str, Sequence[float]] | None
 """Joint angles in rad, by limb; None: as they are."""
-SEAT = "seat"
-"""What a seat is called in a room that has no word for it."""
 
 
 class LivePlan(PlannedGame):

@@ -15,7 +15,8 @@ from tangy_profiles.declared.model import Items
 from tangy_profiles.declared.speech import SLOT
 from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.person import Person
-from tangy_sim.device_simulator.speech_reception import Heard
+from tangy_profiles.room import SEAT
+from tangy_sim.device_simulator.speech_reception import Heard, called
 
 
 class _Sentence(NamedTuple):
@@ -31,9 +32,11 @@ class _Sentence(NamedTuple):
 class DeclaredReception:
     """The ears of a group that plays such an activity with a robot."""
 
-    def __init__(self, activity: DeclaredActivity, people: Sequence[Person]) -> None:
+    def __init__(
+        self, activity: DeclaredActivity, people: Sequence[Person], seat: str = SEAT
+    ) -> None:
         self._items: Items = activity.declaration.items
-        self._people = {_plain(person.name): person.id for person in reversed(people)}
+        self._people = called(people, seat)
         names = "|".join(re.escape(one) for one in sorted(self._people, key=len, reverse=True))
         cells = {column: _cells(self._items, column) for column in self._items.columns}
         sentences = [

@@ -16,6 +16,7 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
+from tangy_profiles.room import SEAT
 
 BEGINS, EACH = 1.0, 0.06  # s before the first word, and for each letter
 
@@ -50,8 +51,10 @@ class _Pattern:
 class SpeechReception:
     """The ears of a group that plays an activity with a robot."""
 
-    def __init__(self, activity: Activity, robot: Robot, people: Sequence[Person]) -> None:
-        self._people = {_plain(p.name): p.id for p in reversed(people)}
+    def __init__(
+        self, activity: Activity, robot: Robot, people: Sequence[Person], seat: str = SEAT
+    ) -> None:
+        self._people = called(people, seat)
         deck = activity.deck
         self._numbers = {_plain(deck.label(number)): number for number in deck.numbers}
         label = "|".join(re.escape(one) for one in sorted(self._numbers, key=len, reverse=True))
@@ -88,6 +91,12 @@ class SpeechReception:
                 one.fault,
             )
         return None
+
+
+def called(people: Sequence[Person], seat: str) -> dict[str, str]:
+    """Return the ids of people by what they answer to: a name, or a seat, as screens have it."""
+    seats = {f"{_plain(seat)} {number}": one.id for number, one in enumerate(people, 1)}
+    return seats | {_plain(one.name): one.id for one in reversed(people)}
 
 
 def speaking_seconds(text: str) -> float:

@@ -17,7 +17,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
-from tangy_profiles.room import Room
+from tangy_profiles.room import SEAT, Room
 from tangy_profiles.state import FRONT
 from tangy_sim.device_simulator.declared_people import DeclaredPeople
 from tangy_sim.device_simulator.declared_reception import DeclaredReception
@@ -92,10 +92,10 @@ class BenchWorld:
         self._hearing: SpeechReception | DeclaredReception
         if isinstance(activity, DeclaredActivity):
             self.people = DeclaredPeople(activity, people, self.faults, seed=seed)
-            self._hearing = DeclaredReception(activity, people)
+            self._hearing = DeclaredReception(activity, people, room.seat_word or SEAT)
         else:
             self.people = People(activity, people, self.faults, seed=seed, users=users)
-            self._hearing = SpeechReception(activity, robot, people)
+            self._hearing = SpeechReception(activity, robot, people, room.seat_word or SEAT)
         self._speech: deque[str] = deque()
         self._silent_from = 0.0  # time at which the current speech ends
         self.said: list[str] = []
