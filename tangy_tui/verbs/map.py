@@ -52,7 +52,7 @@ def draw_map(
     """Draw a map from a log of scans, or from a room's profile, and write it as ROS does.
 
     A log gives the poses that stand in it; `--match` is for logs in which only the wheels counted
-    them, and good for a room, not for a whole building: a map that does not close is refused. What
+    them: it matches the scans, and closes loops. A map that does not close is refused. What
     stands on the floor for the robot but not for its laser, as a table's top, is written beside
     the map, as FILE-keep-out.yaml.
     """
@@ -105,10 +105,9 @@ def _of_file(path: Path) -> tuple[OccupancyMap, dict[str, Any]]:
 def _of_log(
     path: Path, resolution: float, match: bool, png: Path | None, *, tell: bool
 ) -> tuple[OccupancyMap, dict[str, Any]]:
-    from tangy_hw.navigation.agreement import contradicted, verdict
     from tangy_hw.navigation.alignment import aligned
-    from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
-    from tangy_hw.navigation.revisits import revisits
+    from tangy_hw.navigation.mapping import Placed, sparse
+    from tangy_hw.navigation.matched_map import judged, with_loops_closed
     from tangy_hw.navigation.scan_log import read_log
 
     logged = read_log(path)
@@ -121,15 +120,17 @@ def _of_log(
 
     if match:
         scans = aligned(scans, done)
-    map_ = map_of_scans(scans, resolution)
-    share, found = contradicted(scans, map_), revisits(scans)
-    closes = verdict(share, found)
-    if match and closes in ("torn", "unknown"):
-        _written(map_, None, png)
-        _refuse(path, closes, share, found, "" if png is None else png.name)
+    drawn = judged(scans, resolution)
+    if match:
+        drawn = with_loops_closed(drawn, resolution)
+    found = drawn.found
+    if match and drawn.closes in ("torn", "unknown"):
+        _written(drawn.map, None, png)
+        _refuse(path, drawn.closes, drawn.share, found, "" if png is None else png.name)
     document = {"source": "log", "file": str(path), "scans": len(logged), "used": len(scans)}
-    loops = {"verdict": closes, "loops_closed": found.closed, "loops_torn": found.torn}
-    return map_, {**document, "matched": match, "contradicted": round(share, 4), **loops}
+    loops = {"verdict": drawn.closes, "loops_closed": found.closed, "loops_torn": found.torn}
+    share = {"contradicted": round(drawn.share, 4), "pose_graph": drawn.by_graph}
+    return drawn.map, {**document, "matched": match, **share, **loops}
 
 
 def _refuse(path: Path, closes: Verdict, share: float, found: Revisits, picture: str) -> NoReturn:

@@ -44,15 +44,55 @@ def two_rings(side: float, width: float) -> tuple[Segments, Way]:
     return walls, first + second
 
 
-def logged(walls: Segments, way: Way, seed: int, slip: Slip | None = None) -> list[Placed]:
+def cluttered(side: float, width: float, seed: int) -> tuple[Segments, Way]:
+    """Return a square corridor with things along its outer walls, and a way around it."""
+    walls, way = ring(side, width, 4.0)
+    rng = np.random.default_rng(seed + 1000)
+    deep, boxes = 0.25, []
+    for _ in range(int(side * 1.2)):
+        wall, at, long = rng.integers(4), rng.uniform(1.0, side - 1.8), rng.uniform(0.3, 0.9)
+        along = (
+            (at, 0.0, at + long, deep),
+            (at, side - deep, at + long, side),
+            (0.0, at, deep, at + long),
+            (side - deep, at, side, at + long),
+        )
+        boxes.append(along[int(wall)])
+    return np.vstack((walls, sides(*boxes))), way
+
+
+def logged(
+    walls: Segments,
+    way: Way,
+    seed: int,
+    slip: Slip | None = None,
+    *,
+    scale: float = 1.01,
+    noise: float = 0.03,
+) -> list[Placed]:
     """Drive along a way; return the scans at the poses that the wheels counted."""
+    return [one for one, _ in driven_log(walls, way, seed, slip, scale=scale, noise=noise)]
+
+
+def driven_log(
+    walls: Segments,
+    way: Way,
+    seed: int,
+    slip: Slip | None = None,
+    *,
+    scale: float = 1.01,
+    noise: float = 0.03,
+) -> list[tuple[Placed, Pose]]:
+    """Drive along a way; return scans at the poses that the wheels counted, and the true ones."""
     rng = np.random.default_rng(seed)
     pose = start = Pose(*way[0], 0.0)
-    wheels, commands, scans = Wheels(rng, 1.01, 0.03), tour(way), []
+    wheels, commands, scans = Wheels(rng, scale, noise), tour(way), []
+    true: dict[int, Pose] = {}
     for number, twist in enumerate(commands):
         pose, at = driven(pose, twist, 0.1), number / len(commands)
         slips = slip is not None and slip.begins <= at < slip.begins + slip.lasts
         counted = wheels.turn(Twist(0.0, twist.turn) if slips else twist, 0.1)
         if number % 6 == 0:
             scans.append(Placed(look(walls, pose, rng), compose(start, counted)))
-    return sparse(scans)
+            true[id(scans[-1])] = pose
+    return [(one, true[id(one)]) for one in sparse(scans)]

@@ -2,7 +2,7 @@
 
 Each scan is matched with the ones that were taken near it before, the oldest first, so that a robot
 that comes back to where it was finds itself there again. That takes away the small errors that add
-up; it does not close a large loop around which the wheels went far astray.
+up; a large loop, around which the wheels went far astray, is closed by `pose_graph`.
 """
 
 from __future__ import annotations

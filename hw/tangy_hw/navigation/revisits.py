@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,13 +39,25 @@ MOST, NEAREST, CANDIDATES = 400, 12, 40  # scans looked at; older ones for each,
 SURE = 2  # torn places after the last closed one from which on that counts
 
 
+class Loop(NamedTuple):
+    """A place that a robot came back to: two scans by number, and the step between them.
+
+    `step` is by their match, `off` how far the later one's pose is from there, in metres.
+    """
+
+    earlier: int
+    later: int
+    step: Pose
+    off: float
+
+
 @dataclass(frozen=True)
 class Revisits:
     """The places that a robot came back to: where its poses say so (`closed`), and not (`torn`).
 
     `off` is how far apart, in metres, the poses of a torn place are, in the middle of all of them;
     `last` how many were torn after the last one that closed; `crossed` how often the poses say that
-    it came back at all.
+    it came back at all. `loops` are all of these places, torn or not.
     """
 
     closed: int = 0
@@ -52,6 +65,7 @@ class Revisits:
     off: float = 0.0
     last: int = 0
     crossed: int = 0
+    loops: tuple[Loop, ...] = ()
 
     @property
     def tears(self) -> bool:
@@ -75,8 +89,11 @@ def revisits(scans: Sequence[Placed]) -> Revisits:
     chosen = _every(way[: len(scans)])
     references = {i: Reference(scans[i].scan) for i in chosen}
     closed, last, crossed, offs = 0, 0, 0, list[float]()
+    loops: list[Loop] = []
     for later in chosen[:: 1 + len(chosen) // MOST]:
-        off = _off(scans, places, way, references, later, chosen)
+        loop = _loop(scans, places, way, references, later, chosen)
+        off = None if loop is None else loop.off
+        loops += [] if loop is None else [loop]
         older = chosen[: int(np.searchsorted(way[chosen], way[later] - LOOP, side="right"))]
         crossed += bool((np.hypot(*(places[older] - places[later]).T) <= EVERY).any())
         if off is not None and off <= AGREES:
@@ -84,7 +101,8 @@ def revisits(scans: Sequence[Placed]) -> Revisits:
         elif off is not None and off >= DISAGREES:
             offs.append(off)
             last += 1
-    return Revisits(closed, len(offs), float(np.median(offs)) if offs else 0.0, last, crossed)
+    middle = float(np.median(offs)) if offs else 0.0
+    return Revisits(closed, len(offs), middle, last, crossed, tuple(loops))
 
 
 def _every(way: Floats) -> list[int]:
@@ -96,16 +114,16 @@ def _every(way: Floats) -> list[int]:
     return chosen
 
 
-def _off(
+def _loop(
     scans: Sequence[Placed],
     places: Floats,
     way: Floats,
     references: dict[int, Reference],
     later: int,
     chosen: Sequence[int],
-) -> float | None:
-    """Return how far a scan's pose is from where older ones put it; None if none does."""
-    best: tuple[float, float] | None = None
+) -> Loop | None:
+    """Return the loop that a scan closes with an older one; None if there is none."""
+    best: tuple[float, Loop] | None = None
     one = scans[later]
     driven = way[later] - way[chosen]
     apart = np.hypot(*(places[chosen] - places[later]).T)
@@ -124,8 +142,9 @@ def _off(
                 continue  # that is another's place
             found = compose(scans[earlier].pose, match.pose)
             off = hypot(found.x - one.pose.x, found.y - one.pose.y)
+            loop = Loop(earlier, later, match.pose, off)
             if off <= AGREES:
-                return off
+                return loop
             if best is None or match.fits > best[0]:
-                best = match.fits, off
+                best = match.fits, loop
     return None if best is None else best[1]

@@ -1,0 +1,106 @@
+"""A graph of poses closes loops that drift tore, and bends no map for wheels that slipped."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import hypot, pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tangy_hw.device_protocols import Pose, Scan
+from tangy_hw.navigation.alignment import aligned
+from tangy_hw.navigation.mapping import Placed
+from tangy_hw.navigation.matched_map import JudgedMap, judged, with_loops_closed
+from tangy_hw.navigation.pose_graph import close_loops
+from tangy_hw.navigation.poses import between, compose
+from tangy_hw.navigation.revisits import Loop
+from tests.hw.corridors import Slip, cluttered, driven_log, logged, ring
+
+NOTHING = Scan(0.0, 0.01, np.zeros(0), 10.0)
+
+
+def circle(number: int, radius: float) -> list[Pose]:
+    """Return poses once around a circle, the last one where the first is."""
+    turns = np.linspace(0.0, 2 * pi, number)
+    return [Pose(radius * np.sin(t), radius * (1 - np.cos(t)), float(t)) for t in turns]
+
+
+def drifting(poses: list[Pose], turn: float, scale: float) -> list[Placed]:
+    """Return scans at the poses that wheels count which err by so much a step."""
+    counted = [poses[0]]
+    for start, end in pairwise(poses):
+        step = between(start, end)
+        counted.append(
+            compose(counted[-1], Pose(step.x * scale, step.y * scale, step.heading + turn))
+        )
+    return [Placed(NOTHING, pose) for pose in counted]
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(-0.004, 0.004), st.floats(0.97, 1.03), st.integers(40, 120))
+def test_a_loop_that_drifts_is_closed_and_its_shape_comes_back(
+    turn: float, scale: float, number: int
+) -> None:
+    true = circle(number, 4.0)
+    scans = drifting(true, turn, scale)
+    found = close_loops(scans, [Loop(0, number - 1, between(true[0], true[-1]), 0.0)])
+    assert found[0].pose == scans[0].pose
+    apart = between(found[0].pose, found[-1].pose)
+    assert hypot(apart.x, apart.y) < 0.1
+    off = [hypot(f.pose.x - t.x, f.pose.y - t.y) for f, t in zip(found, true, strict=True)]
+    before = [hypot(s.pose.x - t.x, s.pose.y - t.y) for s, t in zip(scans, true, strict=True)]
+    assert max(off) <= max(before) + 0.1
+
+
+def test_a_loop_with_what_only_looks_alike_is_left_out() -> None:
+    true = circle(80, 4.0)
+    scans = drifting(true, 0.001, 1.0)
+    right = [Loop(n, 79 - n, between(true[n], true[79 - n]), 0.0) for n in range(4)]
+    alike = Loop(10, 45, Pose(0.0, 0.0, 0.0), 6.0)
+    found = close_loops(scans, [*right, alike])
+    off = [hypot(f.pose.x - t.x, f.pose.y - t.y) for f, t in zip(found, true, strict=True)]
+    assert max(off) < 0.5
+
+
+def test_without_loops_or_steps_nothing_moves() -> None:
+    scans = drifting(circle(5, 1.0), 0.1, 1.0)
+    assert close_loops(scans, []) == scans
+    assert close_loops(scans[:1], [Loop(0, 0, Pose(0, 0, 0), 0.0)]) == scans[:1]
+    assert close_loops([], []) == []
+
+
+def matched(scans: list[Placed]) -> tuple[JudgedMap, JudgedMap]:
+    drawn = judged(aligned(scans), 0.1)
+    return drawn, with_loops_closed(drawn, 0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [61, 62, 63, 64])
+def test_a_map_is_taken_only_where_its_poses_are_right(seed: int) -> None:
+    walls, way = cluttered(32.0, 2.4, seed)
+    log = driven_log(walls, way, seed, scale=1.04, noise=0.08)
+    before, after = matched([one for one, _ in log])
+    assert after.by_graph == (after.closes != before.closes)
+    if after.closes == "closed":
+        assert best_fit(after.scans, [pose for _, pose in log]) < 0.5
+
+
+@pytest.mark.parametrize("seed", [71, 72])
+def test_wheels_that_slipped_are_refused_as_before(seed: int) -> None:
+    walls, way = ring(14.0, 2.0, 4.0)
+    before, after = matched(logged(walls, way, seed, Slip(0.4, 0.06)))
+    assert before.closes == after.closes == "torn" and not after.by_graph
+
+
+def best_fit(scans: Sequence[Placed], true: list[Pose]) -> float:
+    """Return how far poses are from the true ones, in m (root mean square, best fit)."""
+    found = np.array([one.pose[:2] for one in scans])
+    wanted = np.array([pose[:2] for pose in true])
+    found, wanted = found - found.mean(axis=0), wanted - wanted.mean(axis=0)
+    left, _, right = np.linalg.svd(found.T @ wanted)
+    turned = found @ left @ np.diag([1, np.sign(np.linalg.det(left @ right))]) @ right
+    return float(np.sqrt(((turned - wanted) ** 2).sum(axis=1).mean()))
