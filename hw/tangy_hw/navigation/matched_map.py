@@ -48,7 +48,12 @@ def judged(scans: Sequence[Placed], resolution: float) -> JudgedMap:
 
 
 def with_loops_closed(drawn: JudgedMap, resolution: float) -> JudgedMap:
-    """Return the map with its loops closed, or as it was where that does not make it better."""
+    """Return the map with its loops closed, or as it was where that does not make it better.
+
+    Args:
+        drawn: the map, judged.
+        resolution: of the map, in metres to a cell.
+    """
     best = drawn
     for _ in range(TRIES):
         if best.closes not in ("torn", "unknown") or not best.found.loops:
