@@ -61,17 +61,9 @@ def cluttered(side: float, width: float, seed: int) -> tuple[Segments, Way]:
     return np.vstack((walls, sides(*boxes))), way
 
 
-def logged(
-    walls: Segments,
-    way: Way,
-    seed: int,
-    slip: Slip | None = None,
-    *,
-    scale: float = 1.01,
-    noise: float = 0.03,
-) -> list[Placed]:
+def logged(walls: Segments, way: Way, seed: int, slip: Slip | None = None) -> list[Placed]:
     """Drive along a way; return the scans at the poses that the wheels counted."""
-    return [one for one, _ in driven_log(walls, way, seed, slip, scale=scale, noise=noise)]
+    return [one for one, _ in driven_log(walls, way, seed, slip)]
 
 
 def driven_log(

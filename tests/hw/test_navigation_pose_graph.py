@@ -78,6 +78,19 @@ def matched(scans: list[Placed]) -> tuple[JudgedMap, JudgedMap]:
     return drawn, with_loops_closed(drawn, 0.1)
 
 
+@pytest.mark.parametrize(("seed", "scale", "noise"), [(51, 1.03, 0.06), (52, 1.05, 0.1)])
+def test_a_map_that_drift_left_open_or_torn_is_closed(
+    seed: int, scale: float, noise: float
+) -> None:
+    walls, way = cluttered(32.0, 2.4, seed)
+    log = driven_log(walls, way, seed, scale=scale, noise=noise)
+    before, after = matched([one for one, _ in log])
+    assert before.closes != "closed" and not before.by_graph
+    assert after.closes == "closed" and after.by_graph
+    true = [pose for _, pose in log]
+    assert best_fit(after.scans, true) < best_fit(before.scans, true)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [61, 62, 63, 64])
 def test_a_map_is_taken_only_where_its_poses_are_right(seed: int) -> None:
