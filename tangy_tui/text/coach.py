@@ -64,7 +64,10 @@ def _by_rule(activity: Activity, rule: StageRule, situation: Situation, who: str
         case "after":
             return "It is time to end the game."
         case _:
-            return f"{activity.in_words(situation).capitalize()}."
+            words = activity.in_words(situation)
+            if isinstance(activity, DeclaredActivity):  # they are names from its file
+                return f"the stage is “{words}”. What should Tangy do?"
+            return f"{words.capitalize()}."
 
 
 def _facts(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> list[str]:
