@@ -314,7 +314,7 @@ def test_the_scripted_teacher_needs_to_know_what_is_expected(store: Store) -> No
 def test_a_phrase_typed_exactly_is_understood_and_done_in_few_calls(store: Store) -> None:
     """A fifth of the 1,822 calls that it took while the unneeded alternatives were ranked too."""
     teaching = begun(store)
-    teach(teaching, "greet everyone", "call a number")  # the lines of the cards are found here, once
+    teach(teaching, "greet everyone", "call a number")  # finds the lines of the cards, once
     calls = 0
 
     def count(frame: FrameType, event: str, _: object) -> None:

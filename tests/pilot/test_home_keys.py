@@ -84,6 +84,8 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
             await until_shown(pilot, lambda: isinstance(pilot.app.screen, SetUpScreen))
             await pilot.press(answer)
             await until_shown(pilot, lambda: not isinstance(pilot.app.screen, SetUpScreen))
+            if answer == "escape":  # home opens nothing while something is being closed
+                await until_shown(pilot, lambda: all(w.is_finished for w in pilot.app.workers))
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)
         assert opened == [True]
