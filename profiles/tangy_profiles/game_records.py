@@ -98,6 +98,8 @@ ChangeKind = Literal[
     "visit put off",
     "visit over",
     "calls first",
+    "all called",
+    "nobody won",
     "several winners",
     "one winner",
     "visits on",
@@ -114,7 +116,8 @@ class GameChange(EventRecord):
     A call (`number`) was taken back; staff chose the `patterns` that follow; a winner (`person`)
     waits until others were seen to, the game is played on for the next pattern, or is won;
     a card was found to win, `person` left the game or came to it, or gets a visit unasked;
-    so many calls (`number`) come before those who ask;
+    so many calls (`number`) come before those who ask; all numbers were called, so that each
+    person gets a visit; after these visits nobody has won;
     staff let everybody win who has it at the same call, or one; let people be visited, or not; or
     chose another pace (`seconds` from one call to the next).
     """

@@ -72,8 +72,10 @@ class GameRules:
     """Options that an activity offers staff for a game; "" and 0 if it has no such rule.
 
     `claim` is the word before the number of a card that is said to win; `claim_right`,
-    `claim_wrong`, `taken_back` and `play_on` are said to the group. Somebody who was not visited
-    for `unvisited` calls gets a visit, where staff want that. See `CallsFirst` for its rule.
+    `claim_wrong`, `taken_back` and `play_on` are said to the group; `all_called` when no number is
+    left, before each person gets a visit, `nobody_won` after these visits. Somebody who was not
+    visited for `unvisited` calls gets a visit, where staff want that. See `CallsFirst` for its
+    rule.
     """
 
     patterns: tuple[Pattern, ...] = ()
@@ -82,6 +84,8 @@ class GameRules:
     claim_wrong: str = ""
     taken_back: str = ""
     play_on: str = ""
+    all_called: str = ""
+    nobody_won: str = ""
     unvisited: int = 0
     strengths: tuple[Strength, ...] = ()
     calls_first: CallsFirst | None = None
@@ -181,6 +185,8 @@ def read_game_rules(top: Table, deck: Deck, strategies: Sequence[str]) -> GameRu
         claim_wrong=_said(rules, "claim_wrong", ("card", "pattern")),
         taken_back=_said(rules, "taken_back", ("call",)),
         play_on=_said(rules, "play_on", ("pattern",)),
+        all_called=_said(rules, "all_called", ("pattern",)),
+        nobody_won=_said(rules, "nobody_won", ("pattern",)),
         unvisited=rules.whole("unvisited", 0, 999, 0),
         calls_first=_read_calls_first(rules) if "calls_first" in rules else None,
     )

@@ -149,14 +149,23 @@ class PastGame:
             self._change(change, self.beginning.game, number)
 
     def visited(self, activity: Activity) -> dict[str, int]:
-        """Return after how many calls each person was visited last."""
+        """Return after how many calls each person was visited last; see `PlannedGame`."""
         draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
         visited, calls = dict[str, int](), 0
-        for step in self.steps:
+        anew = {
+            one.steps
+            for one in self.changes
+            if one.game == self.beginning.game and one.what == "all called"
+        }
+        for number, step in enumerate(self.steps):
+            if number in anew:
+                visited.clear()
             if step.behaviour in draws:
                 calls += len(step.numbers)
             elif step.completed and step.target in self.beginning.people:
                 visited[step.target] = calls
+        if len(self.steps) in anew:
+            visited.clear()
         return visited
 
     def since_call(self, activity: Activity) -> float:

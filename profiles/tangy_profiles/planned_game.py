@@ -48,6 +48,8 @@ class PlannedGame:
     """Whose card wins, whatever is seen of it."""
     away: frozenset[str] = frozenset()
     """Who has left, or has not come yet."""
+    all_called = False
+    """Whether no number is left: each person gets a visit before the game is over."""
     visiting = ""
     """Who gets a visit without having asked, "" if nobody does."""
     _visited: dict[str, int]
@@ -68,7 +70,7 @@ class PlannedGame:
     def _begin_plan(self) -> None:
         """Begin a game by the plan."""
         self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
-        self.winner, self.visiting = "", ""
+        self.winner, self.visiting, self.all_called = "", "", False
         self.vouched, self.away = frozenset(), frozenset(self.game_plan.absent)
         self._visited, self._row_began = {}, 0.0
         self._play_pattern()
@@ -136,7 +138,9 @@ class PlannedGame:
             return Due("played on" if self.patterns.left else "won", self.winner)
         if calls := self._calls_due():
             return Due("calls first", number=calls)
-        return self._visit_due() if self.game_plan.visits else None
+        if not self.all_called and len(self.called_now) >= len(self.own_deck.numbers):
+            return Due("all called")
+        return self._visit_due() if self.game_plan.visits or self.all_called else None
 
     def _calls_due(self) -> int:
         """Return how many calls come before those who ask; 0: none does."""
@@ -150,15 +154,23 @@ class PlannedGame:
         return rule.due(here, tracker.visits, self.seconds - self._row_began, self.pace)
 
     def _visit_due(self) -> Due | None:
-        """Return whose visit is due or is put off, for it costs nobody a request."""
+        """Return whose visit is due or is put off, for it costs nobody a request.
+
+        When all numbers were called, each person gets one, and then the game is over.
+        """
         queue, place, calls = self.tracker.queue, self.tracker.place, len(self.called_now)
         if self.visiting:
             if self.visiting in queue and place != self.visiting and len(queue) > 1:
                 return Due("visit put off", self.visiting)
             return None if self.visiting in queue else Due("visit over", self.visiting)
-        if queue or place != FRONT or not self.tracker.begun() or not self.activity.rules.unvisited:
+        if queue or place != FRONT or not self.tracker.begun():
             return None
         here = [person for person in self.people if person not in self.away]
+        if self.all_called:
+            unseen = next((person for person in here if person not in self._visited), "")
+            return Due("visit", unseen) if unseen else Due("nobody won")
+        if not self.activity.rules.unvisited:
+            return None
         longest = min(here, key=lambda person: self._visited.get(person, 0), default="")
         waited = calls - self._visited.get(longest, 0)
         if not longest or waited < self.activity.rules.unvisited:
@@ -205,7 +217,12 @@ class PlannedGame:
                 self._asks_no_more(person)
             case "visit over":
                 self.visiting = ""
+            case "all called":
+                self.all_called, self._visited = True, {}
+            case "nobody won":
+                pass  # the game is over
             case "taken back":
+                self.all_called = False
                 self._take_back(change.number)
             case "several winners" | "one winner":
                 self.game_plan = replace(self.game_plan, several=change.what == "several winners")

@@ -15,6 +15,8 @@ from tangy_profiles.store import Store
 from tangy_tui.interaction.game_events import GameChanged
 from tangy_tui.world import World
 
+NOBODY_WON = "All numbers have been called, and nobody has won."
+
 
 class GameChanges:
     """The changes of one world's games; other worlds than those with cards have none."""
@@ -77,5 +79,9 @@ class GameChanges:
                 return rules.play_on.format(pattern=present.label if present else "")
             case "taken back":
                 return rules.taken_back.format(call=deck.label(change.number))
+            case "all called" | "nobody won" as what:
+                present = world.patterns.present
+                sentence = rules.all_called if what == "all called" else rules.nobody_won
+                return sentence.format(pattern=present.label if present else "")
             case _:
                 return ""

@@ -96,7 +96,7 @@ class Unclear:
 
 OF_ITS_OWN: tuple[ChangeKind, ...] = (
     *("others first", "played on", "won", "claimed"),
-    *("visit", "visit put off", "visit over", "calls first"),
+    *("visit", "visit put off", "visit over", "calls first", "all called", "nobody won"),
 )
 """Changes that the activity's rules bring about. Of the others, staff's actions tell."""
 

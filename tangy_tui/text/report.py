@@ -118,7 +118,7 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
     lines = [
         f"At {time_of_day(moment.at)} {changed_words(change, None, name)}"
         for moment, change in changes
-        if change.what in ("played on", "others first")
+        if change.what in ("played on", "others first", "all called", "nobody won")
     ]
     visits = Counter(name(change.person) for _, change in changes if change.what == "visit")
     if visits:

@@ -385,3 +385,86 @@ def test_where_nothing_is_chosen_nothing_changes_beside_the_behaviours(planned: 
     planned.play()
     store = planned.workspace.store
     assert not list(store.events(GameChange)) and list(store.events(GameStep))
+
+
+def all_called(planned: Planned) -> SimulatedWorld:
+    """Play until all numbers were called: nobody marks anything, and nobody asks."""
+    planned.world.users = replace(planned.world.users, miss=1.0, ask=1e-9)
+    planned.begin(GamePlan())
+    planned.play(calls=75)
+    return planned.world
+
+
+def visits(planned: Planned) -> list[str]:
+    """Return who got a visit after the last number."""
+    told = [event for event in planned.events if isinstance(event, GameChanged)]
+    last = next(n for n, event in enumerate(told) if event.what == "all called")
+    return [event.person for event in told[last:] if event.what == "visit"]
+
+
+def test_when_all_numbers_are_called_each_card_is_looked_at(planned: Planned) -> None:
+    world = all_called(planned)
+    planned.play()
+    assert visits(planned) == [world.people[0]]  # who marks what was missed, and wins
+    assert planned.celebrated() == [world.people[0]] and planned.supervision.faults == []
+    ended = planned.events[-1]
+    assert isinstance(ended, GameEnded) and ended.stopped is None
+    said = [event.said for event in planned.events if isinstance(event, GameChanged)]
+    assert said[0] == world.activity.rules.all_called
+
+
+def test_a_game_that_nobody_can_win_comes_to_its_end(planned: Planned) -> None:
+    world = all_called(planned)
+    world.read_card = lambda: None  # type: ignore[method-assign]  # no card can be read
+    planned.play()
+    assert visits(planned) == list(world.people)
+    assert planned.changes()[-1] == "nobody won" and planned.celebrated() == []
+    ended = planned.events[-1]
+    assert isinstance(ended, GameEnded) and "nobody has won" in str(ended.stopped)
+    assert "no-progress" not in [fault.code for fault in planned.supervision.faults]
+    store = planned.workspace.store
+    session = read_session(
+        store, read_games(store), {"bingo": planned.workspace.activity}, planned.workspace.names
+    )
+    lines = changes_lines(session.replays, session.name)
+    assert any("All numbers have been called, and nobody has won." in line for line in lines)
+
+
+def test_a_call_that_is_taken_back_comes_before_the_last_visits(planned: Planned) -> None:
+    world = all_called(planned)
+    world.read_card = lambda: None  # type: ignore[method-assign]
+    while not planned.changes():
+        planned.events += go_on_by_script(planned.control, expert=True)
+    planned.do(TakeBackCall())
+    assert len(world.called_now) == 74
+    planned.play()
+    assert planned.changes().count("all called") == 2 and len(world.called_now) == 75
+
+
+def test_the_last_visits_go_on_after_an_interruption(taught: Path) -> None:
+    planned = Planned(taught)
+    world = all_called(planned)
+    while "visit" not in planned.changes():
+        planned.events += go_on_by_script(planned.control, expert=True)
+    stood = (world.tracker.state(), world.visiting)
+    planned.workspace.close()
+    again = Planned(taught)
+    again.world.users = replace(again.world.users, miss=1.0, ask=1e-9)
+    past = interrupted_game(again.workspace.store, "bingo")
+    assert past is not None
+    again.control = scripted_controller(again.supervision, past)
+    again.control.begin()
+    assert again.world.all_called and (again.world.tracker.state(), again.world.visiting) == stood
+    again.play()
+    assert "all called" not in again.changes() and again.celebrated() == [world.people[0]]
+    again.workspace.close()
+
+
+def test_who_was_looked_at_after_the_last_number_is_not_looked_at_again(planned: Planned) -> None:
+    world = all_called(planned)
+    world.read_card = lambda: None  # type: ignore[method-assign]
+    while planned.changes().count("visit over") < 2:
+        planned.events += go_on_by_script(planned.control, expert=True)
+    past = interrupted_game(planned.workspace.store, "bingo")
+    assert past is not None
+    assert list(past.visited(planned.workspace.activity)) == list(world.people[:2])
