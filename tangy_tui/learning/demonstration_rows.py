@@ -10,7 +10,7 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
 from tangy_profiles.teaching_records import DemonstrationStep
 from tangy_tui.learning.coverage import coverage
-from tangy_tui.learning.library import Library, LibraryEntry
+from tangy_tui.learning.library_entries import Library, LibraryEntry
 from tangy_tui.learning.quality import quality_notes
 
 

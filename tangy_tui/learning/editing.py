@@ -24,12 +24,8 @@ from tangy_profiles.teaching_records import (
     Settlement,
 )
 from tangy_tui.learning.conflicts import Conflict, Resolution
-from tangy_tui.learning.library import (
-    Edit,
-    Library,
-    LibraryEntry,
-    read_library,
-)
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.library_entries import Edit, Library, LibraryEntry
 
 MakeId = Callable[[], str]
 

@@ -10,7 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_tui.learning.editing import new_id
-from tangy_tui.learning.library import Library, LibraryEntry
+from tangy_tui.learning.library_entries import Library, LibraryEntry
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.world import World
 

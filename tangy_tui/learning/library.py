@@ -7,13 +7,13 @@ again like typing, the latest first, by events of their own.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias, assert_never
+from weakref import WeakKeyDictionary
 
 from tangy_profiles.demonstration import Demonstration, Origin, Step
-from tangy_profiles.errors import TangyError
-from tangy_profiles.reading import plain
+from tangy_profiles.people_records import PersonForgotten, Renamed
 from tangy_profiles.teaching_records import (
     Deletion,
     DemonstrationBegun,
@@ -30,7 +30,7 @@ from tangy_profiles.teaching_records import (
     Restoration,
     Settlement,
 )
-from tangy_tui.learning.conflicts import Conflict, Resolution, find_conflicts, joined
+from tangy_tui.learning.library_entries import Edit, Library, LibraryEntry, takes_place
 
 if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
     from tangy_profiles.activity import Activity
@@ -48,137 +48,42 @@ _STEPS = (
 )
 _EDITS = (DemonstrationsEdited, DemonstrationsEditUndone, DemonstrationsEditRedone)
 
-SHORTEST_PREFIX = 3
-"""Characters of an id that are enough to name a demonstration, if only one begins so."""
+
+_ERASING = (PersonForgotten, Renamed)
+"""Kinds of events by which earlier ones read otherwise."""
+
+_Newest: TypeAlias = tuple[str, ...]
+
+_read: WeakKeyDictionary[Store, dict[str, tuple[_Newest, Library]]] = WeakKeyDictionary()
+"""What was read of each log for each activity, and the newest events of all kinds then (uuids)."""
 
 
 class OutOfPlace(Exception):
     """An event makes no sense where it stands in the log."""
 
 
-class NoDemonstration(TangyError):
-    """There is no demonstration of that name."""
-
-
-@dataclass(frozen=True, slots=True)
-class LibraryEntry:
-    """One demonstration of the library and what became of it.
-
-    `at` and `last` are the UTC times (ISO 8601) of its first and last event, `undone` the steps
-    that redo brings back (the next one last), `taken_back` how often a step was undone, and
-    `hidden` says why it is not learnt from (empty: it is).
-    """
-
-    demonstration: Demonstration
-    at: str
-    last: str
-    undone: tuple[Step, ...] = ()
-    taken_back: int = 0
-    hidden: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Edit:
-    """A change of the library: what was done to which demonstrations, by the event `seq`.
-
-    `found` are the demonstrations as they were then, those that other edits made left out: a
-    demonstration may grow or shrink afterwards, and what was made of it does not.
-    """
-
-    seq: int
-    at: str
-    done: EditDone
-    found: Mapping[str, Demonstration] = field(default_factory=dict)
-
-    @property
-    def ids(self) -> tuple[str, ...]:
-        """The demonstrations that it was done to."""
-        return () if isinstance(self.done, Settlement) else self.done.ids
-
-
-@dataclass
-class Library:
-    """The demonstrations of one activity in the order in which they were begun."""
-
-    activity: str
-    entries: dict[str, LibraryEntry] = field(default_factory=dict)
-    done: list[Edit] = field(default_factory=list)
-    """The edits in force; undo takes back the last."""
-    undone: list[Edit] = field(default_factory=list)
-    """The edits that redo brings back, the next one last."""
-
-    @property
-    def demonstrations(self) -> list[Demonstration]:
-        """Those that are learnt from when they are finished: all that are not hidden."""
-        return [e.demonstration for e in self.entries.values() if not e.hidden]
-
-    @property
-    def finished(self) -> list[Demonstration]:
-        """Those that are learnt from."""
-        return [d for d in self.demonstrations if d.finished]
-
-    @property
-    def resolutions(self) -> tuple[Resolution, ...]:
-        """Teachers' resolutions of conflicts, joined for each situation."""
-        said = (e.done.resolution for e in self.done if isinstance(e.done, Settlement))
-        return tuple(joined(said).values())
-
-    @property
-    def conflicts(self) -> list[Conflict]:
-        """Conflicts of the finished demonstrations that nobody has resolved."""
-        return find_conflicts(self.finished, self.resolutions)
-
-    @property
-    def all_conflicts(self) -> list[Conflict]:
-        """The same, unfinished demonstrations included."""
-        return find_conflicts(self.demonstrations, self.resolutions)
-
-    def find(self, wanted: str) -> LibraryEntry:
-        """Return a demonstration by its number in the list (from 1), its id, or how that begins.
-
-        Raises:
-            NoDemonstration: there is none, or more than one.
-        """
-        entries = list(self.entries.values())
-        if wanted in self.entries:
-            return self.entries[wanted]
-        if wanted.isdecimal() and 1 <= int(wanted) <= len(entries):
-            return entries[int(wanted) - 1]
-        enough = len(wanted) >= SHORTEST_PREFIX
-        found = [e for id, e in self.entries.items() if enough and id.startswith(wanted)]
-        if len(found) == 1:
-            return found[0]
-        if not entries:
-            raise NoDemonstration("There are no demonstrations yet: begin with `tangy teach`.")
-        choice = f"choose from 1 to {len(entries)}" if len(entries) > 1 else "there is only 1"
-        if found:
-            raise NoDemonstration(
-                plain(f"More than one demonstration is called {wanted!r}: {choice}.")
-            )
-        raise NoDemonstration(plain(f"No demonstration is called {wanted!r}: {choice}."))
-
-    def repeats(self, entry: LibraryEntry) -> bool:
-        """Say whether a demonstration was shown again by one that is complete and in use."""
-        return any(
-            entry.demonstration.id in other.demonstration.of
-            for other in self.entries.values()
-            if _takes_place(other)
-        )
-
-    def number(self, id: str) -> int:
-        """Return the number in the list, from 1, of a demonstration (0: it is not there)."""
-        return list(self.entries).index(id) + 1 if id in self.entries else 0
-
-    def name(self, id: str) -> str:
-        """Return what a demonstration is called in front of people."""
-        return f"demonstration {self.number(id) or id}"
-
-
 def read_library(store: Store, activity: str) -> Library:
-    """Read the library of an activity from the log.
+    """Read the library of an activity from the log, or return it as it was read before.
 
-    An event that makes no sense where it stands, because one before it is damaged, is set aside.
+    A screen asks for it several times a key, and a log of 200 demonstrations takes a second to
+    read. An event that makes no sense where it stands, because one before it is damaged, is set
+    aside.
     """
+    kinds = (*_STEPS, *_EDITS, *_ERASING)
+    newest = tuple(event.uuid if (event := store.last(kind)) else "" for kind in kinds)
+    before, library = _read.get(store, {}).get(activity, (None, Library(activity)))
+    if before != newest:
+        library = _read_anew(store, activity)
+        _read.setdefault(store, {})[activity] = (newest, library)
+    return replace(
+        library,
+        entries=dict(library.entries),
+        done=list(library.done),
+        undone=list(library.undone),
+    )
+
+
+def _read_anew(store: Store, activity: str) -> Library:
     library = Library(activity)
     edits: list[tuple[Edit, Event[EventRecord]]] = []
     made: dict[str, int] = {}
@@ -380,20 +285,10 @@ def _make(
     library.entries[id] = LibraryEntry(made, edit.at, edit.at, hidden=hidden)
 
 
-STILL_USED = ("", "merged", "split", "shown again")
-"""States in which the steps of a demonstration are learnt from, there or in what took its place."""
-
-
 def _replace_repeated(library: Library) -> None:
     """Hide what was shown again from some step, from the moment the new one is complete."""
     for entry in list(library.entries.values()):
-        if _takes_place(entry):
+        if takes_place(entry):
             for id in entry.demonstration.of:
                 if id in library.entries and not library.entries[id].hidden:
                     _hide(library, [id], "shown again")
-
-
-def _takes_place(entry: LibraryEntry) -> bool:
-    """Say whether a demonstration replaces those that it shows again."""
-    made = entry.demonstration
-    return made.origin == "again" and made.finished and entry.hidden in STILL_USED

@@ -21,7 +21,8 @@ from tangy_profiles.teaching_records import (
 )
 from tangy_tui.learning.conflicts import Resolution, find_conflicts, joined, shown_steps
 from tangy_tui.learning.editing import Editor, new_id
-from tangy_tui.learning.library import Library, read_library
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.policies import Change, does, keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 

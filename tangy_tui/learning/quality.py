@@ -11,7 +11,7 @@ from statistics import median
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.learning.conflicts import Conflict, find_conflicts
-from tangy_tui.learning.library import Library, LibraryEntry
+from tangy_tui.learning.library_entries import Library, LibraryEntry
 
 MUCH_LONGER = 2.0
 """Times the usual length from which on a demonstration is called long."""

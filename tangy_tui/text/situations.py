@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from tangy_profiles.demonstration import Step
     from tangy_profiles.scene import CardView, Scene
     from tangy_tui.learning.conflicts import Conflict
-    from tangy_tui.learning.library import Edit, Library
+    from tangy_tui.learning.library_entries import Edit, Library
     from tangy_tui.learning.online_learning import Lesson
     from tangy_tui.learning.policy import Policy
 

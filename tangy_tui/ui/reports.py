@@ -22,7 +22,7 @@ from tangy_tui.learning.comparison import SituationComparison
 from tangy_tui.learning.coverage_proof import prove_coverage
 from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
-from tangy_tui.learning.library import Library
+from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.activities import proof_words, whom_words
 from tangy_tui.text.demonstrations import NONE_YET

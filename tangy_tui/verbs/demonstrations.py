@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.conflicts import Conflict
     from tangy_tui.learning.editing import Editor
-    from tangy_tui.learning.library import Edit
+    from tangy_tui.learning.library_entries import Edit
 
 app = typer.Typer(
     rich_markup_mode=None, help="List and edit demonstrations, and settle their conflicts."

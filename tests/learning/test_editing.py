@@ -27,7 +27,8 @@ from tangy_profiles.teaching_records import (
 )
 from tangy_tui.learning.conflicts import shown_steps
 from tangy_tui.learning.editing import Editor, NotPossible
-from tangy_tui.learning.library import Library, NoDemonstration, read_library
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.library_entries import Library, NoDemonstration
 from tests.support.append_body import append_body
 from tests.support.laws import tried
 

@@ -21,7 +21,7 @@ from tangy_profiles.teaching_records import (
     LearntRow,
     PolicyLearnt,
 )
-from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.learning.library import read_demonstrations, read_library
 from tangy_tui.learning.policies import (
     ASKS,
     GONE,
@@ -84,6 +84,31 @@ def test_demonstrations_that_interleave_are_kept_apart(
     append_body(store, DemonstrationStep, {"demonstration": one.id, **written(one.steps[3])})
     found = read_demonstrations(store, "bingo")
     assert found == [replace(one, steps=one.steps[:4], finished=False), other]
+
+
+def test_a_library_is_read_again_only_after_a_change(
+    store: Store, shown: list[Demonstration], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reads = list[tuple[object, ...]]()
+    events = Store.events
+
+    def counted(log: Store, *kinds: Any, after: int = 0) -> Any:
+        reads.append(kinds)
+        return events(log, *kinds, after=after)
+
+    monkeypatch.setattr(Store, "events", counted)
+    first = read_library(store, "bingo")
+    first.entries.clear()  # whoever asked may change it
+    assert read_demonstrations(store, "bingo") == shown and len(reads) == 1
+    step = DemonstrationStepUndone(demonstration=shown[0].id, step=1)
+    with pytest.raises(RuntimeError), store.transaction():
+        store.append(step)
+        assert len(read_demonstrations(store, "bingo")[0].steps) == 0
+        raise RuntimeError
+    assert read_demonstrations(store, "bingo") == shown  # what was not kept does not count
+    store.append(step)
+    assert len(read_demonstrations(store, "bingo")[0].steps) == 0
+    assert read_library(store, "lanterns").entries == {}
 
 
 def test_an_undone_step_is_gone_and_its_demonstration_no_longer_finished(

@@ -20,7 +20,8 @@ from tangy_profiles.teaching_records import (
 )
 from tangy_tui.learning.demonstration_rows import heard_words, list_rows
 from tangy_tui.learning.editing import Editor
-from tangy_tui.learning.library import Library, read_library
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.quality import quality_notes
 from tests.shown import answering, log_demonstration
 from tests.support.append_body import append_body

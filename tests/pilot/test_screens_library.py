@@ -15,7 +15,8 @@ from textual.widgets import Static
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import list_rows
-from tangy_tui.learning.library import Library, read_library
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.policies import last_policy, load_policy
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.words import WordsDialog

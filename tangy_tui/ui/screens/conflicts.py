@@ -16,7 +16,7 @@ from tangy_profiles.teaching_records import Settlement
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.editing import Editor
-from tangy_tui.learning.library import Edit
+from tangy_tui.learning.library_entries import Edit
 from tangy_tui.text import conflicts as text
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.situations import edit_words

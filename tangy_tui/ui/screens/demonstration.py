@@ -14,7 +14,8 @@ from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import FRONT
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import heard_words, state_of
-from tangy_tui.learning.library import Library, read_library
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.quality import quality_notes
 from tangy_tui.text.demonstrations import AGAIN_DETAIL, NO_STEPS, again_words
 from tangy_tui.text.numbers import counted

@@ -14,7 +14,7 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import ListRow, list_rows
 from tangy_tui.learning.editing import Editor
-from tangy_tui.learning.library import Edit
+from tangy_tui.learning.library_entries import Edit
 from tangy_tui.text import demonstrations as text
 from tangy_tui.text.conflicts import NONE_LEFT
 from tangy_tui.text.keys import with_keys

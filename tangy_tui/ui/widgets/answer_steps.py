@@ -8,7 +8,7 @@ from textual.message import Message
 
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Shown
-from tangy_tui.learning.library import Library
+from tangy_tui.learning.library_entries import Library
 from tangy_tui.text.conflicts import ANSWER_HELP
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.times import local_time
