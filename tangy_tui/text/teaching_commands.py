@@ -11,6 +11,7 @@ HELP = (
     "Type what Tangy should do, or one of: undo, redo, again N, where, seen, why, help, next, "
     "learn, play, quit. Enter alone lists what can be said now."
 )
+NOTHING_FITS = "No command fits. Empty the line and press Tab to see what you can say."
 MEANINGS = (
     ("undo", "take the last step back"),
     ("redo", "redo the step you took back"),

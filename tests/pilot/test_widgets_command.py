@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from textual.app import ComposeResult
 from textual.widgets import Label
 
+from tangy_tui.text.teaching_commands import NOTHING_FITS
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.widgets.command_bar import LONGEST, CommandBar, CommandInput
+from tangy_tui.ui.widgets.command_matches import Complete
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -18,24 +20,26 @@ PHRASES = ("call number", "call a number", "call the next number", "celebrate", 
 NOW = ("celebrate", "call number")
 
 
+def begins(typed: str) -> tuple[str, ...]:
+    return tuple(phrase for phrase in PHRASES if phrase.startswith(typed.lower()))
+
+
 class Bar(TangyScreen[None]):
     """A command bar and what it was given."""
 
     AUTO_FOCUS = "#command-input"
     BINDINGS = [("u", "undo", "Undo"), ("escape", "back", "Back")]  # noqa: RUF012 - as Textual has it
 
-    def __init__(self) -> None:
+    def __init__(self, complete: Complete = begins) -> None:
         super().__init__()
+        self.complete = complete
         self.given: list[str] = []
         self.undone = 0
         self.left = 0
 
     def compose(self) -> ComposeResult:
         yield Label("room")
-        yield CommandBar(
-            lambda typed: tuple(p for p in PHRASES if p.startswith(typed.lower())),
-            sayable=lambda: NOW,
-        )
+        yield CommandBar(self.complete, sayable=lambda: NOW)
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
         self.given.append(event.text)
@@ -110,10 +114,24 @@ async def test_matches_are_listed_and_the_first_is_completed(run: Run) -> None:
         assert bar_of(pilot).text == "greet everyone"
 
 
-async def test_tab_goes_on_when_there_is_nothing_to_complete(run: Run) -> None:
+async def test_tab_says_so_when_nothing_fits(run: Run) -> None:
     async with run(Bar()) as pilot:
         await pilot.press("x", "tab")
-        assert bar_of(pilot).text == "x"
+        await pilot.pause()
+        assert bar_of(pilot).text == "x" and NOTHING_FITS in pilot.text()
+        await pilot.press("backspace", "c")
+        await pilot.pause()
+        assert bar_of(pilot).text == "c" and NOTHING_FITS not in pilot.text()
+
+
+async def test_tab_takes_what_is_meant_by_other_words(run: Run) -> None:
+    meant = ("call number", "tell a joke")
+    async with run(Bar(lambda typed: meant if typed == "numbers" else ())) as pilot:
+        pilot.type(*"numbers", "tab")
+        for taken in (*meant, *meant):
+            await pilot.pause()
+            assert bar_of(pilot).text == taken
+            await pilot.press("tab")
 
 
 async def test_tab_lists_what_can_be_said_now_and_takes_one_after_the_other(run: Run) -> None:

@@ -13,6 +13,7 @@ from textual.screen import Screen
 from textual.timer import Timer
 from textual.widgets import Input, Static
 
+from tangy_tui.text.teaching_commands import NOTHING_FITS
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.command_matches import (
     CommandMatches,
@@ -57,7 +58,7 @@ class CommandInput(Input):
             self.text = text
 
     class Listed(Message):
-        """Tab was pressed on an empty line: these commands can be carried out now."""
+        """Tab was pressed: these commands fit the line, or can be carried out now."""
 
         def __init__(self, commands: tuple[str, ...]) -> None:
             super().__init__()
@@ -76,6 +77,7 @@ class CommandInput(Input):
         self.history: list[str] = []
         self._at = 0
         self._draft = ""
+        self._complete = complete
         self._sayable = sayable
         self._listed: tuple[str, ...] = ()
         self._taken = -1  # which of those listed stands in the line
@@ -129,16 +131,21 @@ class CommandInput(Input):
             self.post_message(self.Entered(text))
 
     def action_accept(self) -> None:
-        """Take the suggestion, or list what can be said now and take one after the other of it.
+        """Take the suggestion, or one after the other of what fits, or can be said now.
 
-        Where there is none of it, go to the next widget.
+        Over an empty line with nothing to list, go to the next widget.
         """
         if self.listed:
             self._taken = (self._taken + 1) % len(self._listed)
             self.put(self._listed[self._taken])
         elif self._suggestion:
             self.put(self._suggestion)
-        elif not self.value and (listed := self._sayable()):
+        elif self.value.strip():
+            if fitting := self._complete(self.value):
+                self._listed, self._taken = fitting, 0
+                self.put(fitting[0])
+            self.post_message(self.Listed(fitting))
+        elif listed := self._sayable():
             self._listed, self._taken = listed, -1
             self.post_message(self.Listed(listed))
         else:
@@ -326,9 +333,9 @@ class CommandBar(Vertical):
         self._show_above()
 
     def on_command_input_listed(self, event: CommandInput.Listed) -> None:
-        """Show what can be said now."""
+        """Show what can be said now, or that nothing fits."""
         event.stop()
-        self._matches.show("", event.commands)
+        self._matches.show("", event.commands, "" if event.commands else NOTHING_FITS)
 
     def _show_above(self) -> None:
         """Show what fits; over a text that was left there, the keys, which are keys again."""
