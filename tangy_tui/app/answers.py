@@ -1,4 +1,4 @@
-"""What is answered where Tangy asks: words become a behaviour that was verified, before it is done.
+"""Answers to Tangy's questions: words become a verified behaviour before it is carried out.
 
 The verification belongs to the question: another question begins anew.
 """

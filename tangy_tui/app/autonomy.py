@@ -13,22 +13,22 @@ class AutonomyDial:
     """The dial that staff turn. Where it asks first, `propose` keeps what it would do."""
 
     def __init__(self) -> None:
-        """Begin where Tangy does all of it by itself."""
+        """Begin at full autonomy."""
         self.level: Autonomy = "alone"
         self.proposal: Proposal | None = None
         """What Tangy would do next, and asks staff about."""
         self._confirmed: tuple[str, str | None] | None = None
 
     def turn(self, level: Autonomy) -> None:
-        """Turn it; what was asked about is asked no more."""
+        """Change the level of autonomy, and drop the open proposal."""
         self.level, self.proposal = level, None
 
     def reset(self) -> None:
-        """Forget what was asked, and what staff said yes to."""
+        """Drop the open proposal and what staff have approved."""
         self.proposal = self._confirmed = None
 
     def propose(self, decision: Decision, target: str | None) -> None:
-        """Keep what would be done next, for staff to be asked about."""
+        """Keep the next action as a proposal for staff."""
         self.proposal = Proposal(decision.behaviour, target, decision.share, decision.seen)
 
     def confirm(self, *, yes: bool) -> bool:
@@ -43,7 +43,7 @@ class AutonomyDial:
         self._confirmed = None
 
     def permits(self, decision: Decision, target: str | None) -> bool:
-        """Say, as a step is done, whether staff said yes to it: they may have to be asked anew.
+        """Return whether staff approved this step; if the situation changed, they are asked again.
 
         People ask for things while a question stands, and what would be done is another then.
         """

@@ -1,4 +1,4 @@
-"""Staff are told of cards that Tangy does not judge, and of cards that it takes for somebody's."""
+"""News for staff about cards: which ones Tangy does not judge, and whose it believes a card is."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class CardNote:
 
 
 class CardNews:
-    """Tells what is new of whose card is whose."""
+    """Collects news about who owns which card."""
 
     def take(self, events: Iterable[Event], cards: CardObservations) -> list[CardNote]:
-        """Return what is new after what happened; it is told once."""
+        """Return the news after some events; each is reported once."""
         notes: list[CardNote] = []
         if (
             any(isinstance(event, GameBegun | ResumedGame) for event in events)
@@ -54,7 +54,7 @@ def dealt_note(given: Mapping[str, int]) -> str:
 
 
 def learnt_note(learnt: CardLearnt) -> str:
-    """Write for the log that a card is taken for somebody's."""
+    """Return the log note that a card is assigned to a person."""
     return f"card {learnt.card} is taken for that of {learnt.person}"
 
 

@@ -29,7 +29,7 @@ def chosen_activity(folder: Path) -> str:
 
 
 def choose_activity(folder: Path, activity: str) -> str:
-    """Keep which activity is taught and played from now on.
+    """Store the activity to teach and play from now on.
 
     Args:
         folder: the data folder.

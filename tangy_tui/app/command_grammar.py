@@ -1,4 +1,4 @@
-"""What may be typed while teaching, in a game and in a drill: one grammar, on screens and by lines.
+"""The grammar of typed commands while teaching, in games and in drills, on screens and by lines.
 
 Words that are no command are left to whoever asks (`None`): while Tangy asks they are the answer,
 and while teaching a behaviour in words, which the phrasebook understands. A sentence whose aim is
@@ -83,7 +83,7 @@ LEAVING = ("quit", "exit", "leave", "leave the game", "go home")
 
 @dataclass(frozen=True, slots=True)
 class Leave:
-    """Leave; what was confirmed is kept."""
+    """Leave; confirmed steps are kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,7 +224,7 @@ def read_command(
     game: Collection[str] = (),
     rules: GameRules = NO_RULES,
 ) -> GameCommand | None:
-    """Return the command that words are; None: they are none of these.
+    """Parse words as a command; None if they are not one of these.
 
     Args:
         text: what was typed or heard.
@@ -277,7 +277,7 @@ def read_telling(line: str, find_person: Callable[[str], str]) -> Tell:
 
 
 def _read_told(said: str, find_person: Callable[[str], str]) -> Tell | None:
-    """Return what is told of a person, None where nothing is.
+    """Parse a report about a person; None if the words are not one.
 
     Raises:
         TangyError: a name stands before a colon that nobody has; one sentence.

@@ -35,7 +35,7 @@ TAKEN_OVER = "took over"
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """Do nothing more after what is done now."""
+    """Pause after the current behaviour."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +57,12 @@ class StopRobot:
 
 @dataclass(frozen=True, slots=True)
 class TakeOver:
-    """Let staff say what is done next, as soon as what is done now is over."""
+    """Hand control to staff as soon as the current behaviour is over."""
 
 
 @dataclass(frozen=True, slots=True)
 class GiveBack:
-    """Let Tangy go on by itself after all."""
+    """Hand control back to Tangy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class ChangePace:
 
 @dataclass(frozen=True, slots=True)
 class ClaimCard:
-    """Check whether a card wins by all that was called; `person`, by id, says whose it is."""
+    """Check a card against all called numbers; `person` is the id of its owner."""
 
     card: int
     person: str = ""
@@ -108,14 +108,14 @@ class ClaimCard:
 
 @dataclass(frozen=True, slots=True)
 class ChoosePatterns:
-    """Choose what is played for: in this game after the present pattern, else in the next."""
+    """Choose the patterns that follow the current one, or those of the next game."""
 
     names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class LetWin:
-    """Let several win, or one, and let people be visited unasked, or not; None: as it is."""
+    """Allow several winners, and visits to people who did not ask; None changes nothing."""
 
     several: bool | None = None
     visits: bool | None = None

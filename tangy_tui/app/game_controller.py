@@ -129,7 +129,7 @@ class GameController:
         return self.autonomy.proposal
 
     def begin(self) -> list[Event]:
-        """Begin the next game, or take up the past one, which is paused until staff let it go on.
+        """Begin the next game, or resume the interrupted one, paused until staff continue it.
 
         The robot may move: staff have said that all is well. While it is stopped, none begins.
 
@@ -173,7 +173,7 @@ class GameController:
                 self.autonomy.done()
 
     def look(self) -> list[Event] | None:
-        """Look at the devices, and return what is new; None: something is being done now."""
+        """Check the devices and return new events; None while a behaviour is being carried out."""
         if not self._turn.acquire(blocking=False):
             return None
         try:
@@ -280,7 +280,7 @@ class GameController:
             self._tell_all()
 
     def wait_for_turn(self, seconds: float) -> bool:
-        """Wait until what is being done is over, but no longer than so many s; say if it is."""
+        """Wait up to so many s for the current behaviour to end; return whether it has."""
         if self._turn.acquire(timeout=seconds):
             self._turn.release()
             return True
@@ -354,7 +354,7 @@ class GameController:
         return [StaffNote("ended"), *events]
 
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
-        """Stop the robot, and log that the game was left; what is done has s to be broken off."""
+        """Stop the robot, wait up to `patience` s for that, and log that the game was left."""
         self.stopped = True
         self.break_off()
         if not self._turn.acquire(timeout=patience):
@@ -381,7 +381,7 @@ class GameController:
         return None
 
     def answer(self, behaviour: Behaviour, target: str | None) -> list[Result]:
-        """Have done what was answered, and learn from it; it takes its time.
+        """Carry out an answer and learn from it; blocks until it is done.
 
         Raises:
             TangyError: it could not be kept, and nothing of it is.

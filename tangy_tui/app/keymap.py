@@ -1,4 +1,4 @@
-"""The one keymap: everything that a key does, on any screen, with its keys and its typed word.
+"""The keymap: every action of any screen, with its keys and its typed word.
 
 A key means the same wherever it works. Screens make their bindings, the line of keys at the foot,
 help and palette from this table; what the actions are called stands in `tangy_tui/text/keys.py`.
@@ -201,7 +201,7 @@ class Keymap:
         return shown(letters[0])
 
     def overrides(self) -> dict[str, str]:
-        """Return what was changed, as Textual takes it."""
+        """Return the user's changes in Textual's form."""
         return {id: ",".join(keys) for id, keys in self.changed.items()}
 
 

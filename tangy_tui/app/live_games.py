@@ -94,7 +94,7 @@ class LiveGames:
             self.scores.append(score_game(self.tally.games, came, game.faults, game.book))
 
     def take(self, events: Sequence[Event]) -> list[News]:
-        """Count events, log what is new of cards, and return it with who sits where."""
+        """Count events, log news about cards, and return it together with news about seats."""
         self.tally.add(list(events))
         game, world = self._supervision, self._supervision.world
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
@@ -107,7 +107,7 @@ class LiveGames:
 
     @property
     def beliefs(self) -> Mapping[str, Beliefs]:
-        """What is believed of everybody."""
+        """The Beta posteriors of each person."""
         return self._supervision.persuasion.beliefs
 
     def document(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A simulated room some of whose devices are real: what they report goes before what is made up.
+"""A simulated room with some real devices, whose reports override the simulated ones.
 
 So that a lens that is covered in earnest is diagnosed in a simulated game as what it is.
 """

@@ -36,7 +36,7 @@ class ChoiceQuestion:
 
 
 def read_questions(text: str, name: str) -> list[ChoiceQuestion]:
-    """Read the questions of a file in the Aiken format, or in that of Kahoot as CSV.
+    """Read questions from a file in Aiken format or from a Kahoot CSV.
 
     Args:
         text: what stands in the file.
@@ -147,7 +147,7 @@ def questions_table(questions: Sequence[ChoiceQuestion], either: str, hint: str)
 def questions_activity(
     base: str, name: str, title: str, questions: Sequence[ChoiceQuestion]
 ) -> str:
-    """Return the file of an activity with these questions.
+    """Return the text of an activity file with these questions.
 
     Args:
         base: the file of the activity that is like it, whose questions have three options.

@@ -42,7 +42,7 @@ def guests_today(store: Store) -> tuple[Person, ...]:
 
 
 def past_guests(store: Store) -> tuple[Person, ...]:
-    """Return the guests of earlier days whose names are still kept."""
+    """Return guests of earlier sessions whose names are still stored."""
     named = store.names()
     return tuple(guest for guest, today in _guests(store) if not today and guest.id in named)
 
@@ -57,7 +57,7 @@ def _guests(store: Store) -> Iterator[tuple[Person, bool]]:
 
 
 def participants(store: Store, count: int) -> tuple[Person, ...]:
-    """Return the first `count` of those who take part, numbered on where there are fewer.
+    """Return the first `count` participants; if there are fewer, numbered users fill up.
 
     Raises:
         ProfileError: so many cannot play.
@@ -72,7 +72,7 @@ def participants(store: Store, count: int) -> tuple[Person, ...]:
 
 
 def known_people(store: Store, people: Sequence[Person]) -> list[Person]:
-    """Return people with what is known of them: names, how they are said, voices."""
+    """Return people with their stored details: names, pronunciations, voices."""
     names, said, voices = store.names(), store.pronunciations(), store.voices()
     return [
         replace(

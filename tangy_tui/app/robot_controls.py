@@ -52,18 +52,18 @@ class RobotControls:
         """Whether it is driven by hand now."""
 
     def stop(self, why: str = STOPPED) -> None:
-        """Stop it now; it waits behind nothing, and latches until staff let it go on."""
+        """Stop at once, ahead of all queued commands; latched until staff release it."""
         if self._robot is not None:
             self._robot.link.stop(why, by=STAFF)
 
     def release(self, *, everybody: bool = False) -> None:
-        """Let it move again as far as staff are concerned, or whoever stopped it."""
+        """Release the stop of staff, or of the given source."""
         if self._robot is not None:
             self._robot.link.release(**({} if everybody else {"by": STAFF}))
 
     @property
     def frozen(self) -> bool:
-        """Whether its control stood still, and staff have not let it go on since."""
+        """Whether the control loop froze and staff have not released the robot since."""
         return self._robot is not None and bool(self._robot.link.state.frozen)
 
     @property
@@ -138,7 +138,7 @@ class RobotControls:
 
     @property
     def asks_about(self) -> tuple[str, tuple[str, ...]]:
-        """The person of whose card staff are to tell, and words for it; "" while of none."""
+        """The person whose card staff are asked about, and the question; "" if none."""
         eyes = None if self._robot is None else self._robot.eyes
         return ("", ()) if eyes is None else (eyes.asks, tuple(eyes.sayable))
 

@@ -48,7 +48,7 @@ def opening_of(
     own: Mapping[str, Any] | None = None,
     **both: Any,
 ) -> Opening:
-    """Return what opens the robot, or its bench.
+    """Return a callable that opens the robot or its bench.
 
     Args:
         workspace: whose robot it is.
@@ -92,7 +92,7 @@ def open_bench(
     lost: bool = False,
     cancellation: Cancellation | None = None,
 ) -> Iterator[B]:
-    """Open the robot's own devices as a bench simulates them.
+    """Open a bench that simulates the robot's devices.
 
     Args:
         workspace: what it belongs to.
@@ -228,7 +228,7 @@ def open_robot(
 
 
 def _is_declared(workspace: Workspace) -> bool:
-    """Say whether what is played is declared by facts, so that there are no cards."""
+    """Return whether the activity is declared by facts, and so has no cards."""
     return isinstance(workspace.activity, DeclaredActivity)
 
 

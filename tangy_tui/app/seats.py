@@ -18,14 +18,14 @@ class Seated:
 
 
 class Seats:
-    """Tells what is new of who sits where, game by game."""
+    """Collects news about who sits where, per game."""
 
     def __init__(self) -> None:
         """Begin with everybody at their own place."""
         self._told: dict[str, str] = {}
 
     def news(self, events: Iterable[Event], sitting: Mapping[str, str]) -> list[Seated]:
-        """Return what is new after what happened, of who was seen at whose place."""
+        """Return the news after some events: who was seen at whose seat."""
         if any(isinstance(event, GameBegun | ResumedGame) for event in events):
             self._told = {}  # nobody has been seen in this game yet
         before, self._told = self._told, dict(sitting)

@@ -30,7 +30,7 @@ PAGE = "page"  # the kind of driver whose address is known when it is open
 
 
 class LinkedSensors:
-    """The devices of a robot whose process is spoken to; it satisfies `sensor_lines.Sensing`.
+    """The devices of a robot, read through its process; satisfies `sensor_lines.Sensing`.
 
     Within `async with` it asks how the cameras are. Cards are read when the game wants it, not
     because somebody looks.

@@ -1,4 +1,4 @@
-"""The program in a browser: each page that is opened with the token runs one in a process.
+"""The program in a browser: each page opened with the token runs it in a process of its own.
 
 Textual's own server (textual-serve) does that; what is ours is who may come in. The token is asked
 for once and then kept by the browser in a cookie that no other site's page is sent with.
@@ -44,7 +44,7 @@ def command_line(*words: str) -> str:
 
 
 def address(host: str, port: int, token: str) -> str:
-    """Return what is opened in a browser."""
+    """Return the URL to open in a browser."""
     name = f"[{host}]" if ":" in host else host
     return f"http://{name}:{port}/?{TOKEN}={token}"
 
@@ -85,7 +85,7 @@ def make_server(command: str, host: str, port: int, token: str) -> Any:
             return app
 
         async def on_startup(self, app: web.Application) -> None:
-            """Say nothing: whoever runs this says where the page is."""
+            """Print nothing: the caller tells the page's address."""
 
         def initialize_logging(self) -> None:
             """Leave the program's own log as it is."""

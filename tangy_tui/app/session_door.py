@@ -200,7 +200,7 @@ def _stops(line: bytes) -> str | None:
 
 
 def _listen(folder: Path) -> socket.socket:
-    """Make the socket; one that a program left behind which was killed is in nobody's way."""
+    """Make the socket; replace one that a killed program left behind."""
     listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
         with reachable(folder) as place:

@@ -40,7 +40,7 @@ LEAST_BATTERY = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """How something is that has to be ready; `about` names what is wrong, or what was found."""
+    """One readiness check; `about` names the problem, or the result."""
 
     name: CheckName
     state: CheckState
@@ -223,7 +223,7 @@ class SetUp:
 
     @property
     def not_ready(self) -> list[Check]:
-        """What is known to be wrong."""
+        """The failed checks."""
         return [check for check in self.checks() if check.state == "not ready"]
 
     def _robot(self) -> Check:

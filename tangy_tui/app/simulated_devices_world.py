@@ -1,4 +1,4 @@
-"""A world on the bench: faults are brought about in its devices, and what is seen is checked.
+"""A world on the bench: injects faults into the devices, and scores perception against the truth.
 
 The bench knows how things really are; the robot does not. Only the count of what was read rightly
 (`PerceptionScore`) is told, when it has been read.
@@ -39,7 +39,7 @@ NOTICED_SECONDS = 12.0  # of real time, in which devices that real time passes f
 
 @dataclass
 class PerceptionScore:
-    """What was read and found rightly, of how much."""
+    """Counts of correct and wrong readings, identities and poses."""
 
     reads: Counter[str] = field(default_factory=Counter)
     identities: Counter[str] = field(default_factory=Counter)
@@ -61,7 +61,7 @@ class PerceptionScore:
 
 
 class BenchedWorld(LiveWorld):
-    """A real world whose devices a bench simulates. Between games everything is put right."""
+    """A real world on simulated devices. All faults are removed between games."""
 
     played_in: GameWorld = BENCH
     bench: DeviceSimulator
@@ -177,7 +177,7 @@ class BenchedWorld(LiveWorld):
             self._let_show(chosen)
 
     def _let_show(self, kind: Kind) -> None:
-        """Wait until devices show a fault, where the bench's time does not pass by itself."""
+        """Wait until devices show a fault; needed where the bench is stepped."""
         self._pass_until(lambda: kind.code in self.commands.diagnosed(self.health()))
 
     def _pass_until(self, holds: Callable[[], bool]) -> None:
@@ -310,7 +310,7 @@ class BenchedWorld(LiveWorld):
         self.score.reads["right" if same else "wrong"] += 1
 
     def _note_place(self) -> None:
-        """Note how far off the robot believes to be after a drive, wherever that has ended."""
+        """Record the localisation error after a drive, in m."""
         if not self.link.setup.stepped or self.link.silent:
             return
         x, y, _ = self.truth()["pose"]

@@ -1,4 +1,4 @@
-"""Switching a robot on beside what is shown meanwhile, and calling that off."""
+"""Switching a robot on in the background, and cancelling that."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class SwitchingOn:
         self._cancellation.cancel()
 
     def close(self) -> None:
-        """Switch it off, if it is on; what is done with it waits for nothing any more."""
+        """Switch it off, if it is on; pending waits end at once."""
         self._opened.close()
 
 
@@ -112,7 +112,7 @@ class _Signals:
             signal.signal(number, handler)
 
     def raise_from_now_on(self) -> None:
-        """Let the next signal end what goes on; one that has come does so now."""
+        """Raise on the next signal; at once if one has already come."""
         self._raises = True
         if self._first:
             self._raise()

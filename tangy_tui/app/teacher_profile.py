@@ -18,7 +18,7 @@ NOBODY = "teacher"
 
 @dataclass(frozen=True, slots=True)
 class TeacherProfile:
-    """What is kept of the teacher. `name`: "" if they were not asked."""
+    """The stored teacher; `name` is "" if they were not asked."""
 
     name: str = ""
 

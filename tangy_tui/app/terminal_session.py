@@ -1,4 +1,4 @@
-"""Who stands between the program and the person: another machine, a multiplexer, or nobody.
+"""The terminal's surroundings: another machine, a multiplexer, or neither.
 
 A terminal that answers proves that what was written before has reached it. Over SSH that is the
 person's own terminal; but tmux, GNU screen and mosh answer for the terminal, on the machine where

@@ -30,7 +30,7 @@ _BEFORE_THE_STEP = (TourStop.ROOM, TourStop.COMMAND, TourStop.QUESTION)
 
 
 class Tour:
-    """Goes from stop to stop: by what the teacher does, and where nothing is to be done, by Enter.
+    """Steps through the stops: at the teacher's action, or at Enter where no action is needed.
 
     `at` is None when it has ended, or was skipped.
     """

@@ -16,7 +16,7 @@ MOST_STEPS = 500
 
 @dataclass(frozen=True, slots=True)
 class TriedStep:
-    """One step of the game: the situation, the behaviour, for whom, what was said, who did what."""
+    """One step of the game: situation, behaviour, target, speech, and people's actions."""
 
     number: int
     situation: str
@@ -27,7 +27,7 @@ class TriedStep:
 
 
 def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]:
-    """Play one game by what is expected.
+    """Play one game by the activity's expected behaviours.
 
     Raises:
         TangyError: nothing is expected in a situation, or the game does not end.

@@ -35,7 +35,7 @@ class UserSettings:
 
 
 def read_settings(folder: Path) -> UserSettings:
-    """Read the settings of a data folder; what is not set is as usual.
+    """Read the settings of a data folder; missing ones have their defaults.
 
     Raises:
         ProfileError: the file has a mistake.

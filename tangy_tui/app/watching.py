@@ -54,7 +54,7 @@ class Guest:
         return self._socket is not None
 
     def look(self) -> bool:
-        """Take what is new, and go to the door if nobody is there yet; say if all went well."""
+        """Read new entries and connect to the session if needed; return whether that worked."""
         if self._socket is None and not self._enter():
             return False
         assert self._socket is not None  # noqa: S101 - it was entered
@@ -146,7 +146,7 @@ class Guest:
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """What is new in the log: of which game, which moments, and whether that game has just begun.
+    """New entries of the log: the game, its moments, and whether it has just begun.
 
     `replay` is all of the game so far.
     """
@@ -178,7 +178,7 @@ class WatchedLog:
         """Of the people, by id."""
 
     def news(self) -> News | None:
-        """Read what is new; None: nothing is."""
+        """Read new entries; None if there are none."""
         newest = max((event.seq for event in self._store.events(after=self._read)), default=0)
         if newest <= self._read:
             return None

@@ -112,11 +112,11 @@ class Workspace:
         self.store.close()
 
     def read_people(self) -> None:
-        """Read anew what is known of the people: names, how they are said, voices, seats."""
+        """Reload the people: names, pronunciations, voices, seats."""
         self.people = self.room.placed(known_people(self.store, self._sample))
 
     def register(self, users: int = REGISTERED) -> None:
-        """Let the first of those who are registered take part, or all of them."""
+        """Let the first `count` registered people take part, or all of them."""
         teams = tuple(Person(team, team) for team in self.activity.teams)
         self._sample = teams or participants(self.store, users)
         self.room = room_for(len(self._sample))
@@ -205,7 +205,7 @@ class Workspace:
         self.read_people()
 
     def forget(self, person: Person, also: Sequence[str] = ()) -> Forgotten:
-        """Forget who a person is: name, how it is said, voice, face, and that they agreed to that.
+        """Forget a person: name, pronunciation, voice, face, and consent.
 
         The name goes from words that were typed or said as well, in the log and in the files of
         the data folder. What they did stays in the log, under an id that says nobody's name.
@@ -228,18 +228,18 @@ class Workspace:
 
     @property
     def names(self) -> dict[str, str]:
-        """The names of those who take part, by id."""
+        """The participants' names, by id."""
         return {person.id: person.name for person in self.people}
 
     @cached_property
     def intents(self) -> Intents:
-        """What was learnt of how people ask for the behaviours of an activity."""
+        """The learnt intent classifier of the activity's behaviours."""
         from tangy_tui.language.intents import Intents
 
         return Intents()
 
     def phrasebook(self) -> Phrasebook:
-        """Make what is understood of those who take part, said or typed: the teacher's own, too."""
+        """Make the phrasebook of said and typed commands, with the teacher's own phrases."""
         from tangy_tui.learning.own_phrases import OwnPhrases
 
         own = OwnPhrases(self.store, self.activity, self.teacher)
@@ -253,7 +253,7 @@ class Workspace:
         guided: bool = False,
         again: Again | None = None,
     ) -> TeachingSession:
-        """Make a teaching session; `begin` it to take up what was unfinished.
+        """Make a teaching session; `begin` resumes an unfinished demonstration.
 
         Without a seed the games count on from the demonstrations there are, so that no two are
         alike and each can be had again. A guided game brings about every situation. `again`
@@ -332,7 +332,7 @@ class Workspace:
         return supervision
 
     def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:
-        """Make a run of simulated games with a policy and with what is believed of the people.
+        """Make a run of simulated games with a policy and the stored posteriors.
 
         Args:
             policy: by which is played.
@@ -382,7 +382,7 @@ class Workspace:
         )
 
     def memory(self, world: GameWorld | None = None) -> PersonModels:
-        """Make what recalls people from the log, with the activity's choice of method.
+        """Make the memory of people's responses, with the activity's method of choice.
 
         Args:
             world: whose games count (default: the world of the last game).
@@ -393,7 +393,7 @@ class Workspace:
         return PersonModels(self.store, strategies, self.activity.persuasion, world=world)
 
     def records(self, *people: Person, world: GameWorld | None = None) -> list[Record]:
-        """Read what is to be told of people (of everybody, if none is named)."""
+        """Read the report data of people (of everybody, if none is named)."""
         from tangy_tui.interaction.record import read_records
 
         return read_records(self.store, self.memory(world), people or self.people)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 async def choose_at_home(program: Program) -> None:
-    """Ask which activity it is to be from now on, and take it up."""
+    """Ask for another activity, and switch to it."""
     from tangy_tui.ui.screens.home import HomeScreen
 
     before = program.workspace.profile
@@ -31,7 +31,7 @@ async def choose_at_home(program: Program) -> None:
 
 
 async def choose_activity(program: Program, take: Callable[[str], object]) -> None:
-    """Ask which activity it is to be from now on, and `take` it up.
+    """Ask for another activity, and call `take` with it.
 
     Raises:
         TangyError: it cannot be taken up.

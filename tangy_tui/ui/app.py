@@ -193,13 +193,13 @@ class TangyApp(App[None]):
 
     @property
     def slow_link(self) -> bool:
-        """Whether what is written takes its time to be seen, so that less is to be drawn."""
+        """Whether the link to the terminal is slow, so that fewer frames are drawn."""
         if self._link != "auto" or self.round_trip is None:
             return self._link == "slow"
         return self.round_trip.slow
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
-        """Take the terminal's answer: what was drawn before has reached it."""
+        """Handle the terminal's reply: everything drawn before it has arrived."""
         if self.round_trip is not None:
             self.round_trip.reported(event.x, event.y, event.time)
 

@@ -105,7 +105,7 @@ class TangyScreen(Screen[ResultT]):
             self.dismiss(result)
 
     def take_letter(self, event: events.Key | events.Paste) -> bool:
-        """Take a key before it is looked at as one; False: it is a key like any other.
+        """Handle a key before the bindings see it; return False to leave it to them.
 
         A screen on which people type commands takes letters here, wherever the keys are, and
         text that is pasted.
@@ -167,7 +167,7 @@ class Dialog(ModalScreen[ResultT]):
             self.dismiss(result)
 
     def on_mount(self) -> None:
-        """Take away what was said in passing: it would lie over the dialog."""
+        """Clear the toasts, which would lie over the dialog."""
         self.app.clear_notifications()
 
     def on_stop(self, message: Stop) -> None:

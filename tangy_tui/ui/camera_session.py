@@ -33,7 +33,7 @@ class CameraSession:
         self._sensors = sensors
 
     def sensors(self) -> CameraHub:
-        """Return the cameras; they are opened by whoever uses them.
+        """Return the cameras; the caller opens them.
 
         Raises:
             TangyError: the robot's profile names a source that is none.
@@ -58,6 +58,6 @@ class CameraSession:
             yield sensors.health
 
     async def close(self) -> None:
-        """End them, whoever may still use them."""
+        """Close all of them, also while they are in use."""
         if self._sensors is not None:
             await self._sensors.close()

@@ -90,7 +90,7 @@ def to_ascii(text: str) -> str:
 
 @lru_cache(1024)
 def harmless(text: str, ascii: bool) -> str:
-    """Return text that a terminal draws and does not obey, in as many cells as were measured.
+    """Return text without control characters, as wide in cells as it was measured.
 
     What was measured as no cell at all is left out; a mark in its place would shift the line.
     """

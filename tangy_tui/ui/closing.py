@@ -1,4 +1,4 @@
-"""Closing a screen with what was said on it."""
+"""Closing a screen together with its toasts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ ResultT = TypeVar("ResultT")
 
 
 def close(screen: TangyScreen[ResultT], result: ResultT) -> None:
-    """Close a screen that is on top, and take away what was said on it."""
+    """Close the screen on top, and clear its toasts."""
     if screen.is_active:
         screen.app.clear_notifications()
         screen.close(result)

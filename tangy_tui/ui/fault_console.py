@@ -1,4 +1,4 @@
-"""The console for faults of a screen that shows games: looking all the time, telling, acting.
+"""The fault console of the game screens: it polls devices, reports faults, and acts on them.
 
 The robot has stopped before anything of this is drawn; what is done here goes through the
 controller of the game, and is in the log before it is told.
@@ -110,7 +110,7 @@ class FaultConsole:
         self._game = 0
 
     def begin(self) -> None:
-        """Look from now on; what was learnt and loaded so far is not gone through for garbage.
+        """Start polling; objects loaded so far are frozen out of garbage collection.
 
         Going through all of it took 0.1 to 0.3 s each time, in which nothing could be drawn.
         """
@@ -119,7 +119,7 @@ class FaultConsole:
         self._screen.set_interval(LOOK_SECONDS, self.tick)
 
     def tick(self) -> None:
-        """Look at the devices once, and tell what is new."""
+        """Check the devices once, and report new faults."""
         self.ticks += 1
         if self._gave_up or self.supervision.over:
             return
@@ -210,7 +210,7 @@ class FaultConsole:
         return replace(fault, moves=fault.moves[: self._during[1]], status=OPEN)
 
     def parts(self, events: list[Event]) -> tuple[list[Event], list[Event]]:
-        """Part what was begun about a fault from what came of it, which takes its time to see."""
+        """Split recovery events into those begun and their outcomes, which show later."""
         for n, event in enumerate(events):
             if isinstance(event, Moved) and event.move.kind in _TAKES_TIME and events[n + 1 :]:
                 if self.supervision.halted is not None or self.supervision.question is not None:
@@ -221,7 +221,7 @@ class FaultConsole:
         return events, []
 
     def urgent(self, events: list[Event]) -> bool:
-        """Say whether something is to be done about a fault at once, before any time passes."""
+        """Return whether a fault needs action before any time passes."""
         moved = {event.move.kind for event in events if isinstance(event, Moved)}
         found = any(isinstance(event, Diagnosed) for event in events)
         if self.supervision.halted is not None:
@@ -349,7 +349,7 @@ class FaultConsole:
         return injections.NO_GAME if self.supervision.over else ""
 
     async def inject(self) -> tuple[str, bool]:
-        """Let a fault be chosen, and bring it about or lift it.
+        """Choose a fault, and inject or remove it.
 
         Returns:
             What was done ("": nothing), and whether it is seen at once what came of it.

@@ -13,7 +13,7 @@ from tangy_tui.ui.widgets.room_view import RoomView
 
 
 def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
-    """Write a fault, or what was done about it, into the log; what Tangy says is seen as well."""
+    """Write a fault or a recovery event into the log, with Tangy's speech."""
     fault, log = event.fault, screen.query_one(LogView)
     if isinstance(event, Moved) and event.move.speech:
         screen.query_one(RoomView).say(event.move.speech)

@@ -46,7 +46,7 @@ async def ask_name(program: Program) -> str | None:
 
 
 async def change_teacher(program: Program) -> None:
-    """Ask for another name, and let what is taught from now on be theirs."""
+    """Ask for another name; later demonstrations belong to it."""
     if (name := await ask_name(program)) is not None:
         _tell(program, name)
 

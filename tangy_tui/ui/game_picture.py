@@ -79,7 +79,7 @@ class GamePicture:
         return self.grounds[-1].acted.speech if self.grounds else ""
 
     def begin(self) -> None:
-        """Show what is known before the first game."""
+        """Show the state before the first game."""
         self._show_policy()
         self._show_beliefs(None)
 
@@ -131,7 +131,7 @@ class GamePicture:
                     log.write(broken_off_words(steps, reason), "bad")
 
     def show_status(self, robot: str, note: str, mode: str) -> None:
-        """Say how the robot is, where in the game it is, and what else is to be said."""
+        """Update the status line: robot, stage and notes."""
         self._screen.query_one(StatusLine).show(
             Status(
                 mode=with_activity(mode, self._workspace.activity),

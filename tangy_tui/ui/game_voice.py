@@ -27,12 +27,12 @@ class GameVoice:
         self._line: asyncio.Future[bool] | None = None
 
     def begin(self, app: App[Any]) -> None:
-        """Make ready what is said in every game, beside the screen."""
+        """Synthesise the common sentences in the background."""
         self._app = app
         speaker_of(app).prepare(opening_lines(self._workspace.activity))
 
     def tell(self, events: Sequence[Event], pace: float) -> None:
-        """Speak what is said in these events.
+        """Speak the speech of these events.
 
         Args:
             events: what has happened.

@@ -121,7 +121,7 @@ class Hearing:
         return with_keys(OR_KEY_AND_SAY, keymap_of(self._app)) if self.by_key else OR_SAY
 
     def attend(self, listener: Listener) -> None:
-        """Give what is heard to a listener from now on."""
+        """Route utterances to a listener from now on."""
         self._listeners.append(listener)
         if self._failed:
             listener.told(self._failed, "bad")
@@ -146,7 +146,7 @@ class Hearing:
             self._watching.remove(changed)
 
     def understand(self) -> None:
-        """Match what is heard to what can be said to the listener, as it is now."""
+        """Match an utterance to the listener's current phrases."""
         if self._listeners and (spoken := self._listeners[-1].spoken) is not self._understood:
             self._understood = spoken
             self.ears.understand_by(spoken)
@@ -165,7 +165,7 @@ class Hearing:
         self.look()
 
     def look(self) -> None:
-        """Look whether commands are taken now, and give what was kept until they are."""
+        """Check whether the listener takes commands now, and deliver the queued ones."""
         choices = () if self._question is None else self._question.choices
         if self.ears.live:
             self.ears.asking(not self._free, choices)
@@ -176,7 +176,7 @@ class Hearing:
         self._changed()
 
     async def talk(self) -> None:
-        """Push to talk: begin, or end what is being said; Tangy does not speak meanwhile."""
+        """Push to talk: begin or end the utterance; Tangy is silent meanwhile."""
         if not self._watching:
             return
         if not self.ears.live:
@@ -248,7 +248,7 @@ class Hearing:
         self.tell(f"{said} {wrong}".rstrip(), "warn" if wrong else "text")
 
     async def _wanted(self) -> None:
-        """Wait until something is to be heard: a recording says no more than it is asked for."""
+        """Wait until an utterance is wanted: a recording is read on demand."""
         while not self.ears.live and not self._free:
             question = self._question
             if self.ears.answers and question is not None and question.painted:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class GameToPlay:
-    """What is played: a past game that goes on, or (None) a new one."""
+    """The game to play: an interrupted one to resume, or (None) a new one."""
 
     past: PastGame | None
 
@@ -51,7 +51,7 @@ async def ask_about_interrupted(program: Program, world: GameWorld) -> GameToPla
 
 @dataclass(frozen=True, slots=True)
 class DrillToHold:
-    """What is rehearsed: the sheet so far of a drill that goes on, or (None) a new drill."""
+    """The drill to run: the sheet of an interrupted one, or (None) a new one."""
 
     past: Sheet | None
 

@@ -23,7 +23,7 @@ async def ask_who_joins(app: App[object]) -> tuple[str, bool] | None:
 
 
 async def ask_new_name(app: App[object], name: str) -> str | None:
-    """Return what a person is to be called; None: as before."""
+    """Ask for a person's new name; None leaves it unchanged."""
     dialog = NameDialog(name, text.RENAME.format(name), text.NAME_DETAIL)
     wanted = await app.push_screen_wait(dialog)
     return None if wanted in (None, name) else wanted

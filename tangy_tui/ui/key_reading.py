@@ -16,7 +16,7 @@ from tangy_tui.ui.typed_stop import Taken, TypedStop
 
 
 class KeyReader:
-    """Takes what is no key: a typed or pasted stop, letters for a line, and pasted text."""
+    """Handles input that is no shortcut: a typed or pasted stop, letters of a line, other paste."""
 
     def __init__(self, app: App[None]) -> None:
         self._app = app
@@ -46,7 +46,7 @@ class KeyReader:
         return filters
 
     def _is_typed(self, event: events.Key | events.Paste) -> bool:
-        """Let the screen take what it wants to be typed, wherever the keys are."""
+        """Let the screen take a letter as text, wherever the focus is."""
         top = self._app.screen_stack[-1] if self._app.screen_stack else None
         return isinstance(top, TangyScreen) and top.take_letter(event)
 

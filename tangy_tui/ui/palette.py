@@ -41,7 +41,7 @@ class ActionsProvider(Provider):
             yield DiscoveryHit(_line(Content(entry.name), entry), entry.run, text=entry.name)
 
     async def search(self, query: str) -> Hits:
-        """Give those whose name or word is like what was typed."""
+        """Yield the actions whose name or word resembles the typed text."""
         matcher, typed = self.matcher(query), query.strip().casefold()
         for entry in self._entries():
             score = matcher.match(entry.name)

@@ -1,4 +1,4 @@
-"""Text that is pasted where letters are keys: it is text, and no key of anything.
+"""Text pasted where letters are shortcuts: it triggers none of them.
 
 Most terminals say what is pasted; Textual makes one event of that. Where they do not (inside some
 multiplexers, or through a program that types) it comes as keys, more of them at once than a person
@@ -22,7 +22,7 @@ _MARK = "_pasted_text"
 
 
 def pasted_in(data: str) -> str:
-    """Return the text that must have been pasted, of what was read at once; "" if there is none."""
+    """Return the pasted text among input read at once; "" if there is none."""
     for run in _CHARACTERS.findall(_SEQUENCE.sub("\x00", data)):
         if len(run) > TYPED_TOGETHER and len(set(run)) > 1:
             return data

@@ -23,7 +23,7 @@ async def open_policy(program: Program, policy: Policy) -> None:
 
 
 async def load_policy(program: Program, wanted: str) -> Policy | None:
-    """Learn the kept policy again; None where there is none, or it is not to be used."""
+    """Learn the stored policy again; None if there is none, or the user rejects it."""
     from tangy_tui.learning import policies
 
     workspace = program.workspace
@@ -42,7 +42,7 @@ async def load_policy(program: Program, wanted: str) -> Policy | None:
 
 
 async def _accept(program: Program, policy: Policy, notice: str, wanted: str) -> bool:
-    """Show how a policy differs from what was kept of it, and ask before it is used."""
+    """Show how a policy differs from the stored one, and ask before using it."""
     from tangy_tui.learning import policies
     from tangy_tui.ui.dialogs.difference import DifferenceDialog
 

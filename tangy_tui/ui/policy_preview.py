@@ -46,7 +46,7 @@ async def show_why(
 
 
 def grounds(workspace: Workspace, present: Demonstration, situation: Situation) -> Why:
-    """Return why Tangy would do what it does in a situation, as far as it was taught."""
+    """Return the reasons for Tangy's behaviour in a situation."""
     from tangy_tui.learning.explanation import explain, foresee
     from tangy_tui.learning.library import read_library
 

@@ -86,7 +86,7 @@ class Program(SoundingApp):
         return HomeScreen(far, note=self.workspace.activity.title)
 
     def _tell_of_log(self) -> None:
-        """Say, once, what was noticed of the log, and what is left out of it."""
+        """Report once the problems of the log, and the events left out."""
         store = self.workspace.store
         aside = [store.aside[seq] for seq in sorted(store.aside)]
         if len(aside) > 1:
@@ -99,7 +99,7 @@ class Program(SoundingApp):
     # ---------------------------------------------------------------------------------- ways
 
     def on_home_screen_chosen(self, event: HomeScreen.Chosen) -> None:
-        """Open what was chosen, unless something is being opened: a key may come twice."""
+        """Open the choice, unless something is opening: a key may come twice."""
         if self._busy or self._opening or not isinstance(self.screen, HomeScreen):
             return
         match event.id:
@@ -281,7 +281,7 @@ class Program(SoundingApp):
             await self.play(wanted=wanted)
 
     async def live(self) -> None:
-        """Play a live game: with the robot whose drivers are named, else on the bench."""
+        """Play a live game: on the robot if its drivers are named, else on the bench."""
         policy = await self.load_policy()
         if policy is not None:
             await play_from_home(self, policy)

@@ -1,4 +1,4 @@
-"""Proof that a question has reached the person's terminal: it answers what was written after it.
+"""Proof that a question has reached the terminal: the terminal replies to a query sent after it.
 
 After a question has been written the cursor is put on a place that is used only once, its position
 is asked for (`CSI 6n`), and it is put back. The answer names that place and can only come from a
@@ -40,7 +40,7 @@ Seen = Callable[[float], None]
 
 
 class RoundTrip:
-    """Asks the terminal whether it has drawn what was written before."""
+    """Asks the terminal whether it has drawn everything written before."""
 
     def __init__(
         self,
@@ -81,14 +81,14 @@ class RoundTrip:
     # -------------------------------------------------------------------------------- asking
 
     def begin(self, size: tuple[int, int]) -> None:
-        """Find out whether the terminal answers at all; `size` in columns and lines."""
+        """Find out whether the terminal replies; `size` in columns and lines."""
         self._size = size
         if self._session().remote:
             self._write("\x1b[>c")
         self.ask(lambda time: None)
 
     def ask(self, seen: Seen) -> None:
-        """Say when the terminal has drawn what was written so far."""
+        """Report when the terminal has drawn everything written so far."""
         columns, lines = self._size
         # The first line is left out: there a report looks like Shift+F3. So is the second, which
         # a terminal that counts from 0 reports as the first.

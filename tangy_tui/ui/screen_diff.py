@@ -72,7 +72,7 @@ class ScreenDiff:
         return pen.text()
 
     def _put(self, pen: _Pen, y: int, x: int, cells: list[Cell]) -> None:
-        """Show cells in row `y` from column `x` on, as far as they are not shown already."""
+        """Write the cells of row `y` from column `x` on that differ from the screen."""
         row = self._rows.setdefault(y, [])
         end = x + len(cells)
         if row[x:end] == cells:  # so it is for most, and for none
@@ -195,7 +195,7 @@ def _runs(changed: Sequence[int], row: Sequence[Cell]) -> Iterator[tuple[int, in
 
 @lru_cache(8192)
 def _blank(codes: str) -> str:
-    """Return what can be seen of SGR codes on a cell that shows nothing: what is behind it."""
+    """Return the visible part of SGR codes on an empty cell: its background."""
     attributes, _, paper = _parsed(codes)
     return codes if attributes & _LINES_AND_SWAPS else paper
 

@@ -1,4 +1,4 @@
-"""What was shown so far in a teaching session: by everybody before, and in the present game."""
+"""Coverage in a teaching session: situations shown by everybody before, and in this game."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ class ShownSoFar:
         self._before = Coverage(dict.fromkeys(workspace.activity.situations, 0))
 
     def begin(self) -> None:
-        """Count what was shown before the present game, and is not replaced by it."""
+        """Count the situations shown before this game, without those it replaces."""
         activity, present = self._workspace.activity, self._teaching.demonstration
         replaced = {present.id, *present.of}
         finished = read_library(self._workspace.store, activity.name).finished
         self._before = coverage(activity, [d for d in finished if d.id not in replaced])
 
     def now(self) -> Coverage:
-        """Count what was shown up to now."""
+        """Count all situations shown up to now."""
         here = self.here().times
         return Coverage({s: times + here[s] for s, times in self._before.times.items()})
 
     def here(self) -> Coverage:
-        """Count what was shown in the present game."""
+        """Count the situations shown in this game."""
         return coverage(self._workspace.activity, [self._teaching.demonstration])
 
     def first(self, situation: Situation) -> bool:

@@ -76,7 +76,7 @@ class SoundingApp(TangyApp):
         super().stop(reason)
 
     async def action_talk(self) -> None:
-        """Push to talk: begin, or end what is being said."""
+        """Push to talk: begin or end the utterance."""
         if self.hearing is not None:
             await self.hearing.talk()
 

@@ -1,4 +1,4 @@
-"""Tangy's voice in the program: switched on and off while it runs, and never in its way.
+"""Tangy's voice in the program: it can be switched at any time, and never blocks.
 
 What is said stands on the screen in any case. The voice is made when it is first wanted; a
 synthesiser and a player, each a process of its own, do the work.
@@ -24,7 +24,7 @@ GAP = 0.15
 
 
 class CanSpeak(Protocol):
-    """What is used of a `SpeechVoice`."""
+    """The used part of a `SpeechVoice`."""
 
     @property
     def speaking(self) -> bool:
@@ -109,7 +109,7 @@ class Speaker:
         return self.on
 
     def say(self, text: str, preference: VoicePreference) -> asyncio.Future[bool] | None:
-        """Speak a line after those that wait; what is returned is done when it was heard.
+        """Queue a line; the returned future is done when it was spoken.
 
         None: it is not spoken, because the voice is off, or somebody is talking to Tangy.
         """
@@ -129,7 +129,7 @@ class Speaker:
             self.say(text, preference)
 
     def hush(self) -> None:
-        """Cut what is being spoken, and forget what waits."""
+        """Stop speaking, and clear the queue."""
         if self._later is not None:
             self._later.cancel()
             self._later = None
@@ -137,7 +137,7 @@ class Speaker:
             self._voice.hush()
 
     async def silence(self) -> None:
-        """Cut what is being spoken, and wait until the microphone is open again."""
+        """Stop speaking, and wait until the microphone is open again."""
         self.hush()
         if self._voice is not None:
             await self._voice.quiet()
@@ -203,7 +203,7 @@ class Speaker:
 
 
 def opening_lines(activity: Activity) -> tuple[str, ...]:
-    """Return what is said to everybody in every game, whatever becomes of it: the calls above all.
+    """Return the sentences to everybody that come in every game: above all the calls.
 
     A line that names somebody cannot be known beforehand.
     """

@@ -1,4 +1,4 @@
-"""What the teaching screen shows of a session: the steps, the room, what was seen, what is now."""
+"""The teaching screen's view of a session: steps, room, dialogue, and the current state."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ class TeachingPicture:
         self._log.write(words, "good" if goes_on else "dim")
 
     def state(self) -> None:
-        """Show where the game is, and what was shown up to here."""
+        """Show the stage of the game, and the coverage so far."""
         teaching = self._teaching
         shown = teaching.demonstration
         state = teaching.world.observe()
@@ -175,7 +175,7 @@ class TeachingPicture:
         return coach_words(teaching.activity, state, teaching.world.scene(), teaching.name)
 
     def _now(self, words: str) -> None:
-        """Say what is going on; while the tour lasts, what it shows."""
+        """Show the coach's line; during the tour, the tour's line."""
         at = None if self.tour is None else self.tour.at
         now = self._screen.query_one("#now", Static)
         now.set_class(at is not None, "-tour")
@@ -186,7 +186,7 @@ class TeachingPicture:
             self._screen.query_one(KeyLine).show(*goes_on, *keys, typing=True)
 
     def tours(self, *, skip: bool) -> bool:
-        """Say whether a tour goes on that could be skipped, or whose next stop Enter leads to."""
+        """Return whether a tour is on that can be skipped or advanced with Enter."""
         if self.tour is None or self.tour.at is None:
             return False
         return skip or (

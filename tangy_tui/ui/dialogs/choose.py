@@ -20,7 +20,7 @@ from tangy_tui.ui.widgets.rows import fit, shorten
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """One of several: the word it is known by, its name, and what is to be said of it."""
+    """One option: its id, its name, and a description."""
 
     id: str
     name: str
@@ -56,7 +56,7 @@ class ChooseDialog(Dialog[str | None]):
         self.query_one(Page).focus()
 
     def on_page_chosen(self, event: Page.Chosen) -> None:
-        """Take what was chosen."""
+        """Return the chosen option."""
         event.stop()
         self.answer(self._options[event.index].id)
 

@@ -12,7 +12,7 @@ from tangy_tui.ui.dialogs.line import LineDialog
 
 
 class CommandDialog(LineDialog[GameCommand | Perform]):
-    """Takes a command; what is none is said, and stays in the line."""
+    """Reads a command; a line that is none is explained, and stays."""
 
     HELP = "Type what you want done, and press Enter. Esc goes back."
 

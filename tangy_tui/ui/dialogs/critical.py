@@ -1,4 +1,4 @@
-"""A fault for which Tangy stands still: what is wrong, what to do, and clearing it on purpose."""
+"""The dialog of a critical fault: the fault, the advice, and clearing it deliberately."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ class CriticalDialog(Dialog[None]):
             keys.show(*self._key_words())
 
     def look(self) -> None:
-        """Say whether the fault is still there, if that is not what is said already."""
+        """Update whether the fault is still there."""
         if self._doing:  # it is being looked at, by another thread
             return
         if self._call != self._call_state() is not None:
@@ -262,7 +262,7 @@ class CriticalDialog(Dialog[None]):
                 self.run_worker(self._confirm(), group="give up", exclusive=True)
 
     def _whom_to_call(self, restarted: bool) -> str:
-        """Say whom to call, and what was done meanwhile."""
+        """Show whom to call, and how the call stands."""
         if self._desk.simulated:
             return halts.SIMULATED
         self._call = self._call_state()

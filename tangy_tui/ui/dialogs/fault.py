@@ -91,7 +91,7 @@ def timeline(fault: Fault, width: int) -> list[PageLine]:
 
 
 def moves_so_far(moves: Sequence[RecoveryEvent], width: int) -> list[PageLine]:
-    """Write moves with their times, without what was said."""
+    """Format recovery events with their times, without speech."""
     return [line for move in moves for line in _entry(move.seconds, move_words(move), width)]
 
 
@@ -106,7 +106,7 @@ def _indented(words: str, width: int, ink: str) -> list[PageLine]:
 
 
 def evidence_lines(pieces: Sequence[EvidenceLine], width: int) -> list[PageLine]:
-    """Write what was observed, and under it what was to be expected."""
+    """Format the observations, each above its expectation."""
     lines: list[PageLine] = []
     for piece in pieces:
         lines += paragraph(clean(piece.what), width)

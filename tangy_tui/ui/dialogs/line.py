@@ -93,7 +93,7 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
             wrong.add_class("-shown")
 
     def on_key(self, event: events.Key) -> None:
-        """Let letters be letters: none is a key here."""
+        """Type letters into the line: none is a shortcut here."""
         if event.is_printable:
             event.stop()
 

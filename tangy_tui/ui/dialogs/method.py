@@ -35,7 +35,7 @@ FORGETTING = {
 
 @dataclass(frozen=True, slots=True)
 class MethodChoice:
-    """What was chosen; None stands for the activity's own."""
+    """The chosen method; None is the activity's own."""
 
     chosen: PersuasionConfig | None
 

@@ -30,7 +30,7 @@ LONGEST = 200
 
 @dataclass(frozen=True, slots=True)
 class NewPronunciation:
-    """What is to be noted; None: nothing any more."""
+    """The new pronunciation; None removes it."""
 
     phones: str | None
 
@@ -118,7 +118,7 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
         line.keys.watch(self, self._clock)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Note what was written, if it can be said."""
+        """Save the pronunciation, if it can be spoken."""
         if not event.value.strip():
             self.answer(NewPronunciation(None))
         elif phones := self._checked():
@@ -130,7 +130,7 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
                 self.answer(NewPronunciation(phones))
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Take back what was wrong before."""
+        """Clear the last error."""
         self._tell("")
 
     def action_hear(self) -> None:

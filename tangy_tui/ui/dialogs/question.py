@@ -59,7 +59,7 @@ Parts = list[str | tuple[str, str] | Content]
 
 
 class VerifyingDialog(Dialog[Answer]):
-    """What both have in common: the words that were heard, numbers to choose by, and fresh keys.
+    """Base of both dialogs: the heard words, numbered choices, and guarded keys.
 
     It is drawn in the place of the command bar, so that little changes on the screen. Enter and
     space do nothing. Keys that were typed before it was seen do not answer it, nor does what was
@@ -138,7 +138,7 @@ class VerifyingDialog(Dialog[Answer]):
         return self._choices
 
     def hear(self, *, yes: bool, alternative: int | None = None) -> str:
-        """Take an answer that was said; return what is wrong with it ("": nothing)."""
+        """Take a spoken answer; return the problem with it, "" if there is none."""
         if not self.painted:
             return SAID_TOO_EARLY
         if alternative is not None and alternative <= len(self._choices):
@@ -171,7 +171,7 @@ class VerifyingDialog(Dialog[Answer]):
         self.query_one(f"#{self.ID}", Static).update(self._content())
 
     def _yes(self) -> str:
-        """Take a yes; return what is wrong with it."""
+        """Take a yes; return the problem with it."""
         raise NotImplementedError
 
     @property
@@ -255,7 +255,7 @@ class QuestionDialog(VerifyingDialog):
 
     @property
     def behaviour(self) -> str:
-        """What is asked about."""
+        """The behaviour in question."""
         return self._behaviour
 
     def _yes(self) -> str:

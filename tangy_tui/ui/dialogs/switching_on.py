@@ -1,4 +1,4 @@
-"""What is shown while a robot is being switched on, which takes seconds and can be called off."""
+"""The dialog while a robot starts, which takes seconds and can be cancelled."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a tablet becomes the chest screen: its address in letters, and as a code to be scanned."""
+"""Pairing a tablet as the chest screen: the address as text and as a QR code."""
 
 from __future__ import annotations
 

@@ -196,7 +196,7 @@ def choice_lines(choice: StrategyChoice, name: str, width: int) -> list[PageLine
 
 
 def _belief(beliefs: Mapping[str, Beta], strategy: str, points: int) -> tuple[Span, ...]:
-    """Write what was believed of a strategy; nothing where that was not noted."""
+    """Format the posterior of a strategy; "" if it was not logged."""
     belief = beliefs.get(strategy)
     if belief is None:
         return ()

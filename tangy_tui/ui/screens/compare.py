@@ -68,7 +68,7 @@ async def choose_policy(app: App[Any], workspace: Workspace) -> str | None:
 
 
 def decision_words(activity: Activity, decision: Decision) -> str:
-    """Write what is done and the share of the votes, or why Tangy would ask."""
+    """Format the behaviour and its share of votes, or why Tangy would ask."""
     if not decision.seen:
         return "asks: never shown"
     if decision.contested:
@@ -113,11 +113,11 @@ class CompareScreen(TangyScreen[None]):
 
     @property
     def rows(self) -> list[SituationComparison]:
-        """What is shown."""
+        """The rows on the screen."""
         return [row for row in self._all if not (self._only and row.same)]
 
     def compose(self) -> ComposeResult:
-        """Lay out what is compared above the rows."""
+        """Lay out the compared policies above the rows."""
         yield StatusLine(Status(mode="compare", note=" : ".join(p.name for p in self._pair)))
         yield Static(self._summary(), id="summary", markup=False)
         yield panel(Page(self._write, id="comparison"), "Comparison")

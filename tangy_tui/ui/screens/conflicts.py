@@ -71,7 +71,7 @@ class ConflictsScreen(TangyScreen[bool]):
         return self._conflicts[at] if at < len(self._conflicts) else None
 
     def compose(self) -> ComposeResult:
-        """Lay out the situation, the answers, what is asked, and what was answered."""
+        """Lay out the situation, the answers, the question, and its resolution."""
         yield StatusLine()
         yield Static(id="situation", markup=False)
         yield Grid(id="answers")

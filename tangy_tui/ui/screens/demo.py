@@ -117,7 +117,7 @@ class DemoScreen(TangyScreen[None]):
     # ---------------------------------------------------------------------------------- keys
 
     def action_hold(self) -> None:
-        """Hold the story, or let it go on."""
+        """Pause or resume the story."""
         self.held = not self.held
         self._nudge.set()
         self._status()

@@ -1,4 +1,4 @@
-"""One demonstration, step by step: the situation, what was said, what was done, what followed."""
+"""One demonstration, step by step: situation, words, behaviour, and result."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class DemonstrationScreen(TangyScreen[None]):
         return self._entry.demonstration
 
     def compose(self) -> ComposeResult:
-        """Lay out what is known of the whole, its steps, and the chosen step."""
+        """Lay out the summary, the steps, and the chosen step."""
         name = self._library.name(self.shown.id)
         yield StatusLine(Status(mode=name, note=state_of(self._entry)))
         yield Static(self._summary(), id="summary", markup=False)

@@ -287,7 +287,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         transcript.fill(words)
 
     def _show_notes(self) -> None:
-        """Say what is to be known of the demonstration, or why something cannot be done to it."""
+        """Show the notes of a demonstration, or why an edit is not possible."""
         if (row := self._chosen) is not None:
             notes = ", ".join(row.notes) or "nothing to note"
             said = self._refusal or f"{row.number}: {row.state}; {notes}."

@@ -49,7 +49,7 @@ ON = ("enter",)
 
 
 class DrillScreen(TangyScreen[None]):
-    """Round after round: what is seen, the questions, what was right; then the score sheet.
+    """Rounds of observations, questions and corrections; then the score sheet.
 
     Keys typed before a question was on the screen do not answer it.
     """
@@ -78,7 +78,7 @@ class DrillScreen(TangyScreen[None]):
         self._at_end = False
 
     def compose(self) -> ComposeResult:
-        """Lay out what is seen above the question."""
+        """Lay out the observations above the question."""
         yield StatusLine(Status(mode="rehearse"))
         yield panel(Page(id="drill"))
         yield Static(id="asked", markup=False)
@@ -96,7 +96,7 @@ class DrillScreen(TangyScreen[None]):
         self._ask("Ready?", (("enter", "the first round"),))
 
     def on_unmount(self) -> None:
-        """Keep what was answered, however the screen is left."""
+        """Store the answers, however the screen is left."""
         self.drill.leave()
 
     def on_key(self, event: events.Key) -> None:

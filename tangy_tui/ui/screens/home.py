@@ -222,7 +222,7 @@ class HomeScreen(TangyScreen[None]):
         self._menu.show(self._states())
 
     def on_menu_chosen(self, event: Menu.Chosen) -> None:
-        """Do what the program can do by itself, and tell the app of the rest."""
+        """Handle help and quit, and pass other choices to the app."""
         event.stop()
         app: Any = self.app
         if event.id == "quit":

@@ -122,7 +122,7 @@ class LiveScreen(PlayScreen):
         self._cards = LiveCards(workspace, supervision, world, self._write)
 
     def on_mount(self) -> None:
-        """Show what is known of the robot, and follow it; the playing screen begins the game."""
+        """Show the robot's state, and follow it; the base screen begins the game."""
         self.show_status()
         self.set_interval(STAFF_SECONDS, self.show_staff)
         workspace = self._workspace
@@ -174,7 +174,7 @@ class LiveScreen(PlayScreen):
                 self.control.robot.stop()
 
     async def _wait(self, seconds: float) -> None:
-        """Wait for nothing: what was done has taken its time."""
+        """Do not wait: a live behaviour has taken its time already."""
         self._left = 0.0
 
     # ------------------------------------------------------------------------- staff's keys
@@ -217,14 +217,14 @@ class LiveScreen(PlayScreen):
         self.show_staff()
 
     def action_leave(self) -> None:
-        """Take back that staff want to say what is done next, or leave."""
+        """Hand control back to Tangy, or leave."""
         if self.control.taking_over:
             self._do(GiveBack())
         else:
             super().action_leave()
 
     def action_take_over(self) -> None:
-        """Let staff say what is done next, as soon as what is done now is over."""
+        """Hand control to staff as soon as the current behaviour is over."""
         if not self._supervision.over:
             self._do(TakeOver())
 
@@ -247,7 +247,7 @@ class LiveScreen(PlayScreen):
             self._do(CallAgain())
 
     def action_void_call(self) -> None:
-        """Take the last call back; what is being done comes to its end first."""
+        """Take the last call back, after the current behaviour."""
         if not self.world.called:
             self._do(TakeBackCall())
         else:
@@ -274,7 +274,7 @@ class LiveScreen(PlayScreen):
             self._do(AskFor(person))
 
     def action_whose_card(self) -> None:
-        """Say whose a card is."""
+        """Ask staff who owns a card."""
         if not self._supervision.over:
             say = self._cards.say_whose(self.app, self.control)
             self.run_worker(say, name="card", group="ask")

@@ -1,4 +1,4 @@
-"""Whose card is whose, on the live screen: what Tangy cannot tell, and what staff say of it."""
+"""The owners of cards on the live screen: Tangy's doubts, and the answers of staff."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LEARN = "learn"
 
 
 class LiveCards:
-    """Tells staff of cards that are not judged, and lets them say whose a card is."""
+    """Tells staff about cards that Tangy does not judge, and asks who owns them."""
 
     def __init__(
         self,
@@ -39,7 +39,7 @@ class LiveCards:
         self._news = CardNews()
 
     def tell(self, events: Sequence[Event] = ()) -> None:
-        """Show and log what is new, as soon as it is known."""
+        """Show and log news at once."""
         for note in self._news.take(events, self._cards):
             self._supervision.note(note.note, BY)
             if words := note_words(note, self._workspace.name):

@@ -1,4 +1,4 @@
-"""The keys of the live screen: what they are called, and what is said of them."""
+"""The keys of the live screen, with their names and help."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ class PeopleScreen(TangyScreen[None]):
         return Status(mode="people", note=f"{self._workspace.activity.title}, {self._world} games")
 
     def action_world(self) -> None:
-        """Show what is known from the games of the next world."""
+        """Show the data of the next world: simulated, bench or live."""
         self._world = PLAYED_WORLDS[(PLAYED_WORLDS.index(self._world) + 1) % len(PLAYED_WORLDS)]
         self._feedback = self._workspace.memory(self._world).feedback
         self.query_one(StatusLine).show(self._status)
@@ -233,7 +233,7 @@ class PeopleScreen(TangyScreen[None]):
 
     @property
     def _record(self) -> Record:
-        """What is told of the chosen person."""
+        """The record of the chosen person."""
         chosen = str(self._list("people").chosen)
         self._told = chosen if chosen in self._records else self._told
         return self._records.get(self._told, next(iter(self._records.values())))

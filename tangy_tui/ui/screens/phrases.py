@@ -38,7 +38,7 @@ Hear = Callable[[str], Awaitable[None]]
 
 
 class SearchInput(Input):
-    """The line that is searched for: what is found is shown with every letter."""
+    """The search line; results update with every letter."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("enter,down,up,tab", "screen.found", "Choose among what was found"),
@@ -109,7 +109,7 @@ class PhrasesScreen(TangyScreen[None]):
         self.run_worker(self._read(), group="read", exclusive=True)
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Show what is found."""
+        """Show the matches."""
         self._show()
 
     def action_search(self) -> None:
@@ -118,7 +118,7 @@ class PhrasesScreen(TangyScreen[None]):
         self.query_one(SearchInput).focus()
 
     def action_found(self) -> None:
-        """Go to what was found."""
+        """Move to the first match."""
         self._list.focus()
 
     def action_all(self) -> None:

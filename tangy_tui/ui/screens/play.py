@@ -1,4 +1,4 @@
-"""The playing screen: Tangy facilitates by itself; pausing, asking, and standing still."""
+"""The playing screen: Tangy facilitates, pauses, asks, and halts."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class PlayScreen(PlayStaff):
         self._leaving = False
 
     def on_mount(self) -> None:
-        """Show what is known, and begin."""
+        """Show the state, and begin."""
         loop = asyncio.get_running_loop()
         self.control.changed = lambda: loop.call_soon_threadsafe(self.nudge.set)
         self._let_look_on()
@@ -160,7 +160,7 @@ class PlayScreen(PlayStaff):
             self._tell_now(f"{follow} will follow.", "dim")
 
     def action_leave(self) -> None:
-        """Let go of a chosen step, give up what is asked, or go back; in mid-game it asks."""
+        """Close the chosen step, give up a question, or go back; in mid-game it asks first."""
         steps = self.query_one(Transcript)
         if steps.has_focus and steps.chosen is not None:
             steps.release()
@@ -187,7 +187,7 @@ class PlayScreen(PlayStaff):
             self._do(GoOn())
 
     async def _come_to_rest(self) -> None:
-        """Let what is being done come to an end before the game does."""
+        """Let the current behaviour end before the game does."""
 
     def _end_game(self) -> None:
         """Let the log say that a game was left."""
@@ -195,7 +195,7 @@ class PlayScreen(PlayStaff):
             self.tally.add(self.control.abandon())
 
     def on_unmount(self) -> None:
-        """End a game whose program is being left."""
+        """End the game when the program is left."""
         self.control.changed = lambda: None
         self._workspace.door.detach(self.control)
         self._end_game()

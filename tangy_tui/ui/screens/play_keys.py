@@ -1,4 +1,4 @@
-"""The keys of the playing screen: what they are called, and what is said of them."""
+"""The keys of the playing screen, with their names and help."""
 
 from __future__ import annotations
 

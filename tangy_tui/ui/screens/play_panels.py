@@ -243,7 +243,7 @@ class PlayPanels(TangyScreen[Tally]):
         return action != "talk" or (hearing is not None and hearing.by_key)
 
     async def action_talk(self) -> None:
-        """Push to talk: begin, or end what is being said."""
+        """Push to talk: begin or end the utterance."""
         await self.run_action("app.talk")
 
     @property

@@ -106,7 +106,7 @@ class PlayStaff(PlayPanels):
         self._take(self.control.apply(command))
 
     def _take(self, results: Sequence[Result]) -> None:
-        """Tell what came of a command; what is seen anyway is not said as well."""
+        """Report the outcome of a command, unless the screen shows it anyway."""
         for result in results:
             if isinstance(result, StaffNote) and result.kind not in SEEN_ANYWAY:
                 said = noted_words(result, self._workspace.name, by_keys=True)
@@ -152,7 +152,7 @@ class PlayStaff(PlayPanels):
             self._do(command)
 
     def action_presence(self) -> None:
-        """Say who has come, or has left."""
+        """Ask staff who has come or left."""
         self.run_worker(self._presence(), name="presence", group="type", exclusive=True)
 
     async def _presence(self) -> None:
@@ -167,7 +167,7 @@ class PlayStaff(PlayPanels):
             self._do(ComesIn(person) if person in away else GoesAway(person))
 
     def on_asking_panel_commanded(self, event: AskingPanel.Commanded) -> None:
-        """Carry out what was typed while Tangy asks."""
+        """Carry out a command typed during a question."""
         event.stop()
         if isinstance(event.command, GoOn) and not self.control.going:
             self.action_pause()
@@ -182,7 +182,7 @@ class PlayStaff(PlayPanels):
         return refusal is not None
 
     async def _propose(self, proposal: Proposal) -> None:
-        """Ask whether the next behaviour is to be done; if not, staff say what else."""
+        """Ask staff to approve the next behaviour, or to choose another."""
         dialog = ConfirmDialog(
             *confirmed_words(proposal, self._workspace.name),
             yes="do it",

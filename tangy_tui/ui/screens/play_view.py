@@ -88,7 +88,7 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
 
 
 def _in_order(people: tuple[PersonNow, ...]) -> list[PersonNow]:
-    """Return people as they stand; where there are many, those who ask come first."""
+    """Return people in order; in a large group those who ask come first."""
     return sorted(people, key=lambda person: (not person.turn, person.turn, person.state == "away"))
 
 

@@ -37,7 +37,7 @@ def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
 
 
 def _row(activity: Activity, words: str, decision: Decision) -> PolicyRow:
-    """Write what is done in a situation; where Tangy would ask, the words say why."""
+    """Format the behaviour in a situation, or why Tangy would ask."""
     if not decision.seen:  # whatever the trees would vote for, Tangy asks there
         return PolicyRow(words, "never shown", 0.0, 0)
     if decision.contested:

@@ -75,7 +75,7 @@ class Instead(Enum):
 
 
 def wanted(question: Unsure) -> bool:
-    """Say whether staff wanted to be asked: then Tangy can go on by itself after all."""
+    """Return whether staff requested the question, so that Tangy could also go on by itself."""
     return question.fault == TAKEN_OVER
 
 
@@ -111,7 +111,7 @@ class AskingPanel(Vertical):
         question: Unsure,
         before: str = "",
     ) -> None:
-        """Make the panel for a question; `before` says what was learnt from the last answer.
+        """Make the panel for a question; `before` is the result of the last answer.
 
         Where staff wanted to be asked, who leaves it lets Tangy go on by itself.
         """
@@ -194,7 +194,7 @@ class AskingPanel(Vertical):
         return await self._answer
 
     def withdraw(self) -> None:
-        """Ask no more: something has come up that makes the question void."""
+        """Close the question: an event has made it void."""
         self._settle(Instead.WITHDRAWN)
         if (dialog := self._dialog) is not None:
             self._close(dialog)
@@ -223,7 +223,7 @@ class AskingPanel(Vertical):
         return self._acceptable
 
     def ask_to_give_up(self) -> None:
-        """Give the game up, if that is meant; or let Tangy go on, if staff wanted to be asked."""
+        """Confirm giving up the game; or let Tangy go on, if staff requested the question."""
         if self._wanted:
             self.withdraw()
         elif self._dialog is None:
@@ -289,7 +289,7 @@ class AskingPanel(Vertical):
             self._carry_out(command)
 
     def _show(self, word: Perform) -> None:
-        """Show what was asked for, or do what a key does."""
+        """Show the requested help, or run a key's action."""
         if word.action == "why":
             self.post_message(self.WhyWanted())
         else:
@@ -341,7 +341,7 @@ class AskingPanel(Vertical):
         self._tell(self._answers.reply(reply))
 
     def _return(self, heard: str, sentence: str) -> None:
-        """Give a command back with what is to be said of it."""
+        """Put a command back into the line, with a message."""
         self.say(sentence)
         self.screen.query_one(LogView).write(sentence, "warn")
         bar = self.query_one(CommandBar)
@@ -379,7 +379,7 @@ class AskingPanel(Vertical):
         self.screen.query_one(LogView).write(sentence, kind)
 
     def _be_open(self, is_open: bool) -> None:
-        """Take note whether an answer can be taken; what was said meanwhile comes next."""
+        """Open or close the panel for answers; utterances heard meanwhile come next."""
         self.is_open = is_open
         if self._hearing is not None:
             self._hearing.look()

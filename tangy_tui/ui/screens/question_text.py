@@ -1,4 +1,4 @@
-"""What is written over the line to answer in: why Tangy asks, and what it sees."""
+"""The text above the answer line: why Tangy asks, and what it sees."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ class SensorsScreen(TangyScreen[None]):
         """Whether the picture is shown."""
 
     def compose(self) -> ComposeResult:
-        """Lay out the devices, what is told of one, its picture and the card."""
+        """Lay out the devices, details of one, its picture and the card."""
         yield StatusLine(self._status())
         with Container(id="body"):
             with Container(id="left"):

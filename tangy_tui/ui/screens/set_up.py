@@ -108,7 +108,7 @@ class SetUpScreen(TangyScreen[bool]):
         )
 
     def on_mount(self) -> None:
-        """Show everything, and look again and again at what is ready."""
+        """Show everything, and poll the readiness checks."""
         self.query_one(SetUpList).focus()
         self._show()
         self.set_interval(LOOK_SECONDS, self._show)
@@ -130,7 +130,7 @@ class SetUpScreen(TangyScreen[bool]):
         self.query_one(SetUpList).border_title = title
 
     def _draw_seats(self) -> None:
-        """Draw those who are here at their seats, beside the lines where there is room for it."""
+        """Draw the people at their seats, beside the lines if there is room."""
         workspace, away = self.setup.workspace, self.setup.away
         name = staff_names(workspace.name)
         here = [replace(one, name=name(one.id)) for one in workspace.people if one.id not in away]
@@ -335,7 +335,7 @@ class SetUpScreen(TangyScreen[bool]):
             self._say(text.SAID if said else text.NO_SOUND)
 
     async def _look_at_card(self) -> None:
-        """Read a card; whose it is, is here."""
+        """Read a card, and mark its owner as present."""
         setup = self.setup
         self._say(text.CARD_HOW)
         card = await asyncio.to_thread(setup.look_at_card)
@@ -353,7 +353,7 @@ class SetUpScreen(TangyScreen[bool]):
             self._say(text.card_seen_words(card, name(holder)))
 
     def action_begin(self) -> None:
-        """Begin the game, if that is meant; what is not ready is said first."""
+        """Begin the game; if checks have failed, ask first."""
         if not self._busy:
             self.run_worker(self._begin(), name="begin", group="check")
 

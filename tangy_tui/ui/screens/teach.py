@@ -113,7 +113,7 @@ class TeachScreen(TangyScreen[bool]):
         self._why = TeachWhy(self, workspace, teaching)
 
     def compose(self) -> ComposeResult:
-        """Lay out status, room, what was said, the trajectory, the situation, the commands."""
+        """Lay out status, room, dialogue, steps, situation and commands."""
         hearing = hearing_of(self.app) if self._scripted is None else None
         yield StatusLine()
         with Horizontal(id="body"):
@@ -195,12 +195,12 @@ class TeachScreen(TangyScreen[bool]):
         return self._scripted is None or action not in NOT_WATCHING
 
     def take_letter(self, event: events.Key | events.Paste) -> bool:
-        """Type letters into the line, wherever the keys are: no letter does anything here."""
+        """Type letters into the line, wherever the focus is: no letter is a shortcut here."""
         by_key = self._listener.by_key
         return self._scripted is None and type_letter(self, event, push_to_talk=by_key)
 
     async def action_talk(self) -> None:
-        """Push to talk: begin, or end what is being said."""
+        """Push to talk: begin or end the utterance."""
         await self.run_action("app.talk")
 
     def action_undo(self) -> None:
@@ -256,12 +256,12 @@ class TeachScreen(TangyScreen[bool]):
         self._why.show(self.query_one(Transcript).chosen)
 
     def action_think_no_more(self) -> None:
-        """Give up what is being thought over, and stay here."""
+        """Cancel the computation, and stay here."""
         self._why.cancel()
         self._log.write("Cancelled.", "dim")
 
     def teaches_as(self, name: str) -> None:
-        """Go on as another teacher; a game that was begun stays whose it is."""
+        """Switch the teacher; a game in progress keeps its teacher."""
         self.teaching.teach_as(name)
         if not self.teaching.demonstration.steps:
             self._apply(Discard())

@@ -1,4 +1,4 @@
-"""The teaching screen as a listener: when it takes what is said, and what can be said to it."""
+"""The teaching screen as a listener: when it takes commands, and which phrases it knows."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class TeachHearing:
         return "" if self.hearing is None else self.hearing.aloud
 
     def follow(self, events: Iterable[TeachingEvent]) -> None:
-        """Take note of what followed from a command: what was recorded of it gets its name."""
+        """Label the recording of a command with its result."""
         if self.hearing is not None:
             self.hearing.ears.follow(events)
 
@@ -88,7 +88,7 @@ class TeachHearing:
             self.hearing.leave(self)
 
     def open(self, is_open: bool) -> None:
-        """Take note whether commands are taken; what was said meanwhile comes next."""
+        """Open or close for commands; utterances heard meanwhile come next."""
         self._open = is_open
         if self.hearing is not None:
             self.hearing.look()

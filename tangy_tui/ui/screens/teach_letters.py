@@ -1,4 +1,4 @@
-"""Letters on the teaching screen: they go to its line, wherever the keys are."""
+"""Letters on the teaching screen: they go to its line, wherever the focus is."""
 
 from __future__ import annotations
 

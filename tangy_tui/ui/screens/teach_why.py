@@ -40,6 +40,6 @@ class TeachWhy:
         self._thinking = self._screen.run_worker(thinking, name="why")
 
     def cancel(self) -> None:
-        """Give up what is being thought over."""
+        """Cancel the computation."""
         if self._thinking is not None:
             self._thinking.cancel()

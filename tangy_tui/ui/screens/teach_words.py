@@ -1,4 +1,4 @@
-"""What is typed while teaching and is no behaviour: the words of keys, and what is asked."""
+"""Typed lines that are no behaviour: words of keys, and questions."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> N
 
 
 def go_home(screen: TeachScreen, *, watching: bool = False) -> None:
-    """Leave, and say what was kept of a game that is not finished, unless one only watches."""
+    """Leave, and tell what is stored of an unfinished game, unless the teacher is scripted."""
     shown = screen.teaching.demonstration
     if screen.is_active and shown.steps and not (shown.finished or watching):
         screen.app.notify(left_words(len(shown.steps)), markup=False)

@@ -106,7 +106,7 @@ class WatchScreen(TangyScreen[None]):
             log.write(text.ASKED_TO_STOP, "bad")
 
     def look(self) -> None:
-        """Show what is new."""
+        """Show new events."""
         was, stops = self._there, self._guest.stops
         self._there = self._guest.look()
         self._tell_log()
