@@ -233,7 +233,7 @@ class Facilitation:
         return [self.question]
 
     def refused(self, person: str | None) -> None:
-        """Take note that a person did not do what was asked of them beside the behaviours."""
+        """Note that a person refused a request outside the behaviours."""
         self._refused = person
 
     def withdraw(self) -> None:
@@ -299,11 +299,11 @@ class Facilitation:
         return [self._end(f"{question.reason} {question.remedy}")]
 
     def leave(self) -> list[GameEvent]:
-        """End a game that is going on because whoever watches it leaves."""
+        """End a running game because its viewer leaves."""
         return self.stop("It was left before its end.")
 
     def _told(self, acted: Acted, ended: GameEnded | None) -> list[GameEvent]:
-        """Tell what was done, and let the beliefs grow now that the response is in the log."""
+        """Return the events of a step; update the posteriors now that the response is logged."""
         events: list[GameEvent] = [acted]
         response = acted.outcome.response
         if response is not None:

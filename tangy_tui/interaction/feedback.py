@@ -234,7 +234,7 @@ class Feedback:
         return frozenset(event.record.of for event in self.store.events(ChangeTakenBack))
 
     def _gone(self) -> tuple[dict[str, str], frozenset[str]]:
-        """Return what is void, with the reasons, and what was taken back, by uuid."""
+        """Return void responses with their reasons, and responses taken back, by uuid."""
         back = self._back()
         voids = {
             event.record.of: event.record.why

@@ -1,4 +1,4 @@
-"""Forgetting who a person is: all that names them, wherever in the data folder it stands."""
+"""Forgetting a person: erasing their name and details from the whole data folder."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tangy_tui.language.words import FILLERS, spoken, words_of
 
 
 class Forgotten(NamedTuple):
-    """What came of it: how many events and which files were changed, and what is left.
+    """The result: changed events and files, and remaining data.
 
     `events_left` are events in which the name still stands, as that of a teacher; `files_left` are
     files that Tangy does not change and that hold it, or may.
@@ -35,7 +35,7 @@ def forget_person(
     person: Person,
     also: Sequence[str] = (),
 ) -> Forgotten:
-    """Forget a person's name, how it is said, voice and face, and erase the name from all texts.
+    """Erase a person's name, pronunciation, voice and face, also from free texts.
 
     The files come first and the name itself last, so that it can be done again if it is cut off.
 

@@ -35,7 +35,7 @@ class ResumedGame:
 
 @dataclass(frozen=True, slots=True)
 class Acted:
-    """One step of a game: what was observed, decided, done, and what came of it.
+    """One step of a game: observation, decision, action, and outcome.
 
     `right` says whether the behaviour is the one that the activity expects there (None where it
     expects nothing) and whether the world could carry it out.
@@ -55,7 +55,7 @@ class Acted:
 
 @dataclass(frozen=True, slots=True)
 class BeliefUpdated:
-    """A person responded, and what is believed of them was updated."""
+    """A person's response, with the updated posterior."""
 
     response: Response
     belief: Beta

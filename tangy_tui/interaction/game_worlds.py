@@ -1,4 +1,4 @@
-"""In which world each game of the log was played, and whose beliefs a response belongs to."""
+"""The world of each logged game: it decides which posterior a response updates."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FEWEST_CALLS = 2
 
 
 class GameWorlds:
-    """The worlds of the games of one log. What was read once is not read again."""
+    """The worlds of the games of one log, cached."""
 
     def __init__(self, store: Store) -> None:
         """Read from a log."""
@@ -83,7 +83,7 @@ class GameWorlds:
 
 
 def _told_by_time(store: Store, begun: Mapping[str, Event[EventRecord]]) -> dict[str, GameWorld]:
-    """Tell the world of games of before worlds were logged, as far as their times tell it.
+    """Infer the world of games logged without one from their times.
 
     Simulated calls always take the same time, and those of devices are measured. A game with
     devices that was over sooner than its own steps say was played on the bench. All else is

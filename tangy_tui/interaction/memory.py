@@ -1,4 +1,4 @@
-"""What the log says of a person, put together: method, prior, beliefs, what is switched off."""
+"""A person's model read from the log: method, prior, posteriors, disabled strategies."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Responses = Mapping[tuple[str, str], tuple[int, int]]
 
 @dataclass(frozen=True, slots=True)
 class PersonModel:
-    """What is known of one person at a time, and how the next strategy is chosen for them.
+    """The model of one person, and the choice of their next strategy.
 
     `prior` is where the beliefs began; `chosen` is the method in words, and `own` says that it
     was chosen for this person alone.
@@ -93,7 +93,7 @@ class PersonModels:
         return self._worlds.of(game) == self.world
 
     def recall(self, person: str, responses: Responses | None = None) -> PersonModel:
-        """Put together what is known of a person now.
+        """Return the current model of a person.
 
         Args:
             person: the id of the person.
@@ -125,7 +125,7 @@ def in_order(
 
 
 def unknown(strategies: Sequence[str], method: Method | None = None) -> PersonModel:
-    """Return what is known of a person of whom there is no log."""
+    """Return the model of a person without a log."""
     method = method or Thompson()
     prior = method.prior(strategies)
     return PersonModel(method, prior, prior)

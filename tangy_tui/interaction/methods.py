@@ -44,7 +44,7 @@ class Method(Protocol):
         ...
 
     def prior(self, strategies: Iterable[str]) -> Beliefs:
-        """Return what is believed of a person before their first response."""
+        """Return the prior of a person."""
         ...
 
     def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
@@ -156,7 +156,7 @@ class EarlierPeople:
 
 @dataclass(frozen=True)
 class Forgetting:
-    """Let what was learnt fade towards the prior: people change. For the rest as `inner` does.
+    """Let the posterior fade towards the prior, as people change; otherwise like `inner`.
 
     Args:
         keep: the share in (0, 1] of what was learnt that is left after one interaction with the

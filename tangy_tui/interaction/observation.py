@@ -1,4 +1,4 @@
-"""What a game observes, looked at again where one look contradicts what was to be expected.
+"""Observation in a game, with second looks where one look contradicts the expectation.
 
 A picture may be late, a card be misread or not be read at all. What such a look says is no reason
 to accuse anybody, to ask anybody, or to call it a fault: another look, of another moment, is taken

@@ -1,4 +1,4 @@
-"""Persuasion (III-B-2): what is believed of everybody present picks the strategy for each.
+"""Persuasion (III-B-2): choose each person's strategy by their posteriors.
 
 The paper's method is Thompson sampling over Beta posteriors; `methods` has the others.
 """
@@ -39,7 +39,7 @@ class StrategyChoice:
 
 
 class Persuasion:
-    """What is believed of everybody present, how a strategy is chosen, and how beliefs grow."""
+    """The posteriors of everybody present, the choice of a strategy, and the update."""
 
     def __init__(
         self,

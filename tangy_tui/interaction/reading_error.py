@@ -47,7 +47,7 @@ class ReadingError:
 
 @dataclass(frozen=True, slots=True)
 class FusedLook:
-    """What was believed after several looks: how many agree, of how many, and the error of one."""
+    """The result of several looks: agreeing looks, all looks, and the error rate of one."""
 
     agreeing: int
     taken: int

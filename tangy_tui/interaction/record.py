@@ -1,4 +1,4 @@
-"""One person's record: what is believed of them, how sure that is, and the history game by game."""
+"""One person's record: posteriors, their certainty, and the history game by game."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Record:
 
     @property
     def beliefs(self) -> Beliefs:
-        """What is believed of the person now."""
+        """The person's current posteriors."""
         return self.known.beliefs
 
     @property

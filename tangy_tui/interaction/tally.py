@@ -68,7 +68,7 @@ class Tally:
                     self.asked += 1
 
     def add_injections(self, came: Iterable[tuple[int, str]], absent: Iterable[str]) -> None:
-        """Note what was brought about in the newest game.
+        """Add the injections of the newest game.
 
         Args:
             came: step and kind of each fault that set in.

@@ -1,4 +1,4 @@
-"""Letting the last response of a person in a game not count: it was otherwise than it was seen."""
+"""Voiding the last response of a person in a game that was observed wrongly."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from tangy_tui.interaction.feedback import Feedback
 
 
 def void_last(store: Store, game: str, person: str, by: str) -> bool:
-    """Let the last response of a person in a game not count; return whether there was one.
+    """Void the last response of a person in a game; return whether there was one.
 
     Args:
         store: the log.

@@ -46,7 +46,7 @@ def choices(store: Store, activity: Activity) -> list[str]:
 
 
 def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, list[PolicyNotice]]:
-    """Return the policy that a word means, and what must be said of it.
+    """Return the policy that a word means, and a notice about it.
 
     It means, the first that fits: `last` or `last~N` (the last policy learnt, or the N-th before
     it), the name of a policy or how its digest begins, or the name of a teacher, from whose

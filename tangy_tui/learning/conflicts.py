@@ -44,7 +44,7 @@ class Conflict:
 
 
 def joined(resolutions: Iterable[Resolution]) -> dict[Situation, Resolution]:
-    """Join what was said of each situation, one time after another.
+    """Merge the resolutions of each situation, in order of time.
 
     What was called right last is right; a step that was set aside once stays so, unless its
     answer is right by now.
@@ -98,7 +98,7 @@ def find_conflicts(
 def training_rows(
     demonstrations: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
 ) -> tuple[list[tuple[Situation, str]], list[tuple[Situation, str]]]:
-    """Return the training set, situation and behaviour: what was shown, and what was only said.
+    """Return the training set of situations and behaviours, shown or only told.
 
     Shown is every step, in order, but for those that a resolution calls wrong and copies of a
     step. Said is an answer that a resolution calls right where all steps showed others, or

@@ -1,4 +1,4 @@
-"""Contradictions, told while they are taught: what was shown differently in the same situation.
+"""Contradictions, reported while teaching: another behaviour in the same situation.
 
 The list of conflicts tells them afterwards, when the teacher who could say which answer is right
 may have gone.
@@ -68,7 +68,7 @@ class Contradictions:
         return tuple(sorted(shown, key=lambda behaviour: -len(answers[behaviour])))
 
     def resolved(self, situation: Situation, right: tuple[str, ...], *, keep: bool) -> Resolution:
-        """Return the resolution by which these answers are right.
+        """Return the resolution that makes these answers right.
 
         Args:
             situation: of what.

@@ -56,7 +56,7 @@ class CoverageProof:
 
 
 def prove_coverage(activity: Activity, policy: Policy) -> CoverageProof | None:
-    """Search the games that can occur where Tangy does what it is sure of.
+    """Search all games that can occur under the policy's sure decisions.
 
     Args:
         activity: the activity to search.
@@ -82,7 +82,7 @@ def search_groups(
     limit: Limit = LIMIT,
     largest: Limit = LARGEST,
 ) -> CoverageProof:
-    """Search all games of one, two and three players, or of the teams, by what was shown.
+    """Search all games of one to three players, or of the teams, under the demonstrations.
 
     Args:
         activity: the activity to search.

@@ -1,4 +1,4 @@
-"""Behaviour effects (III-A-4): what was seen to follow each behaviour in the demonstrations.
+"""Behaviour effects (III-A-4): the observed transitions of each behaviour.
 
 The paper keeps the next state itself. Compared literally that raises several false alarms a game,
 because the next state also holds what others happened to do. So each transition is read as a few
@@ -45,7 +45,7 @@ class Effects:
     def mismatches(
         self, behaviour: str, before: ActivityState, after: ActivityState, activity: Activity
     ) -> list[Mismatch]:
-        """Compare an observed transition with what was learnt (the fault detection module's test).
+        """Compare an observed transition with the learnt effects (the fault detection test).
 
         A behaviour or variable that was never demonstrated is reported with nothing expected.
         """
@@ -134,7 +134,7 @@ def transition(
 
 
 def who_waits(gone: int, waiting: int) -> str:
-    """Describe what became of the requests of `waiting` people of whom `gone` ask no more.
+    """Describe the requests of `waiting` people of whom `gone` no longer ask.
 
     One person, or some, may change their minds; that all do at the same moment is another matter.
     """

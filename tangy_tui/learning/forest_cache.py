@@ -31,7 +31,7 @@ _log = logging.getLogger(__name__)
 
 
 class ForestCache:
-    """Grows forests, and remembers in a folder what they answered.
+    """Grows forests, and caches their votes in a folder.
 
     A file is named after what was learnt from, the settings, and the versions of Python, numpy and
     scikit-learn: where any of them is another, so is the forest. A file that cannot be read, or
@@ -62,13 +62,13 @@ class ForestCache:
         rows: tuple[tuple[Situation, str], ...],
         situations: tuple[Situation, ...],
     ) -> Forest:
-        """Grow a forest, and keep what it answers in place of what was kept."""
+        """Grow a forest, and replace its cached votes."""
         forest = grown(settings, rows, situations)
         self._keep(self.folder / f"{_key(settings, rows, situations)}.json", forest)
         return forest
 
     def _keep(self, path: Path, forest: Forest) -> None:
-        """Write a file whole or not at all; a folder that cannot be written to is no fault."""
+        """Write a file atomically; ignore a folder that cannot be written to."""
         part = path.with_suffix(f".{os.getpid()}.part")
         try:
             self.folder.mkdir(mode=0o700, exist_ok=True)

@@ -190,7 +190,7 @@ def _stepped(
 def _step_undone(
     entry: LibraryEntry, number: int | None, at: int, aside: Collection[int]
 ) -> LibraryEntry:
-    """Take back the step that event `at` means, whose number tells where others are left out."""
+    """Take back the step that event `at` means; its number counts where others are left out."""
     steps = entry.demonstration.steps
     number = len(steps) if number is None else number
     newest = steps[-1].id if steps else 0
@@ -286,7 +286,7 @@ def _make(
 
 
 def _replace_repeated(library: Library) -> None:
-    """Hide what was shown again from some step, from the moment the new one is complete."""
+    """Hide demonstrations that a complete newer one shows again from some step."""
     for entry in list(library.entries.values()):
         if takes_place(entry):
             for id in entry.demonstration.of:

@@ -38,7 +38,7 @@ class LibraryEntry:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A change of the library: what was done to which demonstrations, by the event `seq`.
+    """A change of the library by the event `seq`: an edit and its demonstrations.
 
     `found` are the demonstrations as they were then, those that other edits made left out: a
     demonstration may grow or shrink afterwards, and what was made of it does not.

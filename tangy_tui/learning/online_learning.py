@@ -65,7 +65,7 @@ class OnlineLearning:
     def learn(
         self, policy: Policy, step: Step, *, teacher: str, seed: int, people: Sequence[str]
     ) -> Lesson:
-        """Learn an answer, and keep all of it in the log or nothing.
+        """Learn an answer, and log it in one transaction.
 
         Args:
             policy: the policy that was not sure.
@@ -107,7 +107,7 @@ class OnlineLearning:
     def _learn(
         self, policy: Policy, shown: Sequence[Demonstration], settled: Resolution | None
     ) -> Policy:
-        """Fit the forest anew; an answer that agrees with what was shown is enough to act on."""
+        """Fit the forest again; an answer that agrees with demonstrations suffices to act."""
         said = [*policy.resolutions, *([settled] if settled is not None else [])]
         answer = shown[-1].steps[-1]
         situation = answer.state.situation

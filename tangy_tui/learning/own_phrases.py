@@ -109,7 +109,7 @@ class OwnPhrases:
         return "" if words in known | listed else words
 
     def note(self, text: str, behaviour: str, *, kept: bool) -> None:
-        """Keep words for a behaviour, or note that they are not to be asked about again."""
+        """Store words for a behaviour, or note not to ask about them again."""
         _note(self._store, self._activity.name, self._teacher, text, behaviour, kept=kept)
 
 
@@ -136,7 +136,7 @@ def _note(
 
 
 def _noted(store: Store, activity: str, teacher: str) -> dict[str, OwnPhraseNoted]:
-    """Return what was noted last of each of a teacher's phrases."""
+    """Return the last note on each of a teacher's phrases."""
     found: dict[str, OwnPhraseNoted] = {}
     for event in store.events(OwnPhraseNoted):
         one = event.record

@@ -72,7 +72,7 @@ PolicyNotice: TypeAlias = LeftOut | NotAsKept
 
 
 class NoPolicy(TangyError):
-    """Nothing has been learnt yet for this activity, or not what was asked for."""
+    """There is no policy for this activity, or not the requested one."""
 
 
 def keep_policy(store: Store, policy: Policy) -> None:
@@ -81,7 +81,7 @@ def keep_policy(store: Store, policy: Policy) -> None:
 
 
 def stored_policies(store: Store, activity: str) -> list[PolicyLearnt]:
-    """Return what was kept of every policy of an activity, oldest first."""
+    """Return the stored policies of an activity, oldest first."""
     return [
         replace(event.record, at=event.at)
         for event in store.events(PolicyLearnt)
@@ -90,13 +90,13 @@ def stored_policies(store: Store, activity: str) -> list[PolicyLearnt]:
 
 
 def last_policy(store: Store, activity: str) -> PolicyLearnt | None:
-    """Return what was kept of the last policy of an activity, or None."""
+    """Return the last stored policy of an activity, or None."""
     kept = stored_policies(store, activity)
     return kept[-1] if kept else None
 
 
 def need_policy(store: Store, activity: Activity, wanted: str = "") -> PolicyLearnt:
-    """Return what was kept of a policy: of the last one, or of the last one of a name or digest.
+    """Return a stored policy: the last one, or the last one of a name or digest.
 
     `wanted` is `last` or `last~N` (the N-th before it), a name, or how a digest begins (four
     characters or more).
@@ -221,7 +221,7 @@ def without_strange_steps(
 
 
 def changes(kept: PolicyLearnt, policy: Policy) -> list[Change]:
-    """Compare what was kept of a policy with a policy: what it does, or that it asks."""
+    """Compare a stored policy with a policy: behaviours, or that it asks."""
     was: dict[Situation, str] = {}
     for row in kept.rows:
         asks = row.share < SURE if kept.asks is None else row.situation in kept.asks

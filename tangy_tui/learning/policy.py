@@ -273,7 +273,7 @@ def grown(
 
 
 def encoder(situations: Sequence[Situation]) -> Callable[[Situation], list[float]]:
-    """Return the one-hot encoding of a situation (stage, request, user state) among all of them.
+    """Return the one-hot encoder of situations (stage, request, user state).
 
     Of an activity declared by facts, each fact of the user state is encoded by itself.
     """
@@ -304,7 +304,7 @@ def _digest(
     resolutions: Sequence[Resolution],
     whom: Whom,
 ) -> str:
-    """Return a SHA-256 over what was learnt from and what came of it."""
+    """Return a SHA-256 over the training data and the learnt behaviours."""
     body: list[object] = [
         asdict(settings),
         [[*situation, behaviour] for situation, behaviour in rows],

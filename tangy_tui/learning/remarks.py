@@ -76,11 +76,11 @@ class Remarks:
         return self._shown.usual(situation)
 
     def read(self) -> None:
-        """Read what was shown before, unless it is known: a step that is new is not in it yet."""
+        """Read earlier demonstrations unless they are known; the newest step is not among them."""
         _ = self._shown
 
     def reread(self) -> None:
-        """Read anew what was shown before: a demonstration was put away."""
+        """Read earlier demonstrations again: one was discarded."""
         self._contradictions, self.open = None, None
 
     def notice(self, shown: Shown, *, over: bool) -> None:
@@ -106,7 +106,7 @@ class Remarks:
             self.open = NewWording(shown.number, shown.step, words)
 
     def answer(self, answer: RemarkAnswer) -> Settled | None:
-        """Note what a teacher says of the open remark, as when its conflict is settled later.
+        """Note a teacher's answer to the open remark, or that its conflict is settled later.
 
         Returns:
             What was settled; None if there is no remark that could be.
@@ -133,7 +133,7 @@ class Remarks:
         return Settled(remark, answer, right)
 
     def take_back(self, demonstration: str, number: int, step: Step) -> None:
-        """Forget a step that was undone, and its answer; what was said of it is news again."""
+        """Forget an undone step and its answer; a remark about it may come again."""
         self.open = None
         self._told = {(kind, of) for kind, of in self._told if of != step.state.situation}
         if self._contradictions is not None:

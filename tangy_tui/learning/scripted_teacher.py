@@ -44,7 +44,7 @@ class ScriptedTeacher:
         return Say(self._phrases[expected] + self._addressed(expected))
 
     def _addressed(self, expected: str) -> str:
-        """Return for whom, in words, where that is not whom the behaviour is for by itself."""
+        """Return the target in words, where it differs from the behaviour's default."""
         teaching, activity = self._teaching, self._teaching.activity
         state = teaching.world.observe()
         selector = activity.expected_selector(state.situation)

@@ -101,7 +101,7 @@ class Executed:
 
 @dataclass(frozen=True, slots=True)
 class Contradicted:
-    """Step `number` differs from what was shown in the same situation before."""
+    """Step `number` differs from an earlier one in the same situation."""
 
     number: int
     step: Step

@@ -129,7 +129,7 @@ class TeachingSession:
 
     @property
     def people(self) -> tuple[str, ...]:
-        """The ids of those who take part in the present demonstration."""
+        """The participants of this demonstration, by id."""
         return self.demonstration.people
 
     @property
@@ -144,7 +144,7 @@ class TeachingSession:
 
     @property
     def sayable(self) -> tuple[str, ...]:
-        """The commands that can be carried out now, first what was shown most often here."""
+        """The commands that can be carried out now, the most often demonstrated ones first."""
         if self.demonstration.finished:
             return ()
         situation = self.world.observe().situation
@@ -271,7 +271,7 @@ class TeachingSession:
         return [Begun(new, resumed=False)]
 
     def _enter(self, demonstration: Demonstration, led_to: ReplayedGame) -> None:
-        """Go on with a demonstration, among those who take part, in a world that it led to."""
+        """Continue a demonstration with its participants, in the world that it led to."""
         self.demonstration = demonstration
         self.world, self.numbers = led_to.world, led_to.numbers
         self._undone = []

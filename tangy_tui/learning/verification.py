@@ -104,7 +104,7 @@ class NotUnderstood:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """Something that cannot be done now, and why; `heard` goes back to the teacher.
+    """A behaviour that cannot be carried out now, and why; `heard` goes back to the teacher.
 
     Args:
         why: what stands in its way.
@@ -205,7 +205,7 @@ class Verifier:
         return self._activity.behaviour(behaviour).attends
 
     def stops(self, text: str) -> bool:
-        """Say whether what was typed stops the robot, instead of asking for a behaviour."""
+        """Return whether typed text stops the robot, instead of asking for a behaviour."""
         return stops(text, self._phrasebook.game)
 
     def reply(self, reply: Reply) -> Verification:

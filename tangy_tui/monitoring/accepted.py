@@ -31,7 +31,7 @@ class Acceptance:
 
 
 def accept(store: Store, activity: Activity, fault: Fault, acted: Acted, by: str) -> None:
-    """Log that what followed a behaviour is to be expected from now on."""
+    """Log that an observed effect of a behaviour is expected from now on."""
     step = Step(acted.action.behaviour.name, acted.action.target, acted.state, acted.after)
     store.append(
         EffectAccepted(activity=activity.name, game=fault.game, fault=fault.id, by=by, step=step)
@@ -53,7 +53,7 @@ def read_accepted(store: Store, activity: str) -> list[Acceptance]:
 
 
 def take_back(store: Store, activity: str, place: int) -> Acceptance:
-    """Take back what was accepted, by its place in the list (from 1 on).
+    """Withdraw an accepted effect, by its number in the list (from 1).
 
     Raises:
         TangyError: there is no such place.

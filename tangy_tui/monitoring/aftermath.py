@@ -43,7 +43,7 @@ class Aftermath:
         self._causes: dict[str, _Cause] = {}
 
     def begin(self) -> None:
-        """Forget what was wrong in the last game."""
+        """Reset for a new game."""
         self._causes.clear()
 
     def end(self, code: str) -> bool:

@@ -1,4 +1,4 @@
-"""Fault detection (III-C): what was observed, held against what was to be expected.
+"""Fault detection (III-C): observations compared with expectations.
 
 After each behaviour the state is compared with the learnt effects; all the time the age and state
 of what the devices report is looked at. What comes out is evidence; what it means is `diagnosis`.
@@ -78,7 +78,7 @@ class Detector:
 
     @property
     def spent(self) -> bool:
-        """Whether anybody is not to be asked any more in this game."""
+        """Whether anybody has reached the limit of requests in this game."""
         return bool(self.doubted) or any(map(self.spent_for_game, self._in_game))
 
     def spent_for_game(self, person: str | None) -> bool:
@@ -134,7 +134,7 @@ class Detector:
     def compare(
         self, acted: Acted, *, explained: bool = False
     ) -> tuple[dict[str, Fact], list[Mismatch]]:
-        """Compare what followed a behaviour with its learnt effects.
+        """Compare the state after a behaviour with its learnt effects.
 
         Where nothing at all is known of a behaviour's effects, nothing can be unexpected.
 
@@ -224,7 +224,7 @@ class Detector:
         return bool(unexpected) or refused(behaviour, before, outcome, after)
 
     def _between(self, behaviour: str, waiting: Sequence[str], gone: int) -> list[Mismatch]:
-        """Return the mismatch that of those who waited some ask no more as a behaviour begins."""
+        """Return the mismatch of requests that ended between two behaviours."""
         if behaviour not in self.effects.values:
             return []
         expected = self.effects.values[behaviour].get(OTHERS, frozenset())
@@ -294,7 +294,7 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
 
 
 def _link_is_quiet_for(robot: Robot, health: Health) -> float:
-    """Return for how many s the link has been quiet, if that is long and it is not lost yet; or 0.
+    """Return since how many s the link has been quiet, or 0 if that is short or it is lost.
 
     All that is reached by a quiet link grows old with it, and what was older before, as pictures
     are, may count as silent before the link does. It is judged by how old it was when the link was
@@ -308,7 +308,7 @@ def _link_is_quiet_for(robot: Robot, health: Health) -> float:
 
 
 def symptoms(evidence: Evidence) -> set[str]:
-    """Return the keys of evidence that asks for an explanation by itself."""
+    """Return the keys of evidence that needs an explanation of its own."""
     return {
         key
         for key, value in evidence.items()

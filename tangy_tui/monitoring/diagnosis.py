@@ -1,4 +1,4 @@
-"""Fault diagnosis (III-C): rules in order say what the evidence means.
+"""Fault diagnosis (III-C): ordered rules that map evidence to faults.
 
 Each symptom is explained by the first rule that matches and names it; a rule all of whose
 symptoms are explained already has nothing to add. So a lost link is one fault and not eleven, and

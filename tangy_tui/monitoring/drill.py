@@ -170,7 +170,7 @@ class Drill:
         )
 
     def next(self) -> Round | None:
-        """Begin the next round; None when there is none, or when one is still to be answered."""
+        """Begin the next round; None if there is none, or one is still unanswered."""
         if self.over or self.question is not None:
             return None
         at = len(self._answered)
@@ -218,7 +218,7 @@ class Drill:
         return answered
 
     def leave(self) -> Sheet | None:
-        """Leave the drill: what was answered is kept, unfinished; None if that is nothing."""
+        """Leave the drill and return its unfinished sheet; None without an answer."""
         self.question = None
         if not self._answered:
             return None

@@ -186,7 +186,7 @@ class Tabletop:
         return rule.fill(text, name="the person", object=self.activity.object)
 
     def play(self, number: int, kind: RoundKind, rng: Random) -> Round:
-        """Play games until what was drawn can be seen, and nothing else.
+        """Play games until the drawn fault, and no other, can be observed.
 
         What cannot occur in this activity is replaced by something of the same class.
 
@@ -212,7 +212,7 @@ class Tabletop:
 
     @contextmanager
     def _game(self, kind: RoundKind, seed: int, rng: Random) -> Iterator[Supervision]:
-        """Open a game whose log is thrown away."""
+        """Open a game with a temporary log."""
         ids = list(self.names)
         strategies = tuple(self.activity.strategies)
         policy = self._with_a_gap(rng) if kind.gap else self._policy
@@ -339,7 +339,7 @@ class Tabletop:
     def _catches_the_eye(
         self, quiet: str, acted: Acted, refused: Mapping[str, int], game: Supervision, rng: Random
     ) -> str:
-        """Say what was seen that looks like a fault, and is none; "" if there was no such thing."""
+        """Return an observation that resembles a fault but is none; "" if there was none."""
         response = acted.outcome.response
         if quiet == READING:
             told = [one for one in game.world.health() if one.facts]

@@ -1,4 +1,4 @@
-"""Why something is diagnosed: what was measured, and what was expected and seen, in words."""
+"""The evidence of a diagnosis in words: measurements, expectations and observations."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def evidence_words(
     conditions: Iterable[Condition] = (),
     looks: FusedLook | None = None,
 ) -> str:
-    """Write evidence as one line: what was measured, and what was expected and seen.
+    """Format evidence as one line: measurements, expectations and observations.
 
     Args:
         evidence: by which it was recognised.

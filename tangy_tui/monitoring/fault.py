@@ -1,4 +1,4 @@
-"""A fault and what was done about it: the record that console, log and reports share."""
+"""A fault and its recovery: the record that console, log and reports share."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Fault:
     """Whether it is open, borne or over."""
 
     def add(self, move: RecoveryEvent) -> None:
-        """Add what was done about it."""
+        """Add a recovery event."""
         self.moves.append(move)
         if move.kind in ENDINGS:
             self.status = OVER
@@ -127,7 +127,7 @@ class Fault:
         )
 
     def document(self) -> dict[str, Any]:
-        """Return the fault with what was done about it, as `--json` prints it."""
+        """Return the fault and its recovery as `--json` prints them."""
         return {
             **self.record().body,
             "name": self.name,

@@ -106,7 +106,7 @@ class Recovery:
 
     @property
     def ended(self) -> bool:
-        """Whether the game has come to its end, be it told or not."""
+        """Whether the game has ended, whether or not that was reported."""
         return self._game.over or self._game.world.over
 
     def rule(self, fault: Fault) -> FaultRule:

@@ -1,4 +1,4 @@
-"""Games read back from the log, moment by moment: what was seen and done, responses, faults."""
+"""Games replayed from the log: observations, behaviours, responses and faults in order."""
 
 from __future__ import annotations
 

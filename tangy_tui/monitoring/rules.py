@@ -16,7 +16,7 @@ from tangy_tui.monitoring.drill_rounds import round_kinds
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """Fault rules that were looked over.
+    """Checked fault rules.
 
     `unseen` is the evidence of the robot's devices that no rule looks at; `unruled` the kinds of
     fault of the simulator whose right diagnosis is no rule; `untried` the rules that nothing in

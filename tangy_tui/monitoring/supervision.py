@@ -201,7 +201,7 @@ class Supervision:
         return told + self._end_if_hopeless()
 
     def stopped_by_staff(self) -> None:
-        """Take note of a STOP: what it breaks off is nobody's fault, and nothing to be expected."""
+        """Note a STOP: the interrupted behaviour is no fault, and its effects are not checked."""
         self._stops += 1
 
     def look(self) -> list[Event]:
@@ -368,7 +368,7 @@ class Supervision:
         return self.recovery.leave_open() + list(self.game.stop(reason))
 
     def _end_if_hopeless(self) -> list[Event]:
-        """End a game that is halted by what was cleared again and again."""
+        """End a game that halts again and again for a cleared fault."""
         fault = self.halted
         if fault is None or self.over or self._clearings[fault.code] < MOST_CLEARINGS:
             return []

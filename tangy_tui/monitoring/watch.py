@@ -42,7 +42,7 @@ class FaultWatch:
         self._aftermath = Aftermath(book, detector.devices)
 
     def begin(self) -> None:
-        """Forget what was seen in the last game."""
+        """Reset for a new game."""
         self.acted.clear()
         self._seen = None
         self._aftermath.begin()
@@ -75,7 +75,7 @@ class FaultWatch:
         return self.look()
 
     def after(self, events: Sequence[GameEvent], *, ordered: bool = False) -> list[Event]:
-        """Hold what was done against what was to be expected; end a game that came to its end.
+        """Check a behaviour against its expectation; end a finished game.
 
         What was `ordered` otherwise, by a STOP or by staff who took over, is held against nothing:
         what comes of it is theirs, and neither a fault nor anybody's refusal.
@@ -96,7 +96,7 @@ class FaultWatch:
         return told
 
     def refused(self, fault: Fault) -> list[Event]:
-        """See, after a person was asked for help, whether they are to be asked no more."""
+        """Check, after a request, whether a person has reached the limit of requests."""
         person = fault.person
         asked = any(move.kind == "asked" for move in fault.moves)
         if person is None or self._game.over or not asked:
@@ -156,7 +156,7 @@ class FaultWatch:
     def _take(
         self, found: Sequence[Diagnosis], acted: Acted | None, whose: str | None = None
     ) -> list[Event]:
-        """Keep the diagnoses that are new; halt at once if one is critical.
+        """Keep new diagnoses; halt at once if one is critical.
 
         Args:
             found: the diagnoses.

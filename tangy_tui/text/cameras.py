@@ -1,4 +1,4 @@
-"""What is said of cameras and of the pictures that they gave."""
+"""Words for cameras and their pictures."""
 
 from __future__ import annotations
 

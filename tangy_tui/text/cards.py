@@ -1,4 +1,4 @@
-"""Cards in words: whose a card is, and which one Tangy reads."""
+"""Words for cards: who owns one, and which one Tangy reads."""
 
 from __future__ import annotations
 

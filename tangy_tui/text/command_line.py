@@ -56,7 +56,7 @@ def more_left_out(count: int) -> str:
 
 
 def experiment_stopped(pieces: int) -> str:
-    """Say what is kept of an experiment that was stopped."""
+    """Say which results of a stopped experiment are stored."""
     return (
         f"tangy: Stopped. {pieces} finished pieces of work are kept. "
         "Run the same command again to go on from there."

@@ -1,4 +1,4 @@
-"""The paper's figures beside those that came out here, and in words where and why they differ.
+"""The paper's figures beside ours, with the reasons for differences.
 
 The words follow the numbers, and a reason is given only for what differs. Only what was predicted
 can agree: a figure that was chosen or fitted to come out so tests nothing, and says that instead.
@@ -39,7 +39,7 @@ SOURCES: Mapping[Source, str] = MappingProxyType(
 
 @dataclass(frozen=True)
 class ComparisonRow:
-    """One line: what is compared, the paper's figure, ours, and what to say about the two.
+    """One line: the quantity, the paper's figure, ours, and a remark.
 
     `source` says where our figure comes from (see `SOURCES`).
     """

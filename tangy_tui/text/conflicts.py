@@ -1,4 +1,4 @@
-"""Conflicts between demonstrations in words: what is asked about each, and what came of it."""
+"""Words for conflicts between demonstrations: the question, and its resolution."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def situation_words(situation: str) -> str:
 
 
 def settled_words(answered: str, aside: int) -> str:
-    """Say what was settled, and how many steps are no longer learnt from."""
+    """Name the resolution, and how many steps no longer count."""
     return answered + (f" {counted(aside, 'step')} set aside." if aside else "")
 
 

@@ -66,7 +66,7 @@ def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
 
 
 def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
-    """Ask whether the next behaviour is to be done."""
+    """Ask staff to approve the next behaviour."""
     whom = f" ({name(proposal.target)})" if proposal.target else ""
     because = shown_here(proposal.seen, proposal.share)
     return f"Next: {proposal.behaviour}{whom}, {because}. Y: do it. N: tell Tangy what else."
@@ -232,12 +232,12 @@ BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
 
 def void_call_words(label: str) -> str:
-    """Ask whether a call is to be taken back."""
+    """Ask before a call is taken back."""
     return f"Take {label} back?"
 
 
 def confirmed_words(proposal: Proposal, name: Callable[[str], str]) -> tuple[str, str]:
-    """Ask whether the next behaviour is to be done, and say how sure Tangy is of it."""
+    """Ask staff to approve the next behaviour, with Tangy's certainty."""
     whom = f" ({name(proposal.target)})" if proposal.target else ""
     return f"Next: {proposal.behaviour}{whom}?", BECAUSE_DETAIL.format(
         shown_here(proposal.seen, proposal.share)

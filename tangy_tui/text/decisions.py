@@ -98,7 +98,7 @@ def addressed_words(
 
 
 def shown_words(activity: Activity, shown: Shown, name: Callable[[str], str]) -> str:
-    """Name a demonstrated step: what, where it stands, by whom.
+    """Name a demonstrated step: behaviour, place in the demonstration, teacher.
 
     Args:
         activity: what was shown.

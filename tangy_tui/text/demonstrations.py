@@ -25,18 +25,18 @@ CHOOSE_FIRST = "Choose the step to begin with: tab goes to the steps."
 
 
 def again_words(name: str, step: int) -> str:
-    """Ask whether a demonstration is to be shown again from a step on."""
+    """Ask before a demonstration is shown again from a step on."""
     return f"Show {name} again from step {step}?"
 
 
 def delete_words(row: ListRow) -> tuple[str, str]:
-    """Ask whether a demonstration is to be deleted, and say what that means."""
+    """Ask before a demonstration is deleted, and explain the effect."""
     detail = f"Tangy will not learn from its {counted(row.steps, 'step')}. {NOTHING_LOST}"
     return f"Delete demonstration {row.number} by {row.teacher}?", detail
 
 
 def merge_words(rows: Sequence[ListRow]) -> tuple[str, str]:
-    """Ask whether demonstrations are to be merged, and say what that means."""
+    """Ask before demonstrations are merged, and explain the effect."""
     names = listed(row.number for row in rows)
     steps = sum(row.steps for row in rows)
     detail = f"They become one of {counted(steps, 'step')}, in this order. {NOTHING_LOST}"
@@ -44,7 +44,7 @@ def merge_words(rows: Sequence[ListRow]) -> tuple[str, str]:
 
 
 def split_words(row: ListRow, step: int) -> tuple[str, str]:
-    """Ask whether a demonstration is to be split after a step, and say what that means."""
+    """Ask before a demonstration is split after a step, and explain the effect."""
     return (
         f"Split demonstration {row.number} after step {step}?",
         f"It becomes two: one of {counted(step, 'step')}, one of {row.steps - step}. "

@@ -173,7 +173,7 @@ def why_document(workspace: Workspace, why: Why) -> dict[str, Any]:
 
 
 def lesson_document(workspace: Workspace, lesson: Lesson) -> dict[str, Any]:
-    """Describe what was learnt from an answer in a game."""
+    """Describe the lesson of an answer in a game."""
     made, found = lesson.demonstration, lesson.replay
     return {
         "demonstration": made.id,
@@ -211,7 +211,7 @@ def comparison_document(
 
 
 def person_document(record: Record) -> dict[str, Any]:
-    """Describe what is known of one person, strategy by strategy, and where it comes from."""
+    """Describe one person's model: the posterior of each strategy, and its data."""
     known = record.known
     return {
         "id": record.person.id,

@@ -1,4 +1,4 @@
-"""Drills in words, for the screen and for lines: rounds, what was right, and score sheets."""
+"""Words for drills, on the screen and by lines: rounds, corrections, and score sheets."""
 
 from __future__ import annotations
 
@@ -145,14 +145,14 @@ def device_words(devices: Sequence[tuple[str, str]]) -> str:
 
 
 def question_words(question: Question, shown: Round) -> str:
-    """Return the question, with what is seen then where it is about clearing."""
+    """Return the question; one about clearing comes with the observations of that moment."""
     if question.kind == "clear" and shown.release is not None:
         return f"{RELEASE.format(seen=shown.release.seen)} {asked_words(question.kind)}"
     return asked_words(question.kind)
 
 
 def told_lines(table: Tabletop, shown: Round, answered: AnsweredRound) -> list[Told]:
-    """Tell what was right in a round, why, and what to do then."""
+    """Tell the right answers of a round, the reasons, and what to do."""
     fault = shown.fault
     what = "nothing was wrong" if fault is None else fault.name
     lines = [_verdict(answered.named_right, what, _named(table, answered.named))]
@@ -259,7 +259,7 @@ def sheets_lines(sheets: Sequence[Sheet], when: Callable[[str], str], who: str =
 
 
 def left_words(drill: Drill) -> str:
-    """Say what is kept of a drill that was left."""
+    """Say which answers of an unfinished drill are stored."""
     return KEPT if drill.sheet.answered else NOTHING_KEPT
 
 

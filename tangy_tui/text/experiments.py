@@ -240,7 +240,7 @@ def stopped_words(reason: str, games: int) -> str:
 
 
 def behaviours_words(document: Document) -> str:
-    """Say how many behaviours and interactions a game has, and what was not carried out."""
+    """Count the behaviours and interactions of a game, and those not carried out."""
     return (
         f"{number(document['behaviours_per_game'])} behaviours and "
         f"{number(document['interactions_per_user_game'])} interactions of each user in a game. "

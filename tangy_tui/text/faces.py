@@ -1,4 +1,4 @@
-"""What is said of the faces that Tangy knows: who is asked, who is known, who is forgotten."""
+"""Words for known faces: consent, enrolment, and forgetting."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def consent_question(name: str, folder: Path) -> str:
 def enrolled_lines(
     person: Person, *, new: bool, taken: int, advised: int, several: bool, like: str
 ) -> list[str]:
-    """Say by how many pictures a person is known, and what is doubtful about them.
+    """Count the pictures of a person, and name the doubtful ones.
 
     Args:
         person: whose face it is.

@@ -1,4 +1,4 @@
-"""Faults in words: status, banner, list, what was done, and evidence against what was expected."""
+"""Words for faults: status, banner, list, recovery, and evidence beside expectation."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def said_words(fault: Fault) -> str:
 
 
 def _last(fault: Fault) -> RecoveryEvent | None:
-    """Return what was done last; what came before a fault was seen is still so."""
+    """Return the last recovery event; the state before an acknowledgement remains."""
     done = [move for move in fault.moves if _DOING.get(move.kind) != ""]
     return done[-1] if done else None
 
@@ -202,14 +202,14 @@ def told_in_banner(supervision: Supervision) -> list[Fault]:
 
 
 class EvidenceLine(NamedTuple):
-    """One piece of evidence in words, and ("": nothing more) what was to be expected."""
+    """One piece of evidence in words, and its expectation ("": none)."""
 
     what: str
     note: str = ""
 
 
 def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[EvidenceLine]:
-    """Hold what was observed against what was to be expected."""
+    """Put observations beside their expectations."""
     rule = book.rule(fault.code)
     pieces: list[EvidenceLine] = []
     for key, value in fault.evidence.items():
@@ -249,7 +249,7 @@ def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list
 
 
 def known_now(fault: Fault, supervision: Supervision) -> Fault:
-    """Return a fault with the words of the rule by which more is known of it now, if there is one.
+    """Return a fault in the words of a more specific rule that has matched since, if any.
 
     A robot whose own program stood still looks at first like one to which the link is lost.
     """
@@ -320,7 +320,7 @@ def _observed(fact: str, value: Fact) -> str:
 
 
 def move_words(move: RecoveryEvent) -> str:
-    """Say in a few words what was done."""
+    """Name a recovery event in a few words."""
     words = DONE_REMEDIES.get(move.remedy, move.remedy) or MOVES.get(move.kind, move.kind)
     if move.kind == "escalated":
         tried = words if move.attempt else "nobody was there for that"
@@ -343,7 +343,7 @@ HALTED = "Tangy stands still. Type: seen, expert, reached, clear, what, faults, 
 
 
 def fault_lines(event: FaultEvent) -> list[str]:
-    """Put a fault, or what was done about it, into lines."""
+    """Format a fault or a recovery event as lines."""
     fault = event.fault
     if fault.asks_only:
         return []  # the question that Tangy asks says all of it
@@ -373,7 +373,7 @@ def _said(move: RecoveryEvent) -> list[str]:
 
 
 def list_lines(faults: list[Fault]) -> list[str]:
-    """List faults with what was done about each."""
+    """List faults with their recoveries."""
     lines: list[str] = []
     for number, fault in enumerate(faults, 1):
         lines.append(f"{number}. step {fault.step}: {fault.name} ({fault.status})")

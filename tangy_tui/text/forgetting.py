@@ -1,4 +1,4 @@
-"""What is said when a person is forgotten: what goes, what went, and what is left."""
+"""Words for forgetting a person: which data goes, and which stays."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def what_goes(person: Person, folder: Path) -> str:
-    """Say before a person is forgotten what is deleted, and what stays."""
+    """Say before a person is forgotten which data is deleted, and which stays."""
     called = person.name if person.name == person.id else f"{person.name} ({person.id})"
     return (
         f"This deletes who {called} is: the name, how it is said, their voice and their face. "

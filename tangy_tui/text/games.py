@@ -1,4 +1,4 @@
-"""What is told of a game, line by line."""
+"""A game, told line by line."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ NEVER_ASKED = "Tangy has asked for nothing yet, so that it does not know what wo
 
 
 def belief_lines(supervision: Supervision, name: Name) -> list[str]:
-    """Put what is believed of everybody into one line each."""
+    """Format each person's posteriors as a line."""
     lines: list[str] = []
     for person, profile in supervision.persuasion.beliefs.items():
         best = probability_best(profile)

@@ -35,7 +35,7 @@ GIVE_UP_DETAIL = (
 
 
 def title(fault: Fault) -> str:
-    """Head what is told of the fault that halts the robot."""
+    """Return the heading for the fault that halts the robot."""
     return f"{mark_of(fault)} Tangy stands still: {fault.name}"
 
 
@@ -46,12 +46,12 @@ def halted_words(fault: Fault) -> str:
 
 
 def last_move_words(move: RecoveryEvent) -> str:
-    """Say what was done last about a fault."""
+    """Name the last recovery event of a fault."""
     return f"Last, at {clock(move.seconds)}: {move_words(move)}."
 
 
 def wait_words(doing: str) -> str:
-    """Say that what is being done comes first."""
+    """Say that the current behaviour ends first."""
     return f"Wait. {doing}"
 
 
@@ -61,7 +61,7 @@ def failed_words(error: Exception) -> str:
 
 
 def called_words(game: Supervision, *, restarted: bool) -> str:
-    """Say who was called and has answered, or whom to call, and what was done meanwhile."""
+    """Say who was called and has answered, or whom to call, and how recovery stands."""
     begun = f"{RESTARTED} " if restarted else ""
     state = None if game.calls is None else game.calls.state(EXPERT)
     waits = "" if state is None or state.stage == "answered" else f"{REACHED_TOO} "

@@ -1,4 +1,4 @@
-"""What is said where faults are brought about in the simulated room."""
+"""Words for injecting faults in the simulated room."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said after learning: what was learnt, what changed, and what was left out."""
+"""Words after learning: the policy, its changes, and the demonstrations left out."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def only_unfinished(steps: int) -> str:
 def learnt_lines(
     activity: Activity, policy: Policy, steps: int, left_out: int, not_shown: str
 ) -> list[str]:
-    """Say from what a policy was learnt, and where it does not know what to do.
+    """Name the demonstrations of a policy, and the situations in which it asks.
 
     Args:
         activity: what it was learnt for.

@@ -24,5 +24,5 @@ SWITCH_ON_DETAIL = (
 
 
 def switch_on_words(robot: str) -> str:
-    """Ask whether a robot is to be switched on."""
+    """Ask before a robot is switched on."""
     return f"Switch {robot} on?"

@@ -1,4 +1,4 @@
-"""What is told of a live game: what was done, whose card is whose, and who sits at whose place."""
+"""A live game told line by line: behaviours, owners of cards, and seats."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ MANY = {2: "two", 3: "three", 4: "four"}
 
 
 def live_lines(events: Sequence[Event], news: Iterable[News], name: Name) -> list[str]:
-    """Say line by line what happened in a live game, and what is new."""
+    """Tell the events and news of a live game line by line."""
     told = (event_words(event, name) for event in events)
     return [*filter(None, told), *news_lines(news, name)]
 
 
 def news_lines(news: Iterable[News], name: Name) -> Iterator[str]:
-    """Say what is new of cards and of who sits where; nothing of what staff know themselves."""
+    """Tell news about cards and seats, except what staff have told Tangy."""
     for one in news:
         words = seated_words(one, name) if isinstance(one, Seated) else note_words(one, name)
         if words:
@@ -47,7 +47,7 @@ def event_words(event: Event, name: Name) -> str:
 
 
 def seated_words(seated: Seated, name: Name) -> str:
-    """Say who sits at whose place."""
+    """Say who sits at another person's seat."""
     who = name(seated.person)
     if seated.person == seated.place:
         return f"{who} sits at {who}'s place again."
@@ -65,7 +65,7 @@ def note_words(note: CardNote, name: Name) -> str:
 
 
 def learnt_words(learnt: CardLearnt, name: Callable[[str], str]) -> str:
-    """Say to staff that a card is taken for somebody's."""
+    """Tell staff which owner Tangy assumes for a card."""
     return f"Card {learnt.card} lies in front of {name(learnt.person)}: Tangy takes it for theirs."
 
 

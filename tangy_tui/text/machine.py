@@ -1,4 +1,4 @@
-"""What is said of the parts of this machine: what works, and what to do about what does not."""
+"""Words for the parts of this machine: which ones work, and how to mend the others."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def plays_with(player: str) -> str:
 
 
 def shown_as_text(why: str) -> str:
-    """Say why nothing is heard, and what is done instead."""
+    """Say why there is no sound, and what replaces it."""
     return f"{why}; what Tangy says is shown as text."
 
 

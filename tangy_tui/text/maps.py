@@ -1,4 +1,4 @@
-"""What is said of a map that was made of a log."""
+"""Words for a map made from a log."""
 
 from __future__ import annotations
 

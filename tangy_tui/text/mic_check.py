@@ -1,4 +1,4 @@
-"""What is said of a microphone that was checked: how loud the voice is, what was understood."""
+"""Words for a microphone check: loudness of the voice, and understood words."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LOUD_ENOUGH = "The sound is loud enough."
 
 
 def news_words(news: CheckNews) -> str:
-    """Say what a check asks for, or what is wrong with the sound."""
+    """Say what to do next in a check, or name the problem with the sound."""
     from tangy_hw.audio.meter import SoundTrouble
     from tangy_tui.speech.microphone_check import SourceNews
 

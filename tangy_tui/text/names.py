@@ -81,7 +81,7 @@ def if_right(command: str) -> str:
 
 
 def known_now(sentence: str, world: str) -> str:
-    """Say what is known of a person after a change, in the games of a world."""
+    """Describe a person's posteriors after a change, in the games of a world."""
     return f"Now: {sentence}, in {world} games."
 
 

@@ -1,4 +1,4 @@
-"""What is said of games that were played: which faults they had, and which did not come about."""
+"""Words for played games: their faults, and the injections that did not occur."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def fault_left(name: str) -> str:
 
 
 def injecting_words(example: str) -> str:
-    """Say how a fault is written that is to be injected."""
+    """Explain how to write a fault to inject."""
     return f"\nFor example: --inject {example}@12. After @ write a step, after ~ a chance."
 
 
@@ -37,7 +37,7 @@ def did_not_come(injected: object, times: int, games: int) -> str:
 
 
 def score_lines(score: Mapping[str, Any]) -> list[str]:
-    """Say how well what was brought about was recognised: in all, and where it was not."""
+    """Format the recognition of injected faults: in total, and each miss."""
     lines = [
         f"Recognised: {_share_words(score['recall'])} of what could be noticed.",
         f"Right: {_share_words(score['precision'])} of what was said.",

@@ -1,4 +1,4 @@
-"""People in words: what works with each person, on how much that rests, and what was changed."""
+"""Words for people: what works with each person, on how much data, and manual changes."""
 
 from __future__ import annotations
 
@@ -176,7 +176,7 @@ SWITCH_DETAIL = "What Tangy has learnt of it stays."
 
 
 def world_words(world: str) -> str:
-    """Say from which games it is told what is known."""
+    """Name the world whose games are shown."""
     return f"What is known from {world} games."
 
 
@@ -191,12 +191,12 @@ def comply_words(entry: FeedbackEntry, name: str) -> tuple[str, str]:
 
 
 def switch_words(strategy: str, name: str, *, on: bool) -> tuple[str, str]:
-    """Ask whether a strategy is to be switched, and say what stays."""
+    """Ask before a strategy is switched, and say which data stays."""
     return f"Switch {strategy} {'on again' if on else 'off'} for {name}?", SWITCH_DETAIL
 
 
 def take_back_words(change: Event[EventRecord], name: str) -> tuple[str, str]:
-    """Ask whether a change is to be taken back, and say which."""
+    """Ask before a change is taken back, and name it."""
     return f"Take this back for {name}?", f"What was said: {change_words(change)}."
 
 

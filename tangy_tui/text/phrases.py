@@ -32,7 +32,7 @@ SOURCES: dict[WordSource, str] = {
 
 
 class Item(NamedTuple):
-    """One entry of the page: its heading, what it is about, and what there is to say of it.
+    """One entry of the page: heading, subject, and text.
 
     `phones` are those to hear (a comma between words; "" for none), `person` the id of whose name
     it is, if it is one.

@@ -22,7 +22,7 @@ OTHER_DECISIONS = "What has changed"
 
 
 def change_words(before: str, after: str) -> str:
-    """Say what is done in a situation now, and what was done before."""
+    """Name the behaviour in a situation, now and before."""
     return f"was {before}, is now {after}"
 
 

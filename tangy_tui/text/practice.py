@@ -44,7 +44,7 @@ def meaning_words(
 
 
 def practice_lines(practice: Practice) -> list[str]:
-    """Put practice into lines: each intent, the totals, the times, and what was taken for what."""
+    """Format practice as lines: intents, totals, times, and the confusion matrix."""
     commands, others = len(practice.commands), len(practice.others)
     recordings = "1 recording" if commands + others == 1 else f"{commands + others} recordings"
     lines = [f"{recordings}: {commands} of a command, {others} of none.", ""]
@@ -88,7 +88,7 @@ def _times(practice: Practice) -> Iterator[str]:
 
 
 def _matrix(practice: Practice) -> Iterator[str]:
-    """Draw what was said against what was understood, columns that never occur left out."""
+    """Draw the confusion matrix of said and understood intents, without empty columns."""
     confusion = practice.confusion()
     heard = {name for row in confusion.values() for name in row}
     columns = [name for name in confusion if name in heard]

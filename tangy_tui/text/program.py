@@ -34,7 +34,7 @@ def not_saved_words(folder: Path, why: str | None) -> str:
 
 
 def left_out_words(first: str, others: int) -> str:
-    """Say what is left out of the log: the first thing, and how many more there are."""
+    """Describe the first event left out of the log, and count the others."""
     return f"{first} And {others} more: `tangy store check` names them."
 
 

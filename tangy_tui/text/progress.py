@@ -1,4 +1,4 @@
-"""What is said of how much has been shown of an activity."""
+"""Words for the coverage of an activity by demonstrations."""
 
 from __future__ import annotations
 

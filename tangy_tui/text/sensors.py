@@ -56,7 +56,7 @@ class Sensing(AbstractAsyncContextManager[Any, Any], Protocol):
 
     @property
     def cards(self) -> CardSight:
-        """What was read of cards of late."""
+        """The latest card readings."""
         ...
 
     def source(self, device: str) -> str:
@@ -78,7 +78,7 @@ class Sensing(AbstractAsyncContextManager[Any, Any], Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """What is told of a device: its state, for how long (s, None: that is not known), and why.
+    """A device as told to people: its state, since how long (s; None: unknown), and why.
 
     `code` is the state as the device has it, "" where nothing is known of it; `age` is of its
     newest data, in s, and `rate` how often a second that comes (None: nobody counts); `facts` are
@@ -104,7 +104,7 @@ class Told:
 
     @property
     def bad(self) -> bool:
-        """Whether nothing at all can be known by it."""
+        """Whether the device gives no information."""
         return self.code in BAD
 
 
@@ -233,7 +233,7 @@ def rate_words(told: Told) -> str:
 
 
 def remark(told: Told) -> str:
-    """Say in a line what there is to say beside the age: the rate, and what is wrong."""
+    """Return a remark beside the age: the rate, and the problem."""
     return "  ".join(filter(None, (rate_words(told), told.why)))
 
 
@@ -254,7 +254,7 @@ def card_words(cards: CardSight) -> tuple[str, str]:
 
 
 def sensor_line(told: Told, width: int) -> str:
-    """Write what is told of a device on one line, its name filled up to a width."""
+    """Format a device as one line, its name padded to a width."""
     if not told.code:
         return f"{told.device.label:<{width}}  {told.state}"
     state = told.state if told.live else f"{told.state} ({SIMULATED})"
@@ -263,7 +263,7 @@ def sensor_line(told: Told, width: int) -> str:
 
 
 def sensor_document(told: Told) -> dict[str, Any]:
-    """Return what is told of a device as JSON has it."""
+    """Return a device as its JSON document."""
     return {
         "device": told.device.name,
         "label": told.device.label,

@@ -1,4 +1,4 @@
-"""What is said where demonstrations disagree, and of what staff took to be all right."""
+"""Words for settling conflicts, and for events that staff accepted as normal."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ Name = Callable[[str], str]
 
 
 def agreement_words(activity: Activity, policy: Policy) -> str:
-    """Say whether a policy does all that is expected of a host of the activity.
+    """Say whether a policy agrees with the activity's expected behaviours.
 
     Where it is not sure it asks instead of acting, so that it does not do what is expected either.
     """
@@ -56,7 +56,7 @@ def agreement_words(activity: Activity, policy: Policy) -> str:
 def step_words(
     activity: Activity, step: Step, name: Name, numbers: Sequence[int] | None = None
 ) -> str:
-    """Write one step of a trajectory: the situation, the behaviour, for whom, and what was called.
+    """Format one step of a trajectory: situation, behaviour, target, and called number.
 
     Args:
         activity: what is taught.
@@ -167,7 +167,7 @@ def edit_words(activity: Activity, library: Library, edit: Edit) -> str:
 
 
 def lesson_words(activity: Activity, lesson: Lesson) -> str:
-    """Say what was learnt from an answer: what is done where from now on, and from whom."""
+    """Describe the lesson of an answer: situation, behaviour from now on, and teacher."""
     made = lesson.demonstration
     step = made.steps[-1]
     where = activity.in_words(step.state.situation)

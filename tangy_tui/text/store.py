@@ -1,4 +1,4 @@
-"""What is said of the log of a data folder as a whole."""
+"""Words for the log of a data folder as a whole."""
 
 from __future__ import annotations
 

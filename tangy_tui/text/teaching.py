@@ -1,4 +1,4 @@
-"""What is told of a demonstration, line by line."""
+"""A demonstration, told line by line."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ RULES = "To make the last step a rule, type one of these:"
 
 
 def discard_words(steps: int) -> tuple[str, str]:
-    """Ask whether a game is to be put away, and say what becomes of it."""
+    """Ask before a game is discarded, and explain the effect."""
     return (
         "Discard this game?",
         f"Tangy does not learn from its {counted(steps, 'step')}. The library keeps it, and can "

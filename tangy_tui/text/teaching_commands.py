@@ -1,4 +1,4 @@
-"""What a teacher at the lines is told: what a command needs, and what becomes of what was shown."""
+"""Words for a teacher in line mode: the commands, and what happens to demonstrations."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ WHICH_STEP = "Say which step: `again 5` goes back to before step 5."
 
 
 def learn_next(command: str) -> str:
-    """Say which command learns from what was shown."""
+    """Name the command that learns from the demonstrations."""
     return f"Let Tangy learn from it with `{command}`."
 
 
 def left_after(steps: int, command: str) -> str:
-    """Say that what was confirmed is kept, and which command goes on from there."""
+    """Say that confirmed steps are stored, and which command continues."""
     return (
         f"You left after {counted(steps, 'step')}. What you confirmed is kept. "
         f"Go on from here with `{command}`."
@@ -53,6 +53,6 @@ def left_after(steps: int, command: str) -> str:
 
 
 def command_line(verb: str, **options: str | None) -> str:
-    """Write a command as it is to be typed, with those of its options that have a value."""
+    """Format a command as one types it, with those of its options that have a value."""
     given = [f"--{name} {shlex.quote(value)}" for name, value in options.items() if value]
     return plain(" ".join(["tangy", verb, *given]))

@@ -27,7 +27,7 @@ def waiting_words(
     object: str,
     name: Callable[[str], str],
 ) -> str:
-    """Say in line mode what the robot does or waits for; "" if nothing is to be said.
+    """Say in line mode what the robot does or waits for; "" for nothing.
 
     Args:
         going: where it drives to, "" for nowhere.

@@ -12,7 +12,7 @@ TOUR_ON, SKIP_TOUR = "Go on with the tour", "Skip the tour"
 
 
 def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
-    """Say on the screen what is to be seen or done at a stop; keys are named in braces.
+    """Return the screen's text of a stop; keys are named in braces.
 
     Args:
         stop: where the tour is.
@@ -51,7 +51,7 @@ def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
 
 
 def tour_line(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
-    """Say by lines what is to be done at a stop."""
+    """Return the text of a stop in line mode."""
     match stop:
         case TourStop.ROOM:
             return f"Welcome, {teacher}. You show Tangy how to host {title}. {LINES_ALSO}"

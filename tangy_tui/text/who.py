@@ -1,4 +1,4 @@
-"""How a new teacher is asked for a name, and what is said of it."""
+"""Words for asking a new teacher's name."""
 
 from __future__ import annotations
 
