@@ -1,4 +1,4 @@
-"""Calling off what is being opened, from whichever thread: a robot that is being switched on.
+"""Cancelling the start of a robot from another thread.
 
 Opening takes seconds and starts processes. Each step looks first whether it was called off, and
 each process, as soon as it is started, names what ends it.
@@ -13,7 +13,7 @@ from tangy_profiles.errors import TangyError
 
 
 class Cancelled(TangyError):
-    """What was being opened was called off."""
+    """The start was cancelled."""
 
     def __init__(self) -> None:
         super().__init__("It was called off while it was being switched on.")
@@ -68,7 +68,7 @@ class Cancellation:
             self._ends.clear()
 
     def cancel(self) -> None:
-        """Call it off: what was started is ended, the newest first, and nothing is started."""
+        """Cancel: end everything started, the newest first, and start nothing more."""
         with self._lock:
             if self._complete or self._cancelled:
                 return

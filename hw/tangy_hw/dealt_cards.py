@@ -18,7 +18,7 @@ person's; or it is not the one that this person has."""
 
 @dataclass(frozen=True, slots=True)
 class CardDoubt:
-    """A card before somebody that is not judged: who sits there, what is in sight, and why.
+    """A card that is not judged: the person, the cards in sight, and the reason.
 
     `own` is the card that the person has, as far as is known; `owner` is whose the card in sight
     is, if it is another person's.
@@ -40,7 +40,7 @@ class CardLearnt:
 
 
 class DealtCards:
-    """Keeps which card is whose in a game."""
+    """The owners of the cards in a game."""
 
     def __init__(self) -> None:
         self._given: dict[str, int] = {}
@@ -52,15 +52,15 @@ class DealtCards:
         return self._given
 
     def begin(self) -> None:
-        """Begin a game: what was learnt in the last one may not hold any more."""
+        """Begin a game, and forget the assignments of the last one."""
         self._learnt.clear()
 
     def deal(self, cards: Mapping[str, int]) -> None:
-        """Take in which cards were dealt; what was known before does not hold any more."""
+        """Set the dealt cards; earlier assignments no longer hold."""
         self._given, self._learnt = dict(cards), {}
 
     def give(self, person: str, card: int | None) -> None:
-        """Take in which card a person has; None: it is to be learnt anew.
+        """Set a person's card; None: it is learnt again.
 
         Nobody else has it then, whatever was said or learnt before.
         """
@@ -76,7 +76,7 @@ class DealtCards:
         return self._given.get(person, self._learnt.get(person))
 
     def owner(self, card: int) -> str:
-        """Return whose a card is, "" where nobody is known to have it."""
+        """Return the owner of a card, "" if unknown."""
         people = {**self._learnt, **self._given}
         return next((person for person in people if self.card_of(person) == card), "")
 

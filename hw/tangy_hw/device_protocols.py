@@ -1,4 +1,4 @@
-"""The devices of a robot, as the program knows them, whoever built them.
+"""The interfaces of a robot's devices, independent of their make.
 
 Every reading has a stamp of the robot's clock and a sequence number; every command is
 acknowledged, or is a `DeviceError` after a time-out. Drivers satisfy these Protocols; which driver
@@ -88,7 +88,7 @@ class Picture(NamedTuple):
 
 
 class Clock(Protocol):
-    """The robot's time: that of the machine, or, on a bench in a hurry, the bench's."""
+    """The robot's time: the machine's, or that of a stepped bench."""
 
     def now(self) -> float:
         """Return the monotonic time in s."""
@@ -180,7 +180,7 @@ class Arms(Device, Protocol):
         ...
 
     async def hold(self) -> None:
-        """Stop where it is now, with the torque that it has; what was wanted is not; never raises.
+        """Hold the current position with torque on, and drop the goal; never raises.
 
         A movement that is waited for ends with a DeviceError.
         """
@@ -220,7 +220,7 @@ class Voice(Device, Protocol):
 
 
 class OwnNavigation(Device, Protocol):
-    """A robot's own navigation: it knows where the robot is, and drives it to goals by itself.
+    """A robot's own navigation, which localises the robot and drives it to goals.
 
     The facts of its reading have the `path`: clear, replanned or none.
     """

@@ -1,4 +1,4 @@
-"""Lines to a process, written by a thread of their own: whoever has something to say never waits.
+"""Lines to a process, written by a thread of its own, so that callers never block.
 
 A process that hangs reads nothing, and its pipe is full after a while. What is said then waits
 here, in order, and is written when it reads again.
@@ -15,7 +15,7 @@ from typing import IO
 
 
 class WriteQueue:
-    """What is to be written to one pipe; `run` writes it until `close`, or until nobody reads."""
+    """The queue of one pipe; `run` writes it until `close`, or until the reader is gone."""
 
     def __init__(self, pipe: IO[bytes]) -> None:
         """Take the pipe, which is closed at the end."""
@@ -25,7 +25,7 @@ class WriteQueue:
         self.writing = self._over = False
 
     def put(self, line: str) -> Future[None] | None:
-        """Have a line written after all that wait.
+        """Queue a line.
 
         Returns:
             What is done when it is written, or never will be; None where no more is written.

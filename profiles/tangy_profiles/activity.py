@@ -239,7 +239,7 @@ class Activity:
     def words_of(
         self, action: Action, outcome: Outcome, name: Callable[[str], str]
     ) -> tuple[str, str]:
-        """Return what was said and shown by an action, "" if it lacks its numbers."""
+        """Return the speech and picture text of an action, "" if it lacks its numbers."""
         called = name(action.target) if action.target is not None else ""
         return (
             self.fill(action.speech, called, outcome.numbers),

@@ -1,4 +1,4 @@
-"""The score sheet of a drill: what was answered, what was right, and what to rehearse again."""
+"""The score sheet of a drill: answers, corrections, and faults to rehearse again."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class Sheet:
 
     @property
     def most(self) -> int:
-        """The points that could be had in what was answered."""
+        """The highest possible score of the answered rounds."""
         return sum(one.most for one in self.answered)
 
     @property

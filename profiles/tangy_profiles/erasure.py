@@ -120,7 +120,7 @@ class NameEraser:
         return self._put(self._running, text)
 
     def typed(self, text: str) -> str:
-        """Erase the name from what was typed or said, which is in small letters."""
+        """Erase the name from typed or spoken text, which is in lower case."""
         return self._put(self._typed, text)
 
     def page(self, page: str) -> str:

@@ -1,4 +1,4 @@
-"""The events of games: what was done and seen in them, their faults, and drills."""
+"""The events of games: behaviours, states, faults, and drills."""
 
 from __future__ import annotations
 
@@ -243,7 +243,7 @@ MoveKind = Literal[
 
 @dataclass(frozen=True, slots=True)
 class RecoveryEvent:
-    """One step of a recovery: what, the how-manieth time, by whom, what was said, when (s)."""
+    """One step of a recovery: kind, attempt number, person, speech, time (s)."""
 
     kind: MoveKind
     seconds: float
@@ -325,7 +325,7 @@ class EffectAccepted(EventRecord):
 
 @kind("acceptance taken back")
 class AcceptanceTakenBack(EventRecord):
-    """What was accepted by the event of that seq is a fault again."""
+    """The acceptance by the event of that seq is withdrawn."""
 
     number: int
 

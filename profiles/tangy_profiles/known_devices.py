@@ -48,7 +48,7 @@ def possible_devices(robot: Robot) -> Mapping[str, DeviceProfile]:
 
 
 def driven(robot: Robot, also: Collection[str] = ()) -> Robot:
-    """Return a robot without the devices that its file lists, and that nothing drives.
+    """Return a robot without the listed devices that have no driver.
 
     Args:
         robot: whose devices they are.
@@ -72,5 +72,5 @@ def missing_devices(robot: Robot) -> tuple[str, ...]:
 
 
 def reads_cards(robot: Robot) -> bool:
-    """Say whether a robot has a camera in whose pictures cards are read."""
+    """Return whether a robot has a camera that reads cards."""
     return any(device.looks_at == CARDS for device in robot.devices.values())

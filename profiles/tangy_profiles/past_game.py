@@ -70,7 +70,7 @@ class Replayed(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class PastGame:
-    """A game as far as the log tells of it."""
+    """A game read from the log."""
 
     beginning: GameBeginning
     at: datetime
@@ -105,7 +105,7 @@ class PastGame:
         return self.clock[-1] if self.steps else 0.0
 
     def replay(self, world: Replayed) -> ActivityState:
-        """Play the games of the run again, as far as the log has them; return the last state.
+        """Replay the logged games of the run; return the last state.
 
         Raises:
             NotResumable: they do not come out as they did: other people take part, faults were

@@ -1,4 +1,4 @@
-"""How a strategy is to be chosen and learnt about, in the words that people choose it with."""
+"""The configuration of persuasion: the method of choosing and learning strategies."""
 
 from __future__ import annotations
 

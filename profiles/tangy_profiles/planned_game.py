@@ -143,7 +143,7 @@ class PlannedGame:
         return self._visit_due() if self.game_plan.visits or self.all_called else None
 
     def _calls_due(self) -> int:
-        """Return how many calls come before those who ask; 0: none does."""
+        """Return how many calls come before the next visit; 0 for none."""
         tracker, rule = self.tracker, self.activity.rules.calls_first
         if not tracker.visits:
             self._row_began = self.seconds
@@ -154,7 +154,7 @@ class PlannedGame:
         return rule.due(here, tracker.visits, self.seconds - self._row_began, self.pace)
 
     def _visit_due(self) -> Due | None:
-        """Return whose visit is due or is put off, for it costs nobody a request.
+        """Return the visit that is due or put off; a visit delays no request.
 
         When all numbers were called, each person gets one, and then the game is over.
         """
@@ -232,7 +232,7 @@ class PlannedGame:
                 self.set_pace(change.seconds)
 
     def _plan_without(self, away: frozenset[str]) -> None:
-        """Play the next game without those who are not here."""
+        """Plan the next game without absent people."""
         self.game_plan = replace(self.game_plan, absent=tuple(sorted(away)))
 
     def _wins_by_word(self, person: str) -> None:

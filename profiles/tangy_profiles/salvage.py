@@ -1,4 +1,4 @@
-"""Rows of a damaged log that can still be read, taken over into a new one.
+"""Salvage of a damaged log: readable rows are copied into a new one.
 
 SQLite refuses a query as soon as it meets a page that it can tell is damaged; where it cannot, a
 wrong number among the rows makes it pass over those behind it. The events lie in the order of their
@@ -42,7 +42,7 @@ _SMALL = {"meta": 2, "name": 2, "speech": 4}
 
 
 def salvage(damaged: Path, db: sqlite3.Connection, sealed: int) -> tuple[int, list[Range]]:
-    """Take over what can be read of a damaged log, which stays as it is.
+    """Copy the readable rows of a damaged log, which stays unchanged.
 
     Args:
         damaged: the log, with its tail beside it.

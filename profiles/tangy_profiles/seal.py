@@ -26,7 +26,7 @@ class Seal:
         self._file: int | None = None
 
     def read(self) -> tuple[str, int] | None:
-        """Return whose log it counts (its robot), and the seq of the newest event that was kept.
+        """Return the robot of the log, and the seq of its newest event.
 
         None if nobody can tell: there is no count, or it is damaged.
         """

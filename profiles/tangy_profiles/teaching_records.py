@@ -1,4 +1,4 @@
-"""The events of teaching: what was demonstrated, what became of it, and the policies learnt."""
+"""The events of teaching: demonstrations, their edits, and learnt policies."""
 
 from __future__ import annotations
 

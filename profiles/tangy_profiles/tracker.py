@@ -1,4 +1,4 @@
-"""Which stage the activity is in, whose turn it is, and whose request is open.
+"""The rule-based tracker of stage, turn, and open requests.
 
 Facts go in (a button was pressed, the robot arrived, a card was read, a behaviour succeeded) and
 the activity state comes out. The stage rules are the activity's own data. Both worlds use this

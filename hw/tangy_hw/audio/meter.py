@@ -41,7 +41,7 @@ class SoundTrouble:
 
 
 class Meter:
-    """Shows sound that is fed to it: a bar from 0 to 1, and what is wrong with it.
+    """A level meter: a bar from 0 to 1, and the problem with the sound.
 
     Give it every chunk of a live source as it comes; what the clock says between two chunks
     counts. `begin` it when somebody starts to speak into it.
@@ -57,7 +57,7 @@ class Meter:
         self.begin()
 
     def begin(self) -> None:
-        """Forget what was heard: somebody starts to speak now."""
+        """Reset: an utterance starts now."""
         now = self._clock()
         self._began = self._data_at = self._sound_at = now
         self._shown, self._shown_at = 0.0, now

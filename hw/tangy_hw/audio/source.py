@@ -1,4 +1,4 @@
-"""A source of sound: what every one of them promises, wherever its sound comes from.
+"""The interface of a sound source.
 
 Sound is 16-bit little-endian samples, 16,000 a second, one channel: what the acoustic model of
 III-A-1 was trained on.
@@ -80,7 +80,7 @@ class Source:
         raise NotImplementedError
 
     def _release(self) -> None:
-        """Give back what was taken when the source was opened."""
+        """Release the resources of the open source."""
 
     async def _listen(self) -> None:
         async with contextlib.aclosing(self._sound()) as chunks:

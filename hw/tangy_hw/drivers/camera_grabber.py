@@ -54,7 +54,7 @@ class Grabber(Protocol):
         """
 
     def close(self) -> None:
-        """Give back what was opened."""
+        """Release the camera."""
 
 
 def make_grabber(source: CameraSource) -> Grabber:

@@ -39,7 +39,7 @@ async def capture(
     every: float = 0.0,
     reader: Reader | None = None,
 ) -> AsyncIterator[dict[str, Any]]:
-    """Record pictures of a camera that was started, and give what was written beside each.
+    """Record pictures of a started camera, and yield the labels written beside each.
 
     Args:
         camera: where they come from.

@@ -172,7 +172,7 @@ class CameraWatch:
         return self._limits.blurred_for if found == "BLURRED" else self._limits.dark_for
 
     def _judge(self, look: Look) -> State:
-        """Say what one picture shows; what was the state before has to be clearly over."""
+        """Judge one picture, with hysteresis towards the previous state."""
         limits, was = self._limits, self._picture
         blurred = limits.blurred * (limits.clearly if was == "BLURRED" else 1.0)
         flat = limits.flat * (limits.clearly if was == "COVERED" else 1.0)

@@ -225,7 +225,7 @@ class WebChestScreen:
 
 
 def _reached_at(host: str) -> str:
-    """Return by which address others reach what listens at all of this machine's."""
+    """Return the address by which others reach a server on all of this machine's addresses."""
     if host not in ("", "0.0.0.0"):  # noqa: S104
         return host
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:

@@ -57,7 +57,7 @@ class Request:
         return ""
 
     def meant_for(self, names: Collection[str]) -> bool:
-        """Say whether it was sent to this machine by an address, or by one of its names.
+        """Return whether its Host names this machine.
 
         A page of the wide web whose name is made to lead here (DNS rebinding) still says its own
         name as Host, and a page of another address says that as Origin.

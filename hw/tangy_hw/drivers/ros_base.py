@@ -98,7 +98,7 @@ class RosBase:
         self._say(twist)
 
     async def stop(self) -> None:
-        """Stand still now: what was to be driven and waits to be sent is never sent."""
+        """Stop now; queued velocity commands are dropped."""
         _LOG.info("stops the wheels")
         self._twist = STILL
         with suppress(DeviceError):
@@ -111,7 +111,7 @@ class RosBase:
         self._bridge.publish(self._drive_topic, message, urgent=True)
 
     def _connected(self) -> None:
-        """Stand still at a new connection: nobody knows what was driven when the last ended."""
+        """Stop at a new connection: the last command of the old one is unknown."""
         self._twist = STILL
         if self._repeating is not None:
             self._say(STILL)

@@ -1,4 +1,4 @@
-"""A voice behind ROS: what to say on one std_msgs/String, what was said on another."""
+"""A voice behind ROS: text to say on one std_msgs/String, spoken text on another."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class RosVoice:
         self._dead = self._begun = False
 
     async def start(self) -> None:
-        """Begin to hear what was said; a voice that was taken to be dead is tried again."""
+        """Subscribe to spoken texts; a voice considered dead is tried again."""
         await self._bridge.start()
         self._dead = False
         if not self._begun:

@@ -96,7 +96,7 @@ class Waiting:
 
     @staticmethod
     def _end(goal: Goal, message: Message) -> None:
-        """Tell what became of a goal; some bridges say it inside the values, some not at all."""
+        """Report the result of a goal; some bridges send it inside the values, some never."""
         values = message.get("values")
         inside = values.get("status") if isinstance(values, Mapping) else None
         status = message.get("status", inside)

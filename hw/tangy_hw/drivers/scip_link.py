@@ -97,7 +97,7 @@ class TcpLink:
         await self._writer.drain()
 
     def close(self) -> None:
-        """Close it, without waiting for what was not sent."""
+        """Close it, without flushing."""
         self._writer.transport.abort()
 
 

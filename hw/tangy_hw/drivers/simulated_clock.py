@@ -1,4 +1,4 @@
-"""The time of a bench in a hurry: it passes in steps, when the robot asks for the next one.
+"""The time of a stepped bench: it advances when the robot asks for the next step.
 
 So nothing is late however busy the machine is, and an hour is over when all of it has been
 computed. The bench answers a step when all that was due in it has been sent.

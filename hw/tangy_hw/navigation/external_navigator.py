@@ -1,4 +1,4 @@
-"""Ways that a robot finds by itself: goals are handed to its own navigation, and called off there.
+"""Navigation by the robot's own stack: goals are handed to it, and cancelled there.
 
 What that tells the base does not pass through our hands. So a robot that must not drive has its
 goal called off, and goes on with it when it may again; until the robot has confirmed that, it

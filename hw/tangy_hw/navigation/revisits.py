@@ -1,4 +1,4 @@
-"""Places that a robot came back to: do its poses say so, too?
+"""Revisited places: do the poses agree that it is the same place?
 
 A scan is matched with older ones in all of which it may have been taken, as far as wheels can have
 gone astray since then. Where it fits an older one in both directions of the floor, the two were

@@ -83,7 +83,7 @@ class Surroundings:
 
     @property
     def walking(self) -> Floats:
-        """Where those who walk are and soon will be (n, 2), in the map's frame."""
+        """Current and predicted positions of walking people (n, 2), in the map's frame."""
         found = [
             (one.x + one.vx * after, one.y + one.vy * after)
             for one in self._walkers
@@ -96,7 +96,7 @@ class Surroundings:
         return passed(twist, Around(self._tracks, self._ends), self._limits)
 
     def held(self, twist: Twist) -> Held:
-        """Say who is in the way of a command that may not be driven at all."""
+        """Return the person in the way of a forbidden command."""
         if self.passed(twist) != STILL or twist == STILL:
             return ""
         walkers = self._walkers

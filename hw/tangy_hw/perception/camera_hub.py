@@ -168,7 +168,7 @@ class CameraHub:
                 await self._end()
 
     async def close(self) -> None:
-        """End everything, whoever may still be in it."""
+        """Close everything, also while it is in use."""
         async with self._open:
             self._users = 0
             await self._end()
@@ -233,7 +233,7 @@ class CameraHub:
 
     @property
     def cards(self) -> CardSight:
-        """What was read of cards of late."""
+        """The latest card readings."""
         return self._cards
 
     async def _start(self) -> None:

@@ -1,4 +1,4 @@
-"""What the robot makes of its pictures: which card lies there, how it is marked, whose face it is.
+"""Perception from pictures: the number of a card, its marks, and the identity of a face.
 
 Several pictures are made one reading of, each taken after the question was put: a picture from
 before the robot arrived tells nothing.
@@ -37,7 +37,7 @@ NOTHING_SEEN = "no picture came"
 
 @dataclass(frozen=True, slots=True)
 class CardSeen:
-    """What was read of the card beside the robot.
+    """A reading of the card beside the robot.
 
     `card` is its number, None where it cannot be told, and `problem` says why; `marked` and
     `hidden` are masks of its cells; `state` is the user activity state; `pictures` is how many
@@ -91,7 +91,7 @@ class CardAndFacePerception:
         self._gallery: Gallery | None = None
 
     def close(self) -> None:
-        """End; what is being read is still read."""
+        """Close after the current reading."""
         self._thread.shutdown(wait=False, cancel_futures=True)
 
     async def prepare(self) -> None:
@@ -143,7 +143,7 @@ class CardAndFacePerception:
         return deck if wins is None else replace(deck, patterns=wins[0], together=wins[1])
 
     async def who(self, most: int = 2 * FRAMES) -> Vote:
-        """Say whose face the robot looks at: so many pictures are looked at for a vote."""
+        """Identify the face before the robot by a vote over so many pictures."""
         matches: list[FaceMatch] = []
         async for frame in _fresh(self.sensors, most):
             match = await self._in_thread(self._match, frame)

@@ -1,4 +1,4 @@
-"""The cards of a live game: what was seen of the one beside the robot, and what that asks for.
+"""The cards of a live game: readings of the card beside the robot, and the cells to correct.
 
 A card that is not known to be that of the person who sits there is as good as out of sight.
 """
@@ -56,7 +56,7 @@ class CardObservations:
     def look(
         self, place: str, called: list[int], after: float = 0.0, *, person: str = ""
     ) -> dict[str, Any]:
-        """Look at the card at a place, after so many s; return what is seen.
+        """Read the card at a place, after so many s; return the reading.
 
         `person` is who sits there, if it is not whose place it is. Of a card that is not known to
         be theirs nothing is told, and neither is of several.
@@ -114,7 +114,7 @@ class CardObservations:
     def shows_done(
         self, card: dict[str, Any], behaviour: Behaviour, numbers: tuple[int, ...]
     ) -> bool:
-        """Say whether a card that was looked at shows that what was asked for has been done."""
+        """Return whether a reading shows that the request was carried out."""
         if behaviour.effect == "bring card closer":
             return bool(card["state"] != self._activity.unread)
         if card["card"] is None:

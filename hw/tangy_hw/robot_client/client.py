@@ -276,7 +276,7 @@ class RobotLink:
 
     @staticmethod
     def _command(do: Request) -> dict[str, str]:
-        """Begin a line: what is to be done, and the id of the command that it serves."""
+        """Begin a line: the request, and the id of the command that it serves."""
         command = command_id()
         level = logging.WARNING if do == "stop" else level_of(do)
         _LOG.log(level, "asks the robot to %s", do)
@@ -287,7 +287,7 @@ class RobotLink:
         self.tell("stop", why=why, by=by)
 
     def release(self, by: str = "") -> None:
-        """Let the robot move again as far as somebody is concerned, or whoever stopped it."""
+        """Release the stop of one source, or of the source that stopped the robot."""
         self.tell("release", by=by)
 
     def alive(self) -> None:
@@ -331,7 +331,7 @@ def _call_off(worker: WorkerProcess) -> None:
 
 
 def _answer(said: Said) -> dict[str, Any]:
-    """Return what was done.
+    """Return the result of a command.
 
     Raises:
         BrokenOff: it was broken off.

@@ -28,7 +28,7 @@ class Commands:
         self._heedless: frozenset[str] = frozenset()
 
     def do(self, do: Request, **what: Any) -> dict[str, Any]:
-        """Let the robot do something; it is broken off where devices report what is critical.
+        """Carry out a command; a critical reading of a device breaks it off.
 
         Raises:
             BrokenOff: it was, or the robot had to stand still.
@@ -67,7 +67,7 @@ class Commands:
         self.do("wait", seconds=seconds, asks=asks)
 
     def settle(self) -> None:
-        """Let the robot see what is there now, where its time stands still meanwhile."""
+        """Let a stepped bench deliver fresh observations."""
         if self.link.setup.stepped:
             with suppress(DeviceError):  # what is wrong with it is seen by what devices report
                 self.do("settle")

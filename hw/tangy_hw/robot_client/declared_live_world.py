@@ -1,4 +1,4 @@
-"""The real world in a game of an activity that is declared by facts.
+"""The live world of an activity declared by facts.
 
 The interpreter keeps the facts, as it does in the simulated room. They change by what is observed:
 signs that ask, what staff tell of people, what is heard; and by what the robot has carried out.
@@ -44,7 +44,7 @@ PATIENCES = 2.0  # windows of patience after which it is taken that a person doe
 
 
 class Observed(NamedTuple):
-    """Something that was observed of a person: what was told, how sure that is, and by what."""
+    """One observation of a person: the fact, its certainty, and its source."""
 
     told: TypedObservation
     certainty: float
@@ -117,7 +117,7 @@ class DeclaredLiveWorld(LiveWorld):
     def tell(
         self, who: str | None, said: str, certainty: float = 1.0, source: str = "staff"
     ) -> bool:
-        """Take in what somebody says of a person, or what a person says or shows.
+        """Take in a report about a person, or a person's own answer.
 
         It counts with the next look at the game, so that it never changes what is being done.
 
@@ -137,7 +137,7 @@ class DeclaredLiveWorld(LiveWorld):
         return True
 
     def take(self, observed: Observed) -> None:
-        """Take in what was observed of a fact; it counts with the next look at the game."""
+        """Take in an observation of a fact; it counts at the next `observe`."""
         self._told.append(observed)
 
     def observe(self) -> ActivityState:
@@ -159,7 +159,7 @@ class DeclaredLiveWorld(LiveWorld):
         """Hear what people have done since, where something tells it."""
 
     def _take_in(self) -> None:
-        """Let what was told since count, each with its certainty."""
+        """Apply the observations since the last look, each with its certainty."""
         while self._told:
             observed = self._told.popleft()
             fact, who, raw = observed.told
@@ -207,7 +207,7 @@ class DeclaredLiveWorld(LiveWorld):
         return Outcome(done.completed, seconds, (), response, speech, image, unclear)
 
     def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
-        """Say, show, gesture and drive; return what was said and shown.
+        """Speak, show, gesture and drive; return speech and picture text.
 
         Raises:
             DeviceError: it had to be broken off.
@@ -302,7 +302,7 @@ class DeclaredLiveWorld(LiveWorld):
         )
 
     def _ask_again(self) -> float:
-        """Ask a person again whose answer was not clear; return how many s that took.
+        """Ask again a person whose answer was unclear; return the duration in s.
 
         Raises:
             DeviceError: it could not be said or shown.

@@ -1,4 +1,4 @@
-"""Who asks for help, as a game knows it: by signs that are seen, or by somebody's word."""
+"""Requests for help in a game: by signs that are seen, or reported by staff."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class HelpRequestTracker:
         self._by_word.pop(person, None)
 
     def set_aside(self, person: str) -> None:
-        """Leave somebody's request at that, also while the sign stays up."""
+        """Close a person's request, also while the sign stays up."""
         self.over(person)
         self._aside.add(person)
 

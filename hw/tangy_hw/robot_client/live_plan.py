@@ -1,4 +1,4 @@
-"""What staff change in a live game, and how the robot has its part in it."""
+"""Changes by staff in a live game, and the robot's part in them."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class LivePlan(PlannedGame):
     def say(
         self, speech: str, picture: Picture, posture: Posture = None, written: str = ""
     ) -> None:
-        """Say and show something (joints in rad); without a voice the screen shows what is said.
+        """Speak and show (joints in rad); without a voice the screen shows the speech.
 
         What is said is `written` otherwise where all can read it, if that is given.
 
@@ -64,7 +64,7 @@ class LivePlan(PlannedGame):
         return all(reading.state == OK for reading in health if reading.device == "voice")
 
     def seat_of(self, person: str | None) -> str:
-        """Return what all can read in place of a person's name, "" for nobody's; teams have one."""
+        """Return the public word for a person: their seat, or a team's name; "" for nobody."""
         if person not in self.people:
             return ""
         if person in self.activity.teams:
@@ -81,7 +81,7 @@ class LivePlan(PlannedGame):
         return self.cards.numbers_on(card)
 
     def holder(self, card: int) -> str:
-        """Return who has a card, as far as that was said or seen."""
+        """Return the owner of a card, as told or seen; "" if unknown."""
         return self.cards.dealt.owner(card)
 
     def _play_pattern(self) -> None:
@@ -96,7 +96,7 @@ class LivePlan(PlannedGame):
         super().set_pace(seconds)
 
     def change(self, change: GameChange) -> None:
-        """Let something change in the game; whose request is over by it is left at that."""
+        """Apply a change to the game, and close requests that it settles."""
         super().change(change)
         if change.what in SET_ASIDE:
             self.requests.set_aside(change.person)

@@ -1,4 +1,4 @@
-"""The real world, as facilitation and monitoring see it: the door to a robot that is there.
+"""The real world for facilitation and monitoring: the interface to a connected robot.
 
 It keeps what the game is about (the numbers that were called, whose card was read, whose turn it
 is) by the same rules as the simulated one (`Tracker`), and fills it with what the robot sees:
@@ -151,7 +151,7 @@ class LiveWorld(LivePlan):
         return self.tracker.state()
 
     def look_again(self) -> ActivityState:
-        """Take another look, a moment later, at what is beside the robot; return the state then.
+        """Take a second look at the card beside the robot; return the new state.
 
         A stop, or what keeps it from looking, ends that at once.
         """
@@ -190,7 +190,7 @@ class LiveWorld(LivePlan):
         return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
 
     def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
-        """Return the numbers that an action is about; None if there is nothing to be asked."""
+        """Return the numbers of an action; None if there is nothing to ask."""
         match action.behaviour.effect:
             case "draw":
                 return self.calls.next
@@ -248,14 +248,14 @@ class LiveWorld(LivePlan):
         self.say(speech, picture, self._robot.postures[action.posture], written)
 
     def name_of(self, person: str | None) -> str:
-        """Return what whoever sits at somebody's place is called, "" for nobody."""
+        """Return the name of the person who sits at a seat, "" for nobody."""
         if person is None:
             return ""
         sitting = self.who(person)
         return self._names.get(sitting, sitting)
 
     def who(self, place: str) -> str:
-        """Return who sits at a place, as far as the robot has seen."""
+        """Return who sits at a place, by the robot's observations."""
         return self.sitting.get(place, place)
 
     @property
@@ -305,7 +305,7 @@ class LiveWorld(LivePlan):
         return self._room.stand(place, self.people)
 
     def read_card(self, person: str, after: float = 0.0) -> None:
-        """Look at the card beside the robot, after so many s, and keep what is seen of it.
+        """Read the card beside the robot, after so many s, and keep the reading.
 
         A robot without a camera for that asks staff.
 
@@ -328,7 +328,7 @@ class LiveWorld(LivePlan):
         return self.judged(self.tracker.place, seen)
 
     def _executed(self, behaviour: Behaviour, succeeded: bool) -> None:
-        """Let a behaviour count; whose request it settled is to take the sign down."""
+        """Count a behaviour; a person whose request it settled takes their sign down."""
         tracker, seen = self.tracker, self.tracker.seen
         tracker.executed(behaviour, succeeded=succeeded)
         closed = tracker.closed

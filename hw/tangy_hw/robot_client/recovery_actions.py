@@ -1,4 +1,4 @@
-"""What a live world does about a fault: people are asked, the robot looks round, and the like."""
+"""Recovery in a live world: asking people, looking round, restarting devices."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it n
 
 
 class RecoveryActions:
-    """The remedies that a world has for what is wrong with its robot, or at its table."""
+    """The remedies of a world for faults of its robot or at its table."""
 
     def __init__(self, world: LiveWorld) -> None:
         self._world = world

@@ -51,7 +51,7 @@ class StaffEyes:
         self._last: ToldCard | None = None
 
     def ask(self, person: str, called: Sequence[int]) -> str:
-        """Ask staff how a person's card is, wait until they tell, and return its state.
+        """Ask staff for the state of a person's card, and wait for it.
 
         Args:
             person: at whose place the robot is.
@@ -116,7 +116,7 @@ class StaffEyes:
         return told.numbers or None
 
     def response(self, action: Action, person: str, sitting: str) -> Response:
-        """Ask staff what has come of a request, and return it as a person's response.
+        """Ask staff for the outcome of a request; return it as the person's response.
 
         Staff take time to look and to tell, which does not count against the person.
 
@@ -141,7 +141,7 @@ class StaffEyes:
 
 
 def read_told(activity: Activity, words: str, called: Sequence[int]) -> ToldCard | None:
-    """Return what words tell of a card; None: they name no state, or not the numbers it needs.
+    """Parse words about a card; None if they lack the state or its numbers.
 
     Args:
         activity: whose states they are.
@@ -166,7 +166,7 @@ def read_told(activity: Activity, words: str, called: Sequence[int]) -> ToldCard
 def told_card(
     activity: Activity, called: Sequence[int], numbers: Sequence[int], marked: int
 ) -> ToldCard:
-    """Return what somebody tells who sees a card.
+    """Parse a report by a person who sees a card.
 
     Args:
         activity: whose states they are.

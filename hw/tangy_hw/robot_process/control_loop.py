@@ -1,4 +1,4 @@
-"""How time passes for a robot: in ticks, at each of which it looks, decides and drives.
+"""The control loop: at each tick the robot senses, decides and drives.
 
 On a machine's clock ticks come by themselves. On a bench in a hurry they come only while somebody
 waits for time to pass: what takes real time (a picture, a face) takes none of the robot's.
@@ -45,7 +45,7 @@ class ControlLoop:
         self._next: asyncio.Future[None] | None = None
 
     async def run(self) -> None:
-        """Tick until it is cancelled; whoever waits is told if it ends otherwise."""
+        """Tick until cancelled; any other end raises in all waiters."""
         try:
             await self._run()
         except BaseException as error:

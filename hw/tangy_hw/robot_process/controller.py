@@ -1,4 +1,4 @@
-"""The robot itself, as the robot process holds it: it drives, speaks, shows, looks, and stops.
+"""The robot controller of the robot process: drives, speaks, shows, looks, and stops.
 
 Everything that moves goes through its tick: there it looks whether it may drive, asks the navigator
 or whoever drives by hand how, and tells the base. What it must not do it does not do, whatever the
@@ -257,7 +257,7 @@ class LiveRobot:
             self._evidence.blocked = not self.navigator.finds_way(self._wanted)
 
     def drive_by_hand(self, twist: Twist, *, overrides: bool = False) -> None:
-        """Drive as somebody says who holds a key; it holds for a moment, and not in a hazard.
+        """Drive by hand while a key is held; each command lasts a moment, and none in a hazard.
 
         It is slower before what the scanner sees near, and stands before what is close, or crawls
         past that where the command `overrides` it.
@@ -282,7 +282,7 @@ class LiveRobot:
             await self._performer.be_still()
 
     def release(self, by: str = "") -> None:
-        """Let it move again as far as somebody is concerned, or whoever had stopped it."""
+        """Release the stop of one source, or of the source that had stopped it."""
         self._stops.release(by)
         self._evidence.blocked = False
         if by in ("", FAULT):
@@ -363,7 +363,7 @@ class LiveRobot:
         return command != STILL or self.going != ""
 
     def _was_frozen(self) -> None:
-        """Stop, and give up what was under way, until somebody lets it go on."""
+        """Stop and abort the current command until a person releases the robot."""
         why = f"it was frozen for {self.watch.frozen:.1f} s"
         self._stops.hold(why, FAULT)
         self._tasks.append(asyncio.create_task(self._halt()))

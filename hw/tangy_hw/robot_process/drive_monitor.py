@@ -1,4 +1,4 @@
-"""What a drive shows of what is wrong, kept for a moment: some passes before anybody looks.
+"""Symptoms during a drive, kept for a moment: some pass before they are read.
 
 That the robot was lost for a moment is kept until it has looked round: it may have found its place
 in the meantime, but it is not where it was in the game any more.
@@ -33,7 +33,7 @@ class DriveMonitor:
         self._slipped = 0.0
 
     def begin(self) -> None:
-        """Begin a drive: what was wrong with the last one is forgotten."""
+        """Begin a drive, and clear the symptoms of the last one."""
         self.blocked = False
         self._worst, self._kept = {}, {}
 

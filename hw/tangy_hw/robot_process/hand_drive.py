@@ -59,7 +59,7 @@ class HandDrive:
         unseen: Floats | None = None,
         tracks: Sequence[Track] = (),
     ) -> Twist | None:
-        """Return how to drive now; None where nobody drives by hand.
+        """Return the current velocity command; None if nobody drives by hand.
 
         Args:
             scan: what the laser sees.

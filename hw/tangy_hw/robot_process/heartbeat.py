@@ -38,7 +38,7 @@ def beat_of(robot: LiveRobot, number: int) -> dict[str, Any]:
 
 
 def aged(seen: tuple[CardSeen, float] | None) -> dict[str, Any] | None:
-    """Return what was seen of a card, and how long ago, in s."""
+    """Return a card reading with its age in s."""
     return None if seen is None else {**seen[0].to_json(), "age": time.monotonic() - seen[1]}
 
 

@@ -1,4 +1,4 @@
-"""What the program asks the robot's cameras: a card, a face, a picture, and how they are."""
+"""Requests to the robot's cameras: a card, a face, a picture, their state."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and be
 
 
 class Looks:
-    """Looks with the robot's cameras, and keeps what was read of cards last.
+    """Looks with the robot's cameras, and keeps the last card reading.
 
     Each raises DeviceError where the robot has no cameras.
     """
@@ -69,7 +69,7 @@ class Looks:
         return {"seq": frame.seq, "size": [frame.width, frame.height], "pixels": pixels}
 
     async def sights(self, _: Asked) -> dict[str, Any]:
-        """Tell how its cameras are, and what was read of cards last."""
+        """Return the state of the cameras, and the last card reading."""
         sensors = self._senses.sensors
         return {
             "sights": {

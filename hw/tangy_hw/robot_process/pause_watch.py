@@ -1,4 +1,4 @@
-"""Pauses: a robot stands for late data, goes on by itself when it is fresh, and slowly at first."""
+"""Pauses: the robot stands while data is late, and resumes slowly when it is fresh."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ class RobotProcess:
         return bool(line)
 
     async def take(self, line: bytes) -> None:
-        """Take a line of the program; what is wrong with one is answered, and ends nothing."""
+        """Take a line of the program; a bad one is answered with an error."""
         self._heard = time.monotonic()
         try:
             asked = read_line(line)
@@ -277,7 +277,7 @@ class RobotProcess:
         )
 
     async def _settle(self, _: Asked) -> None:
-        """Wait until what is there now has been seen, where time stands still meanwhile."""
+        """Wait until a stepped bench has delivered fresh observations."""
         if self._stepped:
             await self._wired.settle()
 

@@ -26,7 +26,7 @@ class AnswerPipe(asyncio.Protocol):
     transport: asyncio.WriteTransport | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Take what is written to."""
+        """Keep the transport to write to."""
         assert isinstance(transport, asyncio.WriteTransport)  # noqa: S101 - it is a pipe
         self.transport = transport
 

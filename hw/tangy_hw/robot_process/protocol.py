@@ -1,4 +1,4 @@
-"""Lines to the robot process, read strictly: what one asks for, and what is wrong with it.
+"""Strict parsing of lines to the robot process: the request, or its error.
 
 Nothing that a line can hold gets further than here unless it is of the kind that is wanted: a
 number is finite, a pose has three of them, and an id can be answered to.

@@ -1,4 +1,4 @@
-"""What the program can ask of the robot process: a closed set, the same at both ends.
+"""The requests to the robot process: a closed set, the same at both ends.
 
 What is at once is done as its line comes; a deed takes its time, and is answered when it is done.
 """
@@ -33,10 +33,10 @@ Request: TypeAlias = AtOnce | Deed
 
 
 def at_once_of(asked: object) -> AtOnce | None:
-    """Return what is asked for, where that is done at once."""
+    """Return the immediate request of a line."""
     return next((one for one in AT_ONCE if one == asked), None)
 
 
 def deed_of(asked: object) -> Deed | None:
-    """Return what is asked for, where that takes its time."""
+    """Return the lasting request of a line."""
     return next((one for one in DEEDS if one == asked), None)

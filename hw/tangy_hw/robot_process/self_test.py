@@ -28,7 +28,7 @@ SEATED = ("1", "2", "3", "4")  # who is there makes no difference to a trial
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What was found of one device: whether it works, and a sentence about it.
+    """The result of one device: whether it works, and a sentence.
 
     `absent`: something is wanting, and not broken: nothing says what drives it, or nobody looks at
     the screen yet.
@@ -48,7 +48,7 @@ async def try_robot(
     *,
     pairing: Mapping[str, str] = MappingProxyType({}),
 ) -> list[Trial]:
-    """Open every driver and camera that a robot's profile names, and listen to what they say.
+    """Open every driver and camera of a robot's profile, and check their data.
 
     Args:
         robot: whose devices they are.

@@ -36,7 +36,7 @@ class TickWatch:
 
     @property
     def overdue(self) -> bool:
-        """Whether the next tick is much too late already: what is known is from before."""
+        """Whether the next tick is overdue, so that all data is old."""
         return self._last is not None and self._clock() - self._last > self._late
 
     def tick(self) -> bool:

@@ -50,7 +50,7 @@ class Wheels:
         self.sent = asyncio.create_task(_quietly(work))
 
     async def stop(self) -> None:
-        """Have the base stand now; what was to be driven and was not handed over never is."""
+        """Stop the base now; commands not yet handed over are dropped."""
         self._call_off()
         self.driven, self._again = STILL, True
         await self._base.stop()

@@ -19,7 +19,7 @@ class Agenda:
         heapq.heappush(self._coming, (time, next(self._numbers), happens))
 
     def run(self, now: float) -> None:
-        """Let everything happen whose time (s) has come, and what comes of it if that is due."""
+        """Run all events due at a time (s), and those that they schedule if due, too."""
         while self._coming and self._coming[0][0] <= now:
             heapq.heappop(self._coming)[2]()
 

@@ -109,7 +109,7 @@ class DeclaredPeople(People):
         self._acts(Act(ASKING, person, YES))
 
     def _invited(self, act: Act, strategy: str) -> None:
-        """Let somebody do what they were asked, in time or late, or not at all."""
+        """Let a person comply with a request: in time, late, or not at all."""
         patience, who = self.activity.patience, act.who or ""
         response = respond(self.preferences, who, strategy, patience, self._compliance)
         self.game.responses.append(response)

@@ -17,7 +17,7 @@ from tangy_sim.device_simulator.people import People
 
 
 def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
-    """Tell people what holds from now on.
+    """Tell people the current rules.
 
     Args:
         people: the group.

@@ -282,7 +282,7 @@ class People:
     # -------------------------------------------------------------- what people are asked
 
     def _persuaded(self, sitter: Sitter, behaviour: Behaviour, heard: Heard) -> None:
-        """Let somebody do what they were asked, in time or late, or not at all."""
+        """Let a person comply with a request: in time, late, or not at all."""
         patience = self.activity.patience
         response = respond(self.preferences, sitter.id, heard.strategy, patience, self._compliance)
         asked = behaviour.effect in ABOUT_CARD
@@ -304,7 +304,7 @@ class People:
             self._agenda.at(self.now + 2 * patience - CLEAR, partial(self._turn_down, sitter))
 
     def _does(self, sitter: Sitter, behaviour: Behaviour, heard: Heard, vain: bool) -> None:
-        """Do what was asked; in vain, if the same is wrong with another number then."""
+        """Carry out the request; in vain if another number has the same error then."""
         player, before = sitter.player, sitter.player.marked
         judged = self.judged(sitter.id)
         named = sum(1 << player.cell[n] for n in heard.numbers if n in player.cell)

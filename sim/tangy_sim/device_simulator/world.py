@@ -272,7 +272,7 @@ class BenchWorld:
         return found
 
     def mend(self, code: str) -> list[str]:
-        """Let an expert see to what was diagnosed; return the kinds that were put right."""
+        """Let an expert repair the diagnosed faults; return the repaired kinds."""
         found = self.faults.of(code)
         for kind in found:
             self.lift(kind)

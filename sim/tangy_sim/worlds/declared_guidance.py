@@ -25,7 +25,7 @@ MOST_BACK = 25
 
 
 class GuidedDeclaredWorld(DeclaredWorld):
-    """A simulated world in which people do what brings about what was not shown yet.
+    """A simulated world in which people bring about situations not demonstrated yet.
 
     It goes by what the teacher shows, whatever that is. Where nothing is left to show, people act
     by chance. The same seed, earlier demonstrations and actions give the same states.

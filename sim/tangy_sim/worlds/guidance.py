@@ -1,4 +1,4 @@
-"""A guided game: one simulated game in which everything occurs that an activity can show.
+"""A guided game: one simulated game with every situation of an activity.
 
 Left to chance, a person has to demonstrate about three games before every row of Table II was
 seen. Here the same people have the same cards, but who errs, who asks for help, whose card is out

@@ -1,4 +1,4 @@
-"""The plan of a guided game: what was shown of an activity, what lacks, what comes next.
+"""The plan of a guided game: covered situations, missing ones, and the next one.
 
 It knows the activity alone. Cards and people are the guided world's.
 """

@@ -1,4 +1,4 @@
-"""What was brought about in a game, and since when it could be noticed."""
+"""The injections of a game, and since when each could be noticed."""
 
 from __future__ import annotations
 

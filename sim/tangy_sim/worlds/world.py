@@ -247,7 +247,7 @@ class SimulatedWorld(PlannedGame):
         return player.id not in self.away and self.tracker.ask(player.id)
 
     def _respond(self, beside: str, action: Action) -> Response | None:
-        """Let the person beside the robot respond to what was put to them."""
+        """Let the person beside the robot respond to a request."""
         return respond(
             self.preferences, beside, action.strategy, self.activity.patience, self._compliance
         )

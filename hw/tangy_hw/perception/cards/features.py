@@ -1,4 +1,4 @@
-"""What is measured of each cell of a grid that is seen straight on."""
+"""Features of each cell of a rectified grid."""
 
 from __future__ import annotations
 
@@ -357,7 +357,7 @@ def _around(at_crossings: Real) -> Real:
 
 
 def _corners(dots: Real, rows: int, columns: int) -> Real:
-    """Return what is in the four corners of each cell, inside its lines."""
+    """Measure the four corners of each cell, inside its lines."""
     import numpy as np
 
     cell = np.arange(rows * columns)
@@ -370,7 +370,7 @@ def _corners(dots: Real, rows: int, columns: int) -> Real:
 
 
 def _sides(dots: Real, rows: int, columns: int) -> Real:
-    """Return what is in the middle of the four sides of each cell, inside its lines."""
+    """Measure the middle of the four sides of each cell, inside its lines."""
     import numpy as np
 
     cell = np.arange(rows * columns)

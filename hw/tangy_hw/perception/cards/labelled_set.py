@@ -1,4 +1,4 @@
-"""A folder of pictures of cards with what is really on them, and how many are read as that."""
+"""A folder of labelled pictures of cards, and the accuracy of reading them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LARGEST_JSON = 20_000_000  # bytes: a hundred thousand pictures
 
 @dataclass(frozen=True)
 class CardLabel:
-    """What is really in a picture; cells in `hidden` nobody can tell."""
+    """The ground truth of a picture; cells in `hidden` cannot be told."""
 
     path: Path
     card: int | None

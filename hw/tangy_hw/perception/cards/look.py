@@ -20,7 +20,7 @@ MOMENT = 0.1
 
 
 class CardLook:
-    """What is seen of a card in one look. `add` readings until it `is_over`."""
+    """The fused readings of one look at a card. `add` readings until it `is_over`."""
 
     def __init__(
         self,
@@ -60,7 +60,7 @@ class CardLook:
         return True
 
     def add(self, reading: CardReading) -> None:
-        """Take in what was read in the picture of another moment."""
+        """Add the reading of another picture."""
         self._readings.append(reading)
         self.reading = self._reader.fuse(self._readings)
         self.state = self._reader.state(self.reading, self._states, self._called)

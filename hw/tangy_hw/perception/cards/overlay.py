@@ -1,4 +1,4 @@
-"""What was read, drawn over the picture that it was read from."""
+"""A reading drawn over its picture."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ FADED = 0.6  # of its card's usual contrast: a number with less of it does not l
 
 @dataclass(frozen=True)
 class CardReading:
-    """What was read of a card: its number (None where it cannot be told) and its cells.
+    """A reading of a card: its number (None if unreadable) and its cells.
 
     Masks have the bits of `Deck`'s cells. `cells` is the probability that a cell is marked;
     `confidence` that of the least sure cell that was told; `problem` says why there is no card.
@@ -201,7 +201,7 @@ class CardReader:
     def told(
         self, card: int, parts: Real, corners: tuple[tuple[float, float], ...] = ()
     ) -> CardReading:
-        """Say what is told of cells, and which cannot be told, from their probabilities."""
+        """Return the decided cells and the doubtful ones, from their probabilities."""
         classifier = load_classifier()
         hand = _has_hand(parts)
         marked = hidden = 0

@@ -1,4 +1,4 @@
-"""What is taken of a person's pictures: faces that are seen well, and differ from one another."""
+"""Selection of enrolment pictures: faces of good quality that differ from one another."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ other half in none), those of two or three people mixed in 77 % (89 %).
 
 
 class Enrolment:
-    """Takes pictures of one person; `vectors` is what is kept of them."""
+    """Enrols one person from pictures; `vectors` are the stored features."""
 
     def __init__(self, reader: FaceReader) -> None:
         """Begin without a picture."""
@@ -39,7 +39,7 @@ class Enrolment:
         self._seen = 0
 
     def take(self, vectors: Any) -> None:
-        """Take what was kept before (None: nothing)."""
+        """Take over the stored features (None: none)."""
         rows = [] if vectors is None else list(vectors)
         self._vectors += rows
         self._offered += [-1] * len(rows)

@@ -1,4 +1,4 @@
-"""What is kept of faces in a data folder: features, never pictures, and only with consent.
+"""The stored faces of a data folder: features, never pictures, and only with consent.
 
 Each person has a file for each kind of features, DATA/faces/KIND-PERSON.face: a line of JSON that
 says what is in it, and then the rows as 16-bit numbers. Who has agreed is in the log.
@@ -116,7 +116,7 @@ def read_faces(store: Store, kind: str) -> dict[str, Any]:
 
 
 def kept_faces(store: Store) -> list[tuple[str, str]]:
-    """Return whose features are kept, and of which kind."""
+    """Return the people with stored features, and the kind of these."""
     return sorted(_ours(store.folder / FOLDER))
 
 
@@ -170,7 +170,7 @@ def _name(kind: str, person: str) -> str:
 
 
 def _parse(name: str) -> tuple[str, str] | None:
-    """Return whose file it is, and of which kind; None if it is none of ours."""
+    """Parse a file name as person and kind; None if it is none of ours."""
     kind, dash, rest = name.partition("-")
     if not kind.isalnum() or not dash or not rest.endswith(ENDING):
         return None

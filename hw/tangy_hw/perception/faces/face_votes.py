@@ -1,4 +1,4 @@
-"""Whose face it is, by several frames: each has a vote, and unknown is one of the answers."""
+"""Face identification by a vote of several frames; unknown is one of the answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whose face it is, among those who are enrolled; nobody's is an answer.
+"""Face identification among enrolled people, with unknown as an answer.
 
 How alike pictures of one person are, and those of different people, is taken from the pictures
 that were enrolled, each against the others. From that comes how alike a face must be; nothing else
@@ -29,7 +29,7 @@ LEAST_GAP = 0.01  # between others and the threshold: pictures may be the very s
 
 @dataclass(frozen=True, slots=True)
 class FaceMatch:
-    """Whose face it is: None is unknown. `nearest` is who is most alike, `likenesses` are all."""
+    """An identification: None is unknown; `nearest` is the most similar person."""
 
     person: str | None
     nearest: str | None
@@ -53,7 +53,7 @@ class Gallery:
         """The mean similarity (a cosine) to another person, and that which is enough."""
 
     def compare(self, vector: Vector) -> FaceMatch:
-        """Say whose face it is; unknown where it is not clearly anybody's."""
+        """Identify a face; unknown if no person matches clearly."""
         if not self.people:
             return FaceMatch(None, None, 0.0)
         similar = self._all @ vector

@@ -1,4 +1,4 @@
-"""Whether a face is seen well enough to say whose it is; if not, why, in words of the staff."""
+"""The quality of a face picture for identification; if too low, the reason in plain words."""
 
 from __future__ import annotations
 

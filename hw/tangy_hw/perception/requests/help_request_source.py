@@ -1,4 +1,4 @@
-"""Who asks for help: what every source of requests promises, wherever it learns of them."""
+"""The interface of a source of help requests."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class RequestSource:
         """Begin to listen; that nothing is heard is a state, no error."""
 
     async def close(self) -> None:
-        """Stop listening for good; whoever waits for a change gets none."""
+        """Close for good; pending waits end without a change."""
         self._closed = True
         self._changed.set()
 
