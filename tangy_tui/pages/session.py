@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 
 from tangy_tui.monitoring.attention import attention
@@ -16,6 +16,7 @@ from tangy_tui.pages.staff_parts import STYLE as PARTS_STYLE
 from tangy_tui.pages.staff_parts import calls_part, faults_part, people_part, staff_part
 from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 from tangy_tui.text import session_page as say
+from tangy_tui.text.activities import stage_words
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.report import WORLD_WORDS, care_lines
@@ -200,7 +201,7 @@ def _timelines(session: Session, most: int) -> Iterator[str]:
     drawn = session.replays[-most:]
     if len(drawn) < len(session.replays):
         yield paragraph(say.drawn_words(most, len(session.replays)))
-    stages = stages_of(session.replays)
+    stages = {s: stage_words(session.activity, s) for s in stages_of(session.replays)}
     yield _key(stages)
     for replay in drawn:
         if len(session.replays) > 1:
@@ -211,16 +212,16 @@ def _timelines(session: Session, most: int) -> Iterator[str]:
 
 
 def _timeline(
-    replay: GameReplay, numbers: dict[str, int], session: Session, stages: Sequence[str]
+    replay: GameReplay, numbers: dict[str, int], session: Session, stages: Mapping[str, str]
 ) -> str:
     drawing = timeline(replay, numbers, session.names, stages)
     return figure(drawing, say.game_caption(replay.game.number, timed=replay.timed))
 
 
-def _key(stages: Sequence[str]) -> str:
+def _key(stages: Mapping[str, str]) -> str:
     bands = [
-        (f'<rect class="stage {ink(stage, stages)}" x="1" width="18" height="16"/>', stage)
-        for stage in stages
+        (f'<rect class="stage {ink(stage, stages)}" x="1" width="18" height="16"/>', words)
+        for stage, words in stages.items()
     ]
     marks = "".join(
         f'<span><svg viewBox="0 0 20 16" aria-hidden="true">{mark}</svg>{escape(words)}</span>'

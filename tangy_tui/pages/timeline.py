@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from html import escape
 from itertools import groupby
 from typing import NamedTuple
@@ -60,7 +60,10 @@ class Scale:
 
 
 def timeline(
-    replay: GameReplay, numbers: Mapping[str, int], names: Mapping[str, str], stages: Sequence[str]
+    replay: GameReplay,
+    numbers: Mapping[str, int],
+    names: Mapping[str, str],
+    stages: Mapping[str, str],
 ) -> str:
     """Draw the timeline of a game as an SVG element.
 
@@ -68,7 +71,7 @@ def timeline(
         replay: the game, step by step.
         numbers: what stands on each fault's mark, by its id.
         names: of the people, by id.
-        stages: those of the session, in the order in which they get their inks.
+        stages: those of the session with their words, in the order in which they get their inks.
     """
     scale = Scale(replay)
     people = list(replay.game.people)
@@ -142,12 +145,14 @@ def _halt(scale: Scale, span: Span, height: float) -> str:
     )
 
 
-def ink(stage: str, stages: Sequence[str]) -> str:
+def ink(stage: str, stages: Iterable[str]) -> str:
     """Return the class of a stage's band."""
-    return f"s{INKS[stages.index(stage) % len(INKS)]}"
+    return f"s{INKS[list(stages).index(stage) % len(INKS)]}"
 
 
-def _stages(replay: GameReplay, scale: Scale, top: float, stages: Sequence[str]) -> Iterator[str]:
+def _stages(
+    replay: GameReplay, scale: Scale, top: float, stages: Mapping[str, str]
+) -> Iterator[str]:
     for stage, steps in groupby(replay.done, key=lambda done: done.state.stage):
         some = list(steps)
         begun = some[0].begun if scale.timed else some[0].number - 1.0
@@ -156,10 +161,10 @@ def _stages(replay: GameReplay, scale: Scale, top: float, stages: Sequence[str])
         yield (
             f'<rect class="stage {ink(stage, stages)}" x="{x:.1f}" y="{top}" '
             f'width="{max(1.0, end - x - 0.8):.1f}" height="{BAND}" rx="2">'
-            f"<title>{escape(stage)}</title></rect>"
+            f"<title>{escape(stages[stage])}</title></rect>"
         )
-        if end - x > LETTER * len(stage) + 8:
-            yield _text((x + end) / 2, top + BAND / 2, stage, "ink", "middle")
+        if end - x > LETTER * len(stages[stage]) + 8:
+            yield _text((x + end) / 2, top + BAND / 2, stages[stage], "ink", "middle")
 
 
 def _to_all(replay: GameReplay, scale: Scale, top: float) -> Iterator[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.situations import seen_facts
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.state import EVERYBODY, ActivityState
@@ -12,7 +13,6 @@ from tangy_tui.text.numbers import counted
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
-    from tangy_profiles.declared.activity import DeclaredActivity
     from tangy_profiles.declared.checking import ActivityFlaw, Findings
     from tangy_profiles.declared.model import Effect, Fact, FactCondition
     from tangy_profiles.declared.search import Cut
@@ -69,6 +69,8 @@ def activity_lines(activity: DeclaredActivity) -> Iterator[str]:
         about = "" if stage.about == "group" else f", about {stage.about}"
         sees = f"; sees {', '.join(stage.sees)}" if stage.sees else ""
         yield f"  {stage.name}: {when}{about}{sees}"
+        if stage.words:
+            yield f"    people read: {stage.words}"
     yield "Facts:"
     for fact in declaration.facts.values():
         if not fact.built_in:
@@ -115,9 +117,15 @@ SELECTORS: dict[str, str] = {
 def whom_words(activity: Activity, policy: Policy) -> list[str]:
     """Say for whom Tangy does something, where it has learnt that from what was shown."""
     return [
-        f"{stage} -> {activity.behaviour_words(behaviour)}: for {_any_of(selectors)}."
+        f"{stage_words(activity, stage)} -> {activity.behaviour_words(behaviour)}: "
+        f"for {_any_of(selectors)}."
         for (stage, behaviour), selectors in policy.whom.items()
     ]
+
+
+def stage_words(activity: Activity | None, stage: str) -> str:
+    """Say what is going on in a stage, where the file of its activity has words for it."""
+    return activity.stage_words(stage) if isinstance(activity, DeclaredActivity) else stage
 
 
 def _any_of(selectors: tuple[str, ...]) -> str:
@@ -152,6 +160,17 @@ def proof_words(activity: Activity, found: CoverageProof) -> list[str]:
     if found.stuck is not None:
         lines.append(f"From here no game ends: {activity.in_words(found.stuck)}.")
     return lines
+
+
+def without_words(activity: DeclaredActivity) -> list[str]:
+    """Say which stages of a file have no words for people."""
+    stages = [stage.name for stage in activity.declaration.stages if not stage.words]
+    if not stages:
+        return []
+    names = ", ".join(stages)
+    return [
+        f"{activity.source}: stages: say in 'words' what is going on in {names}: teachers read it."
+    ]
 
 
 def search_lines(found: Findings, *, teams: bool) -> list[str]:

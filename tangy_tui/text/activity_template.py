@@ -45,6 +45,9 @@ def activity_file(new: NewActivity) -> str:
     turn = ', "next turn"' if new.turns else ""
     per = 'per = "player", ' if new.turns else ""
     mine = ', "turn is yes"' if new.turns else ""
+    told = "{name} answered" if new.turns else "there was an answer"
+    seen = 'sees = ["clock", "helped"]'
+    silent = "no answer from {name} yet" if new.turns else "no answer yet"
     over = '["items is over"]' if item else '["round >= 3"]'
     count = "" if item else 'round = { kind = "count" }          # how often something was put\n'
     nxt = '"next item"' if item else '"add round"'
@@ -57,13 +60,13 @@ title = "{new.title}"
 {table if item else ""}flags = ["opened", "waiting", "helped"]  # what is so or not, at first not
 
 # The first stage whose conditions hold is the present one. `sees` names the facts that Tangy
-# goes by there: it learns one answer for each of their values.
+# goes by there: it learns one answer for each of their values. People read `words`.
 stages = [
-  {{ name = "start", when = ["opened is no"] }},
-  {{ name = "reply", when = ["waiting is yes", "answer is given"]{about} }},
-  {{ name = "wait", when = ["waiting is yes"]{about}, sees = ["clock", "helped"] }},
-  {{ name = "close", when = {over} }},
-  {{ name = "next" }},
+  {{ name = "start", words = "nobody has been welcomed yet", when = ["opened is no"] }},
+  {{ name = "reply", words = "{told}", when = ["waiting is yes", "answer is given"]{about} }},
+  {{ name = "wait", words = "{silent}", when = ["waiting is yes"]{about}, {seen} }},
+  {{ name = "close", words = "all rounds are over", when = {over} }},
+  {{ name = "next", words = "no round is under way" }},
 ]
 
 # What a good host does, for `tangy activity try` and the scripted teacher; Tangy never learns

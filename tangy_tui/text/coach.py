@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.scene import ArrangedSituation
 from tangy_profiles.state import FRONT, ActivityState, Situation
-from tangy_tui.text.situations import card_words
+from tangy_tui.text.situations import card_words, moment_words
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity, StageRule
@@ -25,6 +25,9 @@ GUIDED = (
 )
 
 
+ASKED = "What should Tangy do?"
+"""The coach's question where an activity's file says what is going on, and not what to do."""
+
 SAYABLE = "You can say now"
 
 
@@ -35,12 +38,16 @@ def sayable_now(commands: Sequence[str]) -> str:
 
 def coach_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
     """Say in one sentence what is going on and what a host might do, then what is to be known."""
-    return " ".join([host_sentence(activity, state, name), *_facts(activity, state, scene, name)])
+    asked = [ASKED] if isinstance(activity, DeclaredActivity) else []
+    facts = _facts(activity, state, scene, name)
+    return " ".join([host_sentence(activity, state, name), *facts, *asked])
 
 
 def host_sentence(activity: Activity, state: ActivityState, name: Name) -> str:
     """Say what is going on and what a host might do, in the words of the activity."""
     who = name(state.attended) if state.attended else "Somebody"
+    if isinstance(activity, DeclaredActivity):
+        return f"{moment_words(activity, state, name)}."
     if said := activity.host_words(state.situation):
         return said.replace("{name}", who)
     rule = next(r for r in activity.stage_rules if r.stage == state.stage)
@@ -64,10 +71,7 @@ def _by_rule(activity: Activity, rule: StageRule, situation: Situation, who: str
         case "after":
             return "It is time to end the game."
         case _:
-            words = activity.in_words(situation)
-            if isinstance(activity, DeclaredActivity):  # they are names from its file
-                return f"the stage is “{words}”. What should Tangy do?"
-            return f"{words.capitalize()}."
+            return f"{activity.in_words(situation).capitalize()}."
 
 
 def _facts(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> list[str]:
@@ -109,7 +113,8 @@ def unseen_words(activity: Activity, missing: Sequence[Situation], room: int) ->
     said = _joined(len(missing), names, room)
     if "…" in said and isinstance(activity, DeclaredActivity):
         stages = Counter(situation.stage for situation in missing)
-        by_stage = [f"{stage} ({n})" if n > 1 else stage for stage, n in stages.items()]
+        named = ((activity.stage_words(stage), n) for stage, n in stages.items())
+        by_stage = [f"{words} ({n})" if n > 1 else words for words, n in named]
         return _joined(len(missing), by_stage, room)
     return said
 

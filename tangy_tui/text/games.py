@@ -25,7 +25,7 @@ from tangy_tui.text.decisions import addressed_words, because_words, why_words
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.situations import Name, once_words
+from tangy_tui.text.situations import Name, moment_words, once_words
 
 if TYPE_CHECKING:
     from tangy_profiles.state import Response
@@ -58,7 +58,7 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
             how = f", {choice.strategy}" if choice else ""
             why = f"as {teacher} said" if teacher else because_words(decision)
             return [
-                f"{number}. {activity.in_words(state.situation)} -> "
+                f"{number}. {moment_words(activity, state, name)} -> "
                 f"{action.behaviour.question}{target}{how}, {why}",
                 f"   Tangy says: {speech}" if outcome.completed else "   It was not carried out.",
             ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.reading import plain
 from tangy_profiles.state import FRONT, ActivityState
 from tangy_profiles.teaching_records import Deletion, Division, Merger, Restoration, Settlement
@@ -68,7 +69,15 @@ def step_words(
     draws = [b.name for b in activity.behaviours.values() if b.effect == "draw"]
     called = f" {activity.deck.label(numbers[0])}" if numbers and step.behaviour in draws else ""
     done = f"{activity.behaviour_words(step.behaviour)}{called}{target}"
-    return f"{activity.in_words(step.state.situation)} -> {done}"
+    return f"{moment_words(activity, step.state, name)} -> {done}"
+
+
+def moment_words(activity: Activity, state: ActivityState, name: Name) -> str:
+    """Write the situation of a state, with the person whom it is about if its words name one."""
+    if isinstance(activity, DeclaredActivity):
+        about = name(state.attended) if state.attended else ""
+        return activity.told_of(state.situation, about)
+    return activity.in_words(state.situation)
 
 
 def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:

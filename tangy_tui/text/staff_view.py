@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import assert_never
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.game_rules import Patterns
 from tangy_profiles.state import ActivityState
 from tangy_tui.app.game_commands import Autonomy
@@ -13,6 +14,7 @@ from tangy_tui.app.staff_view import PersonNow, StaffView
 from tangy_tui.learning.policy import Decision
 from tangy_tui.text.control import autonomy_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import moment_words
 
 NOTHING_CALLED = "nothing called yet"
 PAUSED, STOPPED, OVER = "Paused.", "Tangy was stopped.", "The game is over."
@@ -63,6 +65,9 @@ def next_words(
     waiting = f"{counted(calls_first, 'number')} first, then those who ask"
     why = waiting if calls_first else activity.in_words(state.situation)
     clause = why in {label for rule in activity.stage_rules for label in rule.label.values()}
+    if isinstance(activity, DeclaredActivity) and not calls_first:
+        why = moment_words(activity, state, name)
+        clause = bool(activity.declaration.stage(state.stage).words)
     done, whom = "Tangy asks you", ""
     if behaviour is not None and decision.sure:
         done = behaviour.question

@@ -33,7 +33,7 @@ from tangy_tui.text.games import (
 )
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.learnt import replay_words
-from tangy_tui.text.situations import OVER_NOW, lesson_words, once_words
+from tangy_tui.text.situations import OVER_NOW, lesson_words, moment_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.fault_log import write_fault
@@ -170,8 +170,9 @@ class GamePicture:
         how = f", {event.choice.strategy}" if event.choice else ""
         who = f", {teacher} answered" if teacher else ""
         done = "" if event.outcome.completed else NOT_DONE
+        told = moment_words(workspace.activity, event.state, workspace.name)
         screen.query_one(Transcript).append(
-            f"{words} -> {done}{event.action.behaviour.question}{target}{how}{who}"
+            f"{told} -> {done}{event.action.behaviour.question}{target}{how}{who}"
         )
         screen.query_one(LogView).write(event.speech)
         screen.query_one(RoomView).say(event.speech)

@@ -318,7 +318,7 @@ def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
     from tangy_tui.speech.activity_check import CheckedFile, check_activity
-    from tangy_tui.text.activities import finding_words, search_lines
+    from tangy_tui.text.activities import finding_words, search_lines, without_words
 
     try:
         activity = load_activity(name)
@@ -331,7 +331,8 @@ def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
         found = findings(activity)
         flaws = [plain(finding_words(activity.source, one)) for one in found.flaws]
         notes = map(plain, search_lines(found, teams=bool(activity.teams)))
-        checked = replace(checked, warnings=(*checked.warnings, *flaws), notes=tuple(notes))
+        warnings = (*checked.warnings, *flaws, *map(plain, without_words(activity)))
+        checked = replace(checked, warnings=warnings, notes=tuple(notes))
     return checked, activity
 
 

@@ -69,7 +69,7 @@ def test_every_mistake_is_told_at_once_with_its_place_and_the_nearest_word(folde
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ('{ name = "next" }', '{ name = "next", when = ["open is no"] }', "the last stage"),
+        ('is open" },', 'is open", when = ["open is no"] },', "the last stage"),
         ('does = ["finish"]', "does = []", "'finish'"),
         ("{hint}", "{hunt}", "{hunt}"),
         ('sees = ["clock", "hinted"]', 'sees = ["score"]', "bands"),
@@ -79,6 +79,9 @@ def test_every_mistake_is_told_at_once_with_its_place_and_the_nearest_word(folde
         ('"start clock"', '"start score"', "timer"),
         ('file = "trivia.csv"', 'file = "../trivia.csv"', "beside"),
         ("rounds = 6", "rounds = 600", "from 1 to 40"),
+        ("words = { answer", "words = { anwser", "'answer'"),
+        ('["no hint yet", "after a hint"]', '["no hint yet"]', "2 texts: for no, yes"),
+        ("{name} gave an answer", "{nmae} gave an answer", "{name}"),
     ],
 )
 def test_what_cannot_be_is_refused_by_name(folder: Path, old: str, new: str, told: str) -> None:

@@ -14,6 +14,7 @@ from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.cards import CardState, Deck
 from tangy_profiles.declared.model import Declaration, DeclaredBehaviour, Expectation
 from tangy_profiles.declared.reader import read_declaration
+from tangy_profiles.declared.situation_words import situation_words, stage_words
 from tangy_profiles.declared.situations import (
     NOTHING_SEEN,
     seen_facts,
@@ -59,9 +60,21 @@ class DeclaredActivity(Activity):
         return self.situations
 
     def in_words(self, situation: Situation) -> str:
-        """Write a situation in a few words: the stage, and the facts that are seen there."""
+        """Say what is going on in a situation, and what else is seen there."""
+        return situation_words(self.declaration, situation)
+
+    def told_of(self, situation: Situation, who: str) -> str:
+        """Say the same with the person of the stage in it ("": anyone)."""
+        return situation_words(self.declaration, situation, who)
+
+    def in_names(self, situation: Situation) -> str:
+        """Write a situation as its author named it: the stage, and the facts that it sees."""
         facts = ", ".join(f"{fact} is {value}" for fact, value in seen_facts(situation).items())
         return f"{situation.stage} · {facts}" if facts else situation.stage
+
+    def stage_words(self, stage: str) -> str:
+        """Say what is going on in a stage."""
+        return stage_words(self.declaration, stage)
 
     def not_yet(self, situation: Situation) -> str:
         """Name a situation that has not been shown yet."""

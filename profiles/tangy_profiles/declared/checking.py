@@ -92,7 +92,7 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
         slots, one = _played_as_expected(activity, players, left)
         note(players, one, as_expected=True)
     stuck = next((one.stuck for _, one in found if one.stuck is not None), None)
-    flaws = [ActivityFlaw("never ends", activity.in_words(stuck))] if stuck is not None else []
+    flaws = [ActivityFlaw("never ends", activity.in_names(stuck))] if stuck is not None else []
     missing = tuple(_missing(activity, tried))
     whole = all(one.whole for one in tried)
     played = {name for one in tried for name in one.played}
@@ -115,7 +115,7 @@ def _missing(activity: DeclaredActivity, found: Sequence[Reach]) -> Iterator[Act
             yield ActivityFlaw("stage never reached", stage)
     for situation in activity.situations:
         if situation.stage in stages and situation not in reached:
-            yield ActivityFlaw("situation never reached", activity.in_words(situation))
+            yield ActivityFlaw("situation never reached", activity.in_names(situation))
     for name in activity.behaviours:
         if not any(name in one.played for one in found):
             yield ActivityFlaw("behaviour never possible", name)

@@ -55,6 +55,23 @@ def read_facts(top: Section, columns: Sequence[str]) -> dict[str, Fact]:
     return facts
 
 
+def read_words(top: Section, facts: dict[str, Fact]) -> dict[str, Fact]:
+    """Read what people call the values of facts: for each fact a text for each of its values."""
+    section = top.table("words")
+    named = dict(facts)
+    for name in section:
+        if name not in facts:
+            section.wrong(name, f"{name!r} is not a fact; {nearest(name, facts)}", name)
+            continue
+        values, words = facts[name].values, section.texts(name)
+        if words and len(words) != len(values):
+            needed = f"must hold {len(values)} texts: for {', '.join(values)}"
+            section.wrong(name, needed if values else "is a number: give it bands first")
+        else:
+            named[name] = replace(facts[name], words=words)
+    return named
+
+
 def _free(section: Section, key: str, name: str, facts: dict[str, Fact]) -> bool:
     if name in facts:
         built = "is built in" if facts[name].built_in else "stands here twice"

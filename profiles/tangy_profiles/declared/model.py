@@ -50,6 +50,8 @@ class Fact:
     """The column of the items that says which answer is right; synonyms stand between bars."""
     tests: tuple[tuple[str, tuple[FactCondition, ...]], ...] = ()
     built_in: bool = False
+    words: tuple[str, ...] = ()
+    """What people call each of the values (): words that follow from the names."""
 
     def band(self, number: float) -> str:
         """Return the band that a count, or a timer's number of s, is in."""
@@ -76,6 +78,8 @@ class Stage:
     when: tuple[FactCondition, ...]
     about: Selector
     sees: tuple[str, ...]
+    words: str = ""
+    """What is going on, for people; {name} is the person of the stage ("": the name tells it)."""
 
 
 @dataclass(frozen=True, slots=True)

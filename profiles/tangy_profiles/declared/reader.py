@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import cast
 
-from tangy_profiles.declared.behaviour_reader import read_behaviours
+from tangy_profiles.declared.behaviour_reader import SLOT, read_behaviours
 from tangy_profiles.declared.conditions import Phrasing
-from tangy_profiles.declared.facts_reader import read_facts
+from tangy_profiles.declared.facts_reader import read_facts, read_words
 from tangy_profiles.declared.items import read_csv
 from tangy_profiles.declared.model import (
     Declaration,
@@ -31,6 +31,7 @@ from tangy_profiles.reading import LARGEST_PROFILE, nearest, read_toml
 KEYS = (
     *("name", "title", "items", "flags", "teams", "facts", "stages", "expected", "people"),
     *("behaviours", "strategies", "plain_strategy", "speech", "patience", "pronunciations"),
+    "words",
 )
 PLAIN = "plain"
 RESERVED = ("name", "n", "turn")
@@ -60,7 +61,7 @@ def read_declaration(path: Path) -> Declaration:
 def _read(top: Section, path: Path) -> Declaration:
     top.only(*KEYS)
     items = _read_items(top, path.parent)
-    facts = read_facts(top, items.columns)
+    facts = read_words(top, read_facts(top, items.columns))
     phrasing = Phrasing(facts)
     name = top.text("name")
     title = top.text("title", name[:1].upper() + name[1:])
@@ -122,7 +123,7 @@ def _read_stages(top: Section, phrasing: Phrasing) -> tuple[Stage, ...]:
     stages: list[Stage] = []
     sections = top.tables("stages")
     for place, section in enumerate(sections):
-        section.only("name", "when", "about", "sees")
+        section.only("name", "when", "about", "sees", "words")
         name = section.text("name")
         if any(stage.name == name for stage in stages):
             section.wrong("name", f"the stage {name!r} stands here twice", name)
@@ -139,7 +140,11 @@ def _read_stages(top: Section, phrasing: Phrasing) -> tuple[Stage, ...]:
         if not last and not section.texts("when"):
             section.wrong("name", f"no stage after {name!r} can be reached: give it 'when'", name)
         about = cast(Selector, section.word("about", SELECTORS, "group"))
-        stages.append(Stage(name, when, about, tuple(known)))
+        words = section.text("words", "")
+        for slot in SLOT.findall(words):
+            if slot != "name":
+                section.wrong("words", f"{{{slot}}} is not known; only {{name}} is", slot)
+        stages.append(Stage(name, when, about, tuple(known), words))
     if not 1 <= len(stages) <= MOST_STAGES:
         top.wrong("stages", f"there must be from 1 to {MOST_STAGES}")
     return tuple(stages)

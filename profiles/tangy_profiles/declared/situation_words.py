@@ -1,0 +1,119 @@
+"""Situations of a declared activity in words: those of its file, or what its names tell."""
+
+from __future__ import annotations
+
+from tangy_profiles.declared.model import Declaration, Fact, Stage
+from tangy_profiles.declared.situations import seen_facts
+from tangy_profiles.declared.vocabulary import (
+    ADDRESSED,
+    ASKING,
+    ITEMS,
+    NO,
+    PLACE,
+    TURN,
+    YES,
+    Selector,
+)
+from tangy_profiles.state import Situation
+
+NAME = "{name}"
+
+ANYONE: dict[Selector, str] = {
+    "group": "everybody",
+    "first asking": "a person",
+    "whose turn": "the player",
+    "next in circle": "the next person",
+    "quietest": "the quietest person",
+    "last to act": "a person",
+    "addressed": "the person",
+    "beside": "the person",
+}
+"""The person of a stage, where it is not said who it is."""
+
+BUILT_IN_WORDS: dict[tuple[str, str], str] = {
+    (ITEMS, "left"): "some are left",
+    (ITEMS, "over"): "none are left",
+    (ASKING, NO): "no request",
+    (ASKING, YES): "asks for help",
+    (TURN, NO): "not in turn",
+    (TURN, YES): "in turn",
+    (ADDRESSED, NO): "not spoken to last",
+    (ADDRESSED, YES): "spoken to last",
+    (PLACE, "front"): "at the front",
+    (PLACE, "beside"): "beside them",
+    (PLACE, "elsewhere"): "with others",
+}
+
+
+def situation_words(declaration: Declaration, situation: Situation, who: str = "") -> str:
+    """Say what is going on, then what else Tangy goes by in this situation.
+
+    Args:
+        declaration: the activity.
+        situation: one of its situations.
+        who: the person of the stage; "" for words that fit anyone.
+    """
+    facts = seen_words(declaration, situation)
+    words = stage_words(declaration, situation.stage, who)
+    return f"{words} · {facts}" if facts else words
+
+
+def seen_words(declaration: Declaration, situation: Situation) -> str:
+    """Say what the facts are that a stage sees ("": it sees none)."""
+    facts = declaration.facts
+    seen = seen_facts(situation).items()
+    return ", ".join(
+        value_words(facts[name], value) if name in facts else f"{name} is {value}"
+        for name, value in seen
+    )
+
+
+def stage_words(declaration: Declaration, name: str, who: str = "") -> str:
+    """Say what is going on in a stage; a stage that the file does not know keeps its name."""
+    stage = next((one for one in declaration.stages if one.name == name), None)
+    if stage is None:
+        return name
+    return (stage.words or _by_name(stage)).replace(NAME, who or ANYONE[stage.about])
+
+
+def value_words(fact: Fact, value: str) -> str:
+    """Say that a fact has a value."""
+    if fact.words and value in fact.values:
+        return fact.words[fact.values.index(value)]
+    if (fact.name, value) in BUILT_IN_WORDS:
+        return BUILT_IN_WORDS[fact.name, value]
+    name = plain_name(fact.name)
+    match fact.kind:
+        case "flag" | "test" if value in (NO, YES):
+            return name if value == YES else f"not {name}"
+        case "timer":
+            return f"for {_range(value, ' s')}"
+        case "count":
+            return f"{name}: {_range(value)}"
+        case _:
+            return f"{name} is {value}"
+
+
+def plain_name(name: str) -> str:
+    """Write the name of a stage or fact as words."""
+    return " ".join(name.replace("_", " ").replace("-", " ").split()) or name
+
+
+def _by_name(stage: Stage) -> str:
+    """Say by its name and conditions what a stage without words is."""
+    conditions = [
+        f"{one.quantifier} {plain_name(one.fact)} {one.comparison} {one.value}".strip()
+        for one in stage.when
+    ]
+    name = plain_name(stage.name)
+    return f"{name} ({' and '.join(conditions)})" if conditions else name
+
+
+def _range(band: str, unit: str = "") -> str:
+    """Write a band of numbers, with their unit (s, or none)."""
+    if band.startswith("<"):
+        return f"under {band[1:]}{unit}"
+    if band.startswith(">="):
+        return f"{band[2:]}{unit} or more"
+    low, _, high = band.partition("-")
+    return f"{low} to {high}{unit}" if high else f"{low}{unit}"
