@@ -90,6 +90,7 @@ class Activity:
     """Whether the file says which strategies press people, or that none does."""
     asking: AskingLimits = field(default_factory=AskingLimits)
     rules: GameRules = NO_RULES
+    summary: str = ""  # for how many people it is, how long it takes, what they need
 
     @cached_property
     def unread(self) -> str:
@@ -120,9 +121,7 @@ class Activity:
         label = next((words for rule in rules if (words := rule.label.get(request))), "")
         if self.reads(stage) or user_state != self.unread:
             return f"{label or stage}: {self.state_label(user_state)}"
-        if label:
-            return label
-        return f"{stage} · {'nobody' if request == 'ANR' else 'somebody'} asks"
+        return label or f"{stage} · {'nobody' if request == 'ANR' else 'somebody'} asks"
 
     def not_yet(self, situation: Situation) -> str:
         """Say in plain words that a situation has not been shown yet."""
@@ -320,6 +319,7 @@ def read_activity(path: Path) -> Activity:
         source=path.name,
         persuasion=read_persuading(top.table("persuasion", optional=True)),
         object=top.text("object", "card"),
+        summary=top.text("summary", ""),
         pronunciations=read_pronunciations(top.table("pronunciations", optional=True)),
         listening=listening.choice("mode", LISTENING, LISTENING[0]),
         names_pressing="pressing_strategies" in top,
@@ -360,8 +360,8 @@ def _stage_rules(top: Table, behaviours: dict[str, Behaviour]) -> tuple[StageRul
     for entry in top.tables("stages"):
         stage = entry.text("name")
         condition = entry.choice("when", CONDITIONS)
-        not_yet, label = read_by_request(entry, "not_yet"), read_by_request(entry, "label")
-        now = read_by_request(entry, "now")
+        keys = ("not_yet", "label", "now")
+        not_yet, label, now = (read_by_request(entry, key) for key in keys)
         for sentence in now.values():
             read_sentence(entry, "now", sentence)
         if condition in ("before", "after"):

@@ -58,6 +58,7 @@ def activity_lines(activity: DeclaredActivity) -> Iterator[str]:
     """Tell what there is in an activity: stages, facts, behaviours, a line each."""
     declaration = activity.declaration
     yield f"{activity.title} ({activity.source})"
+    yield f"  {activity_note(activity)}"
     if declaration.items.rows:
         items = declaration.items
         yield f"  {len(items.rows)} items, {items.rounds} in a game: {', '.join(items.columns)}"
@@ -228,10 +229,15 @@ CHOOSE_ACTIVITY = "Which activity do you want to teach and play?"
 
 
 def activity_note(activity: Activity) -> str:
-    """Count an activity's behaviours, situations and teams in words."""
-    behaviours = len(activity.behaviours)
-    teams = f", for {len(activity.teams)} teams" if activity.teams else ""
-    return f"{behaviours} behaviours, {len(activity.situations)} situations{teams}"
+    """Say for how many people an activity is, how long it takes, and what they need."""
+    if activity.summary or not isinstance(activity, DeclaredActivity):
+        return activity.summary
+    rounds = activity.declaration.items.rounds
+    who = f"{len(activity.teams)} teams" if activity.teams else "people take turns"
+    selectors = activity.declaration.selectors
+    if not activity.teams and not selectors & {"whose turn", "next in circle"}:
+        who = "for everybody together"
+    return f"{who}, {counted(rounds, 'round')}" if rounds else who
 
 
 def chosen_words(title: str) -> str:

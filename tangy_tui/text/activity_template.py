@@ -57,6 +57,7 @@ def activity_file(new: NewActivity) -> str:
     return f"""# {new.title}. Try it with: tangy activity try {new.name}.toml
 name = "{new.name}"
 title = "{new.title}"
+summary = "1 to 12 people, 15 minutes; you need nothing else"  # read where activities are chosen
 {table if item else ""}flags = ["opened", "waiting", "helped"]  # what is so or not, at first not
 
 # The first stage whose conditions hold is the present one. `sees` names the facts that Tangy

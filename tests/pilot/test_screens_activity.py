@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tangy_tui.app.chosen_activity import chosen_activity
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.text.activities import activity_note
+from tangy_tui.ui.activity_choice import choices
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, screen_text
-from tests.support.declared import declared
+from tests.support.declared import DECLARED, declared
 from tests.support.waiting import until_shown
 
 
@@ -39,3 +43,13 @@ async def test_esc_leaves_the_activity_as_it_is(run: Run, workspace: Workspace) 
         await pilot.press("escape")
         await pilot.pause()
         assert workspace.activity.name == before
+
+
+def test_the_choice_says_for_whom_an_activity_is_and_what_it_needs(workspace: Workspace) -> None:
+    notes = {word: note for word, _, note in choices(workspace)}
+    assert set(notes) >= {*DECLARED, workspace.activity.name}
+    assert all("minutes" in note and ";" in note for note in notes.values())
+    bare = replace(declared("trivia"), summary="")
+    assert activity_note(bare) == "people take turns, 6 rounds"
+    assert activity_note(replace(declared("team-trivia"), summary="")) == "2 teams, 6 rounds"
+    assert activity_note(replace(declared("exercises"), summary="")).startswith("for everybody")

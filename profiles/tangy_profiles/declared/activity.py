@@ -151,6 +151,7 @@ def _with_expected(
         name=declaration.name,
         title=declaration.title,
         patience=declaration.patience,
+        summary=declaration.summary,
         strategies=MappingProxyType(dict(declaration.strategies)),
         plain_strategy=declaration.plain_strategy,
         deck=NO_CARDS,

@@ -157,6 +157,8 @@ class Declaration:
     strategies: Mapping[str, str] = field(default_factory=dict)
     plain_strategy: str = ""
     patience: float = 10.0
+    summary: str = ""
+    """For how many people it is, how long it takes, and what they need."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def bounds_of(self, fact: Fact) -> tuple[int, ...]:

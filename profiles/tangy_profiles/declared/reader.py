@@ -31,7 +31,7 @@ from tangy_profiles.reading import LARGEST_PROFILE, nearest, read_toml
 KEYS = (
     *("name", "title", "items", "flags", "teams", "facts", "stages", "expected", "people"),
     *("behaviours", "strategies", "plain_strategy", "speech", "patience", "pronunciations"),
-    "words",
+    *("words", "summary"),
 )
 PLAIN = "plain"
 RESERVED = ("name", "n", "turn")
@@ -85,6 +85,7 @@ def _read(top: Section, path: Path) -> Declaration:
         expected=_read_expected(top, phrasing, stages, behaviours),
         strategies=strategies,
         plain_strategy=plain_strategy,
+        summary=top.text("summary", ""),
         patience=top.number("patience", 0.1, 600, 10.0),
         pronunciations=_read_pronunciations(top.table("pronunciations")),
     )
