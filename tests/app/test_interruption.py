@@ -289,6 +289,7 @@ def test_who_left_before_the_first_step_of_a_live_game_is_away_when_it_goes_on(
     workspace.close()
 
 
+@pytest.mark.slow
 def test_the_log_of_every_game_leads_where_the_game_was(room: Interrupted) -> None:
     policy, _ = load_policy(room.workspace.store, room.workspace.activity)
     kinds = ("card-out-of-sight", "request-withdrawn", "no-effect", "carried-off", "request-stuck")

@@ -75,6 +75,7 @@ def test_what_holds_no_question_is_refused(text: str) -> None:
         read_questions(text, "quiz")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", [AIKEN, KAHOOT])
 def test_it_can_be_checked_tried_and_answered(text: str, tangy: Tangy, tmp_path: Path) -> None:
     (tmp_path / "quiz").write_text("\ufeff" + text, encoding="utf-8")

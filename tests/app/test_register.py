@@ -100,6 +100,7 @@ def test_a_game_is_set_up_by_lines(data_folder: Path) -> None:
     workspace.close()
 
 
+@pytest.mark.slow
 def test_people_and_the_activity_are_set_up_by_lines(taught: Path) -> None:
     workspace = Workspace(taught)
     setup, said = SetUp.of(workspace), list[str]()

@@ -61,6 +61,7 @@ def test_a_document_says_what_it_was_made_from(ran: Ran) -> None:
     assert ran.document["settings"]["activity"] == "Bingo"
 
 
+@pytest.mark.slow
 def test_it_is_told_in_words_too(ran: Ran) -> None:
     done = run(*ran.words)
     assert (done.returncode, done.stderr) == (0, "")
@@ -111,6 +112,7 @@ def test_the_page_has_the_paper_beside_and_what_it_was_made_from(ran: Ran) -> No
         assert name in text and version in text
 
 
+@pytest.mark.slow
 def test_a_page_is_made_of_its_document_alone(ran: Ran) -> None:
     assert report(ran.document) == ran.page
 

@@ -27,6 +27,7 @@ def test_one_guided_demonstration_is_enough_for_one_to_eight_people(users: int) 
     assert done["flags"] == [[0, 0, 11, 0]]
 
 
+@pytest.mark.slow
 def test_by_chance_it_takes_a_few_and_wrong_decisions_are_flagged_until_then() -> None:
     done = [incremental.until_exact(SETTINGS, (RANDOM, 4, 7000 + seed)) for seed in range(8)]
     games = [one["games"] for one in done]
@@ -42,6 +43,7 @@ def test_by_chance_it_takes_a_few_and_wrong_decisions_are_flagged_until_then() -
     assert flags["right_flagged"] <= 0.01
 
 
+@pytest.mark.slow
 def test_a_piece_comes_out_the_same_again() -> None:
     case = (RANDOM, 4, 7100)
     assert incremental.until_exact(SETTINGS, case) == incremental.until_exact(SETTINGS, case)
@@ -49,6 +51,7 @@ def test_a_piece_comes_out_the_same_again() -> None:
     assert taught_again[0] == taught_again[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ["commonest", "rarest", "anywhere"])
 def test_wrong_answers_are_found_and_settled(place: str) -> None:
     for seed in range(3):
@@ -114,6 +117,7 @@ def test_no_two_parts_and_no_two_seeds_share_a_game(monkeypatch: pytest.MonkeyPa
     assert len(courses) == len(set(courses)) == 16 * 7
 
 
+@pytest.mark.slow
 def test_teachers_differ_in_what_they_do_and_not_in_what_is_learnt() -> None:
     done = [teachers.teach(SETTINGS, (place, 7400)) for place in range(len(STYLES))]
     assert len({tuple(one["behaviours"]) for one in done}) == len(STYLES)

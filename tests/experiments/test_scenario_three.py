@@ -129,6 +129,7 @@ def test_everything_induced_is_noticed_and_recovered_from(document: dict[str, An
     assert expert["median"] >= 300 > user["median"] >= 25 > goes_on["median"] >= teacher["median"]
 
 
+@pytest.mark.slow
 def test_success_is_not_what_is_hoped_for_but_what_was_diagnosed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -151,6 +152,7 @@ def test_success_is_not_what_is_hoped_for_but_what_was_diagnosed(
     assert told["missed"] == 1
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_games_and_twenty_are_a_piece(
     document: dict[str, Any], tmp_path: Path
 ) -> None:
@@ -162,6 +164,7 @@ def test_the_same_seed_gives_the_same_games_and_twenty_are_a_piece(
     assert from_disk == document
 
 
+@pytest.mark.slow
 def test_the_page_is_made_of_the_document_and_has_the_paper_beside(
     document: dict[str, Any],
 ) -> None:
@@ -196,6 +199,7 @@ def test_what_follows_from_chosen_help_is_no_prediction(document: dict[str, Any]
     assert sources == ["chosen"] * 4 + ["predicted", "fitted", "chosen"]
 
 
+@pytest.mark.slow
 def test_the_page_says_whether_devices_were_there(document: dict[str, Any]) -> None:
     assert "in simulation" in report(document) and "proves the rules" in report(document)
     benched = {**document, "simulated": False}

@@ -25,6 +25,7 @@ def test_the_first_run_of_ten_is_convergence() -> None:
     assert count([], in_a_row=1) is None
 
 
+@pytest.mark.slow
 def test_suboptimal_strategies_before_convergence_are_the_papers() -> None:
     played = persuading.run("bingo", 4, 40, SEED, Where(jobs=1))
     before = played["suboptimal_before_convergence"]
@@ -39,6 +40,7 @@ def test_suboptimal_strategies_before_convergence_are_the_papers() -> None:
         assert sum(shares[-10:]) / 10 > 0.9
 
 
+@pytest.mark.slow
 def test_other_choices_would_have_given_other_figures() -> None:
     choices = other_choices.run("bingo", 60, SEED, Where(jobs=1))
     (used,) = (one for one in choices if one["used"])
@@ -66,6 +68,7 @@ def test_where_nothing_persuades_it_is_said_before_any_game(
     persuading.check(str(LANTERNS))
 
 
+@pytest.mark.slow
 def test_who_has_few_interactions_or_never_converges_is_told_of_as_such(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -103,6 +106,7 @@ def test_everybody_answers_all_methods_alike() -> None:
     assert shared > 100
 
 
+@pytest.mark.slow
 def test_regrets_are_as_measured_and_bayes_ucb_is_better() -> None:
     def rows(name: str) -> list[list[float]]:
         return algorithms.meet({"strategies": 4, "seed": SEED}, ("even", name, 0, 120))
@@ -113,6 +117,7 @@ def test_regrets_are_as_measured_and_bayes_ucb_is_better() -> None:
     assert sum(row[1] for row in bayes) / 120 <= 0.65 * mean
 
 
+@pytest.mark.slow
 def test_earlier_people_help_where_people_are_alike_and_forgetting_where_they_change() -> None:
     settings = {"strategies": 4, "seed": SEED}
 

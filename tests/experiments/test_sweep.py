@@ -92,6 +92,7 @@ def test_a_torn_last_line_is_done_again_and_nothing_else(tmp_path: Path, cut: in
     assert told == [40]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_killed_at_any_moment_it_loses_only_what_was_being_done(tmp_path: Path, jobs: int) -> None:
     rng = Random()  # another moment in every run; the law holds for all of them
@@ -112,6 +113,7 @@ def test_killed_at_any_moment_it_loses_only_what_was_being_done(tmp_path: Path, 
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cores", [1, 2])
 def test_ctrl_c_ends_at_once_and_says_how_to_go_on(tmp_path: Path, cores: int) -> None:
     tangy = [sys.executable, "-c", "from tangy_tui.cli import main; main()"]
@@ -189,6 +191,7 @@ def test_experiments_have_help(
     assert "Usage: " in done.stdout
 
 
+@pytest.mark.slow
 def test_progress_is_shown_on_a_terminal_and_not_in_the_document(tmp_path: Path) -> None:
     import pty
 

@@ -232,6 +232,7 @@ def film_of(seed: int) -> Iterator[tuple[str, Image]]:
         yield "dimmed", seen(wide[:, 320:], rng, light=float(light), noise=2)
 
 
+@pytest.mark.slow
 def test_live_video_raises_no_false_alarm() -> None:
     watch, told = CameraWatch(0.0), set()
     for count, (kind, image) in enumerate(film_of(900)):

@@ -71,6 +71,7 @@ def test_cells_of_any_grid_are_told_what_is_at_its_rim() -> None:
     assert rows[0, :, NAMES.index("rim")].tolist() == [1] * 5 + [0, 0] + [1] * 5
 
 
+@pytest.mark.slow
 def test_a_cell_is_the_same_whichever_way_it_is_turned() -> None:
     features = len(FEATURES) + len(SEEN) * SPOTS**2
     ways = {tuple(turned(turn)) for turn in range(TURNS)}

@@ -7,9 +7,12 @@ from collections.abc import Callable
 from pathlib import Path
 from subprocess import CompletedProcess
 
+import pytest
+
 Tangy = Callable[..., CompletedProcess[str]]
 
 
+@pytest.mark.slow
 def test_the_pictures_of_a_folder_are_read_by_their_names(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 7, "--count", 3, "--png", tmp_path, "--dpi", 60)
     read = json.loads(tangy("read-card", tmp_path, "--json").stdout)

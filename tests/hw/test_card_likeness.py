@@ -86,6 +86,7 @@ def test_the_only_mark_is_doubted_where_it_looks_like_the_end_of_a_hand() -> Non
     assert doubted({17: BROWN, 2: BROWN}, hand) == set()  # there are brown chips elsewhere
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("trouble", "number"),
     [
@@ -108,6 +109,7 @@ def test_stripes_blur_and_fingers_are_told_no_marks(
     assert not reading.marked & ~reading.hidden & ~frame.marked & ~activity.deck.free
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("marks", ["coloured", "colourless", "pen"])
 def test_marks_of_one_kind_are_read_whatever_they_are(activity: Activity, marks: str) -> None:
     harsh = HarshCamera(CardCamera(activity.deck, title=activity.title), CHOSEN, marks)

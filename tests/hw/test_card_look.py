@@ -159,6 +159,7 @@ async def seen_in(
         senses.close()
 
 
+@pytest.mark.slow
 async def test_a_wrong_mark_is_told_by_two_pictures_and_no_more_are_taken(
     activity: Activity,
 ) -> None:
@@ -170,6 +171,7 @@ async def test_a_wrong_mark_is_told_by_two_pictures_and_no_more_are_taken(
     assert seen.to_json()["cards"] == (CARD,)
 
 
+@pytest.mark.slow
 async def test_what_one_picture_alone_shows_is_not_told(activity: Activity) -> None:
     shown = [picture(1 << 7, 0), *(picture(0, noise) for noise in range(1, 5))]
     seen = await seen_in(shown, activity)
@@ -181,6 +183,7 @@ async def test_a_picture_that_stands_still_tells_of_one_moment(activity: Activit
     assert (seen.state, seen.pictures) == ("occluded", 1)
 
 
+@pytest.mark.slow
 async def test_pictures_that_come_at_once_tell_of_one_moment(activity: Activity) -> None:
     shown = [picture(1 << 7, noise) for noise in range(4)]
     seen = await seen_in(shown, activity, apart=0.01)

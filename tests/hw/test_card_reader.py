@@ -49,6 +49,7 @@ def taken(marked: int, view: View = CLEAN, *, card: int = 17, seed: int = 5) -> 
     return camera().take(card, camera().chips(random, marked), view, random)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilt", [0, 35, 60])
 @pytest.mark.parametrize("marked", [0, 0b00100_01010_10001_00000_11111])
 def test_a_card_is_read_as_it_lies_there(reader: CardReader, tilt: int, marked: int) -> None:
@@ -59,6 +60,7 @@ def test_a_card_is_read_as_it_lies_there(reader: CardReader, tilt: int, marked: 
     assert np.abs(np.array(reading.corners) - np.array(frame.corners)).max() < 2  # pixels
 
 
+@pytest.mark.slow
 def test_rendered_frames_are_never_read_wrongly(reader: CardReader) -> None:
     for frame in camera().frames(31, 8, size=(720, 560)):
         reading = reader.read(frame.picture)
@@ -66,6 +68,7 @@ def test_rendered_frames_are_never_read_wrongly(reader: CardReader) -> None:
         assert not (reading.marked ^ frame.marked) & ~reading.hidden
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sort", [odd_chip, sheer_chip])
 def test_no_thing_that_lies_on_a_number_is_taken_for_paper(
     reader: CardReader, sort: Callable[[np.random.Generator], Chip]
@@ -109,6 +112,7 @@ def test_a_card_of_another_deck_is_not_claimed(reader: CardReader) -> None:
     assert CardReader(reader.deck, 2).read(picture).card == 17
 
 
+@pytest.mark.slow
 def test_what_is_no_card_is_not_claimed(reader: CardReader) -> None:
     noise = np.random.default_rng(2).integers(0, 256, (240, 320, 3), np.uint8)
     assert reader.read(noise).problem == NO_TAGS

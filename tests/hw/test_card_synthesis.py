@@ -59,6 +59,7 @@ def test_numbers_without_chips_are_as_black_as_their_card_has_them() -> None:
     assert column(flat, "alike").min() > 0.9
 
 
+@pytest.mark.slow
 @given(light=st.floats(0.35, 1.0), lift=st.floats(0, 60), slope=st.floats(-0.3, 0.3))
 @settings(max_examples=15, deadline=None)
 def test_light_shade_and_haze_change_no_contrast(light: float, lift: float, slope: float) -> None:
@@ -69,6 +70,7 @@ def test_light_shade_and_haze_change_no_contrast(light: float, lift: float, slop
     assert np.abs(column(changed, "middle of usual") - column(flat, "middle of usual")).max() < 0.12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tone", [RED, WHITE])
 def test_the_clearer_a_chip_the_blacker_the_number_beneath(
     tone: tuple[float, float, float],
@@ -80,6 +82,7 @@ def test_the_clearer_a_chip_the_blacker_the_number_beneath(
     assert others.min() > 0.75
 
 
+@pytest.mark.slow
 def test_all_sorts_of_things_are_drawn_where_they_lie() -> None:
     random = np.random.default_rng(8)
     empty = camera().take(17, {}, replace(VIEW, noise=0), np.random.default_rng(1)).picture

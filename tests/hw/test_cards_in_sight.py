@@ -104,6 +104,7 @@ def test_three_cards_are_counted(reader: CardReader, camera: CardCamera) -> None
     assert reader.read(three).problem == "three cards in sight: 9, 44 and 101"
 
 
+@pytest.mark.slow
 def test_a_card_alone_is_read_and_named(reader: CardReader, camera: CardCamera) -> None:
     for tilt in (0.0, 45.0):
         reading = reader.read(taken(camera, 17, view=replace(VIEW, tilt=tilt)).picture)
@@ -114,12 +115,14 @@ def test_a_card_alone_is_read_and_named(reader: CardReader, camera: CardCamera) 
     assert nothing.cards == () and nothing.problem == NO_TAGS
 
 
+@pytest.mark.slow
 def test_a_bent_card_is_one(reader: CardReader, camera: CardCamera) -> None:
     for seed in range(6):
         view = replace(VIEW, bend=1.2, tilt=30.0 + 5 * seed, spin=40.0 * seed)
         assert reader.read(taken(camera, 17, seed, view).picture).cards == (17,)
 
 
+@pytest.mark.slow
 def test_what_happens_to_look_like_a_tag_is_no_card() -> None:
     """Rooms and tables are full of detail; hardly any of it is black on white."""
     for number in range(12):

@@ -183,6 +183,7 @@ def test_nothing_told_is_not_taken_for_a_refusal(link: FakeLink) -> None:
     assert do(world, "encourage person", "user2").response is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DECLARED)
 @given(data=st.data())
 def test_the_same_observations_give_the_same_facts_as_in_the_simulated_room(

@@ -92,6 +92,7 @@ def test_a_model_that_does_something_else_is_refused(models: FaceModels) -> None
         OnnxReader(models.recogniser, models.finder).read(face(1, 1))
 
 
+@pytest.mark.slow
 def test_the_verbs_use_the_robots_files(tangy: Tangy, models: FaceModels, tmp_path: Path) -> None:
     robot = robot_file(tmp_path, "finder.onnx", "recogniser.onnx")
     pictures = tmp_path / "pictures"

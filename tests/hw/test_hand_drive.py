@@ -136,6 +136,7 @@ class TestClamp:
         may_drive(parts.told, LIMITS.speed)
         may_drive([wheels.driven], LIMITS.speed)
 
+    @pytest.mark.slow
     @given(TWISTS, TWISTS, st.sampled_from(["line", "hand", "navigator", "both"]))
     async def test_nothing_above_the_profile_s_speed_reaches_the_base_whoever_asks(
         self, one: Twist, other: Twist, way: str

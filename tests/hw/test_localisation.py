@@ -48,6 +48,7 @@ class Driven:
 
 
 class TestFollowing:
+    @pytest.mark.slow
     @pytest.mark.parametrize("seed", [1, 2])
     def test_a_robot_that_drives_is_followed_within_centimetres(self, seed: int) -> None:
         found = Driven(seed).drive(ROUND)
@@ -119,6 +120,7 @@ class TestFinding:
         assert off < 0.15 and robot.heading_off(estimate) < 0.1
         assert estimate.settled and estimate.spread < 0.3
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("seed", [20, 21])
     def test_a_robot_that_was_carried_off_says_so_and_finds_itself(self, seed: int) -> None:
         robot = Driven(seed)

@@ -60,6 +60,7 @@ def log_that_slips(path: Path, slip: Pose) -> Path:
 
 
 class TestMap:
+    @pytest.mark.slow
     def test_how_well_matched_scans_close_is_said(self, tmp_path: Path) -> None:
         log = log_that_slips(tmp_path / "a.log", Pose(0.05, 0.05, 0.0))
         told = json.loads(tangy_map(log, "--match", "--json").stdout)
@@ -67,6 +68,7 @@ class TestMap:
         shown = tangy_map(log, "--match").stdout
         assert f"{told['contradicted']:.0%} of the beams contradict the map" in shown
 
+    @pytest.mark.slow
     def test_a_map_that_does_not_close_is_refused_and_only_its_picture_written(
         self, tmp_path: Path
     ) -> None:

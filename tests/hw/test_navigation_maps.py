@@ -175,6 +175,7 @@ class TestScans:
         off = drawn.seen_distance[drawn.cells_of(walls)]
         assert np.percentile(off, 95) <= 0.06
 
+    @pytest.mark.slow
     def test_matching_takes_the_errors_of_the_wheels_away(self) -> None:
         counted, truth = scans_of_a_tour(1.04, 0.05)
         found = aligned(counted)
@@ -184,6 +185,7 @@ class TestScans:
                    for one, t in zip(counted, truth, strict=True)]  # fmt: skip
         assert max(off) < 0.1 < 0.4 < max(drifted)
 
+    @pytest.mark.slow
     def test_how_well_a_map_closed_is_told_by_beams_that_contradict_it(self) -> None:
         counted, _ = scans_of_a_tour(1.04, 0.05)
         found = aligned(counted)

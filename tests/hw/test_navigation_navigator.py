@@ -12,6 +12,7 @@ from tests.hw.navigated import FRONT, DrivenRobot, at_seat
 
 
 class TestGoing:
+    @pytest.mark.slow
     def test_it_goes_to_every_seat_and_back_to_the_front(self) -> None:
         robot = DrivenRobot()
         for goal in (at_seat(0), at_seat(3), FRONT):
@@ -39,6 +40,7 @@ class TestGoing:
         assert worst["fit"] > 0.9 and worst["spread"] < 0.4
         assert worst["slip"] < 0.2 and worst["still"] < 0.5
 
+    @pytest.mark.slow
     def test_another_goal_takes_the_place_of_the_first(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
@@ -122,6 +124,7 @@ class TestFaults:
         assert robot.run(5, lambda: float(robot.navigator.facts()["slip"]) > 0.3)
         assert robot.navigator.facts()["path"] == "clear"
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("seed", [1, 2])
     def test_carried_off_it_turns_finds_itself_and_goes_on(self, seed: int) -> None:
         robot = DrivenRobot(seed=seed)
@@ -133,6 +136,7 @@ class TestFaults:
         assert float(facts["fit"]) < 0.85 and float(facts["spread"]) > 0.5
         assert robot.arrives(120) and robot.off(at_seat(0))[0] < 0.15
 
+    @pytest.mark.slow
     def test_one_that_is_lost_for_good_gives_up_after_two_turns(self) -> None:
         robot = DrivenRobot(seed=1)
         robot.navigator.go(at_seat(0))

@@ -15,6 +15,7 @@ from tests.hw.navigated import CHAIR, ROW, DrivenRobot, at_seat
 
 
 class TestObstacles:
+    @pytest.mark.slow
     def test_it_goes_round_a_chair_that_is_put_in_its_way(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(3))
@@ -25,6 +26,7 @@ class TestObstacles:
         assert robot.seen[-1] == ("arrived", "clear")
         assert not robot.touched
 
+    @pytest.mark.slow
     def test_it_waits_where_there_is_no_way_and_goes_on_when_there_is(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(3))
@@ -37,6 +39,7 @@ class TestObstacles:
         robot.boxes.clear()
         assert robot.arrives() and not robot.touched
 
+    @pytest.mark.slow
     def test_within_a_ring_of_chairs_it_says_that_there_is_no_way(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
@@ -95,16 +98,19 @@ class TestObstacles:
 class TestPeople:
     """Drives among people in a simulated room; `tests.bench.people_drives` makes more of them."""
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("scene", ["standing", "gap", "beside", "steps in"])
     def test_nobody_who_stands_or_steps_in_and_stands_is_touched(self, scene: str) -> None:
         for drive in drives(scene, 2, seed=7):
             assert drive.arrived and drive.told == ""
             assert drive.nearest > 0.05 and not drive.touches
 
+    @pytest.mark.slow
     def test_before_somebody_who_stepped_in_it_drives_slowly(self) -> None:
         (drive,) = drives("steps in", 1, seed=11)
         assert drive.near and np.median(drive.near) <= 0.15
 
+    @pytest.mark.slow
     def test_without_anybody_nothing_slows_it_down(self) -> None:
         """It takes as long as it took before it kept away from people."""
         for drive, seconds in zip(drives("alone", 2, seed=7), (16.3, 15.0), strict=True):

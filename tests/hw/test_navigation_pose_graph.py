@@ -78,6 +78,7 @@ def matched(scans: list[Placed]) -> tuple[JudgedMap, JudgedMap]:
     return drawn, with_loops_closed(drawn, 0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "scale", "noise"), [(51, 1.03, 0.06), (52, 1.05, 0.1)])
 def test_a_map_that_drift_left_open_or_torn_is_closed(
     seed: int, scale: float, noise: float
@@ -102,6 +103,7 @@ def test_a_map_is_taken_only_where_its_poses_are_right(seed: int) -> None:
         assert best_fit(after.scans, [pose for _, pose in log]) < 0.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [71, 72])
 def test_wheels_that_slipped_are_refused_as_before(seed: int) -> None:
     walls, way = ring(14.0, 2.0, 4.0)

@@ -37,6 +37,7 @@ def test_of_two_rings_one_that_is_torn_is_enough() -> None:
     assert verdict(*judged(logged(walls, way, 33, Slip(0.6, 0.06)))) == "torn"
 
 
+@pytest.mark.slow
 def test_who_never_comes_back_closes_nothing() -> None:
     walls, way = ring(14.0, 2.0, 0.0)
     share, found = judged(logged(walls, way[:3], 34))

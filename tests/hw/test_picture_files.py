@@ -138,6 +138,7 @@ def test_what_was_read_is_drawn(tangy: Tangy, tmp_path: Path) -> None:
     assert (drawn[..., 0] > drawn[..., 2] + 100).any()  # the grid, in blue
 
 
+@pytest.mark.slow
 def test_pictures_of_one_card_are_read_together(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 42, "--count", 1, "--png", tmp_path, "--dpi", 60)
     whole = Image.open(tmp_path / "card-042.png")
@@ -164,6 +165,7 @@ def test_a_picture_is_turned_as_it_was_taken(tmp_path: Path) -> None:
     assert read.shape == (100, 70, 3) and read[0, 0].tolist() == [0, 0, 255]
 
 
+@pytest.mark.slow
 def test_a_printed_picture_is_read_and_its_state_told(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 42, "--count", 2, "--png", tmp_path, "--dpi", 60)
     files = [tmp_path / "card-042.png", tmp_path / "card-043.png"]
@@ -184,6 +186,7 @@ def test_a_printed_picture_is_read_and_its_state_told(tangy: Tangy, tmp_path: Pa
     assert "not a card of this deck" in tangy("read-card", files[0], "--deck-seed", 2).stdout
 
 
+@pytest.mark.slow
 def test_a_labelled_folder_is_counted(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 7, "--count", 2, "--png", tmp_path, "--dpi", 60)
     labels = json.loads(tangy("read-card", *tmp_path.glob("*.png"), "--json").stdout)
@@ -200,6 +203,7 @@ def test_a_labelled_folder_is_counted(tangy: Tangy, tmp_path: Path) -> None:
     assert "no number of the deck" in tangy("read-card", "x.png", "--called", "99").stderr
 
 
+@pytest.mark.slow
 def test_pictures_with_a_label_beside_them_are_counted(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 7, "--count", 3, "--png", tmp_path, "--dpi", 60)
     (tmp_path / "cards.json").unlink()
@@ -214,6 +218,7 @@ def test_pictures_with_a_label_beside_them_are_counted(tangy: Tangy, tmp_path: P
     assert "card-008.json" in tangy("read-card", "--bench", tmp_path).stderr
 
 
+@pytest.mark.slow
 def test_what_a_camera_saw_is_confirmed_and_counted(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 7, "--count", 2, "--png", tmp_path / "in", "--dpi", 60)
     kept = tmp_path / "kept"
@@ -227,6 +232,7 @@ def test_what_a_camera_saw_is_confirmed_and_counted(tangy: Tangy, tmp_path: Path
     assert (counted["with_card"], counted["whole"], counted["wrong_cells"]) == (2, 2, 0)
 
 
+@pytest.mark.slow
 def test_what_a_state_hangs_on_is_not_called_out_of_view(
     card: Image.Image, tangy: Tangy, tmp_path: Path
 ) -> None:

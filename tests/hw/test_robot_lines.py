@@ -193,6 +193,7 @@ DOES = ("stop", "release", "cancel", "drive", "go", "wait", "place", "perform", 
 KEYS = ("id", "why", "by", "forward", "turn", "to", "at", "seconds", "text", "picture", "device")
 
 
+@pytest.mark.slow
 @given(
     do=st.sampled_from(DOES) | JSON,
     what=st.dictionaries(st.sampled_from(KEYS), JSON),

@@ -121,6 +121,7 @@ class TestHungProcess:
 
 
 class TestEnd:
+    @pytest.mark.slow
     def test_what_is_asked_for_while_it_ends_is_answered_once(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:

@@ -6,6 +6,7 @@ import asyncio
 import json
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -66,6 +67,7 @@ def spoilt(draw: st.DrawFn) -> tuple[str, Any]:
         here = inner
 
 
+@pytest.mark.slow
 @given(st.lists(spoilt(), min_size=5, max_size=20))
 def test_messages_that_are_spoilt_anywhere_are_passed_over(messages: list[tuple[str, Any]]) -> None:
     async def run() -> None:

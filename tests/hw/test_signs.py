@@ -103,6 +103,7 @@ class TestPersistence:
         assert grown == sorted(grown) and grown[-1] == 1.0
 
 
+@pytest.mark.slow
 def test_who_asks_is_seen_and_nobody_else() -> None:
     """A small piece of `tests/bench/requests.py`, of other seeds than it."""
     asked = seen = false = pictures = 0

@@ -247,6 +247,7 @@ def child(request: pytest.FixtureRequest, tmp_path: Path) -> Child:
 
 
 class TestChildren:
+    @pytest.mark.slow
     def test_each_bad_line_is_answered_by_an_error_and_ends_nothing(self, child: Child) -> None:
         said: Queue[dict[str, Any]] = Queue()
         worker = WorkerProcess(child.command, hear=lambda told, _: said.put(told))
@@ -277,6 +278,7 @@ class TestChildren:
         assert worker.how == "status 0"
         assert not [told for told in said.queue if "failed" in told]
 
+    @pytest.mark.slow
     def test_it_writes_down_what_it_does(self, child: Child, tmp_path: Path) -> None:
         worker = WorkerProcess(child.command, log=tmp_path / "log")
         for line in [*child.begins, child.asks]:

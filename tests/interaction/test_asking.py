@@ -98,6 +98,7 @@ def test_what_nobody_showed_is_asked_and_nothing_happens_before_the_answer(
     assert not facilitation.over
 
 
+@pytest.mark.slow
 def test_demonstrations_that_disagree_are_asked_about(
     store: Store, activity: Activity, cover: Cover
 ) -> None:
@@ -116,6 +117,7 @@ def test_demonstrations_that_disagree_are_asked_about(
     assert facilitation.policy.decide(where).sure
 
 
+@pytest.mark.slow
 def test_a_vote_below_the_threshold_is_asked_about(
     store: Store, activity: Activity, cover: Cover
 ) -> None:
@@ -256,6 +258,7 @@ def test_an_answer_that_cannot_be_kept_loses_nothing(
             reply(facilitation, activity)
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(data=st.data(), seed=st.integers(1, 10_000))
 def test_whatever_was_left_out_is_asked_once_and_known_from_then_on(

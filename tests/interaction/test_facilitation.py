@@ -110,6 +110,7 @@ def test_each_response_updates_the_belief_in_the_strategy_that_was_used(facilita
 # ---------------------------------------------------------------------------------- stopping
 
 
+@pytest.mark.slow
 def test_it_stops_and_says_why_where_nobody_has_shown_what_to_do(
     facilitate: Make, policy: Policy, activity: Activity
 ) -> None:

@@ -270,12 +270,14 @@ def regret(make: object, crowd: bench.Crowd, people: int, **about: bool) -> floa
     return mean(found[-1] for found in bench.regrets(make, crowd, people, 60, **about))
 
 
+@pytest.mark.slow
 def test_the_regret_of_bayes_ucb_is_at_most_65_hundredths_of_thompsons() -> None:
     thompson = regret(bench.thompson, bench.even, 1000)
     assert thompson == pytest.approx(6.2, abs=0.4)
     assert regret(bench.bayes_ucb, bench.even, 1000) <= 0.65 * thompson
 
 
+@pytest.mark.slow
 def test_with_what_earlier_people_liked_it_is_at_most_half() -> None:
     thompson = regret(bench.thompson, bench.shared, 150)
     assert regret(bench.bayes_ucb_prior, bench.shared, 150, earlier=True) <= 0.5 * thompson

@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from random import Random
 
+import pytest
+
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.store import Store
 from tangy_profiles.teaching_records import (
@@ -41,6 +43,7 @@ def shown_alone(seed: int) -> Demonstration:
     return Demonstration("alone", "trivia", "test", seed, PEOPLE[:1], tuple(steps), True)
 
 
+@pytest.mark.slow
 def test_selectors_that_disagree_are_asked_about_once(tmp_path: Path) -> None:
     shown = shown_alone(1)
     policy = learn_policy(ACTIVITY, [shown])

@@ -189,6 +189,7 @@ def test_an_undo_of_several_steps_that_cannot_be_kept_has_not_happened(
     workspace.close()
 
 
+@pytest.mark.slow
 @given(st.lists(st.sampled_from(("step", "undo", "redo", "back")), max_size=14), st.integers(1, 9))
 @settings(max_examples=25)
 def test_the_log_agrees_with_the_session_after_any_steps_undos_and_redos(

@@ -337,6 +337,7 @@ def test_whatever_is_done_undo_leads_back_step_by_step_and_redo_forward_again(
             assert seen(editor) == state
 
 
+@pytest.mark.slow
 @given(CHANGES)
 @tried(60)
 def test_no_step_is_learnt_from_twice_whatever_is_done(

@@ -48,6 +48,7 @@ def effects(activity: Activity, demonstrate: Demonstrate) -> Effects:
 # ------------------------------------------------------------------------- as it should be
 
 
+@pytest.mark.slow
 def test_three_demonstrations_are_enough_for_one_false_alarm_in_a_hundred_games(
     activity: Activity, demonstrate: Demonstrate, games: list[Seen]
 ) -> None:

@@ -115,6 +115,7 @@ def test_only_the_last_ones_are_kept(activity: Activity, rows: Rows, tmp_path: P
     assert len(kept(tmp_path)) == MOST
 
 
+@pytest.mark.slow
 def test_to_look_at_a_policy_loads_no_forest(taught: Path) -> None:
     look = (
         "import sys; from tangy_tui.cli import main\n"

@@ -90,6 +90,7 @@ def test_phrases_count_as_they_did_before_anything_was_learnt() -> None:
         assert BOOK.understand(phrase) == plain.understand(phrase)
 
 
+@pytest.mark.slow
 def test_an_activity_that_nobody_has_seen_is_learnt_from_its_own_words(
     lanterns: Activity, tmp_path: Path
 ) -> None:
@@ -102,6 +103,7 @@ def test_an_activity_that_nobody_has_seen_is_learnt_from_its_own_words(
     assert len(list(tmp_path.glob("*.json"))) == 1
 
 
+@pytest.mark.slow
 def test_what_was_learnt_is_read_again_and_believed_only_if_it_fits(
     lanterns: Activity, tmp_path: Path
 ) -> None:

@@ -53,6 +53,7 @@ def everything(activity: Activity, *without: Situation) -> list[tuple[Situation,
 # ------------------------------------------------------------------------------- exactness
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 50, 10))
 def test_it_is_exact_after_any_covering_demonstration_of_one_to_eight_people(
     first: int, activity: Activity, cover: Cover
@@ -67,6 +68,7 @@ def test_it_is_exact_after_any_covering_demonstration_of_one_to_eight_people(
             assert decision.sure
 
 
+@pytest.mark.slow
 def test_the_papers_bagging_is_exact_too_with_lower_votes(activity: Activity, cover: Cover) -> None:
     for seed in range(10):
         shown = cover("bingo", seed, 1 + seed % 8)
@@ -132,6 +134,7 @@ def test_the_digest_changes_with_rows_settings_and_seed(activity: Activity) -> N
     assert alike[0].digest != alike[1].digest
 
 
+@pytest.mark.slow
 def test_another_process_learns_the_same_bit_for_bit(
     activity: Activity, demonstrate: Callable[[str, int, int], Demonstration]
 ) -> None:

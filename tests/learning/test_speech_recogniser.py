@@ -353,6 +353,7 @@ def _runs(recogniser: Recogniser) -> bool:
     return recogniser.pid is not None
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
 async def test_what_a_process_has_others_do_counts_as_its_work() -> None:
     busy = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'while True: pass'])"

@@ -164,6 +164,7 @@ class TwoAnswers:
         """Nothing was started."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sure", "words", "stops"),
     [(True, "call number", True), (False, "they stop", True), (False, "call number", False)],

@@ -82,6 +82,7 @@ def expected_phrase(teaching: TeachingSession) -> str:
     return BINGO.behaviours[name].phrases[0]
 
 
+@pytest.mark.slow
 @tried(60)
 @given(st.integers(0, 50), st.integers(1, 8), st.lists(commands, max_size=40))
 def test_whatever_is_said_the_log_agrees_with_the_session(
@@ -111,6 +112,7 @@ def test_whatever_is_said_the_log_agrees_with_the_session(
         assert store.check() == []
 
 
+@pytest.mark.slow
 @tried(25)
 @given(st.integers(0, 50), st.integers(0, 60), st.integers(1, 5))
 def test_undone_and_done_again_leads_to_the_same_state(seed: int, length: int, back: int) -> None:

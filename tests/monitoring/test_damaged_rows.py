@@ -196,6 +196,7 @@ def _survives(folder: Path, several: list[Callable[[sqlite3.Connection], None]])
         read_all(copy)
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)  # and 500 in the slow test below
 @given(several=st.lists(damages(), min_size=1, max_size=3))
 def test_no_damage_to_rows_ends_what_reads_the_log(_every_kind: Path, several: Any) -> None:

@@ -76,6 +76,7 @@ def test_games_without_faults_are_those_of_the_plain_world(workspace: Workspace)
         faulty.begin()
 
 
+@pytest.mark.slow
 def test_nothing_is_found_in_games_in_which_nothing_is_wrong(supervise: Supervise) -> None:
     game = supervise(seed=11)
     for _ in range(40):

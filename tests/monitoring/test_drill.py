@@ -138,6 +138,7 @@ def test_each_kind_of_fault_is_seen_and_alone(table: Tabletop, kind: RoundKind) 
     )
 
 
+@pytest.mark.slow
 def test_no_round_is_at_the_end_of_its_game(
     table: Tabletop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -156,6 +157,7 @@ def test_no_round_is_at_the_end_of_its_game(
     assert chosen == [False] * 8
 
 
+@pytest.mark.slow
 def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: Tabletop) -> None:
     for kind in KINDS:
         shown = table.play(1, kind, Random(2))
@@ -167,6 +169,7 @@ def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: Tabletop)
         assert "critical" not in seen
 
 
+@pytest.mark.slow
 def test_in_a_quiet_round_nothing_is_wrong_and_something_catches_the_eye(table: Tabletop) -> None:
     rounds = [table.play(1, QUIET, Random(seed)) for seed in range(24)]
     assert {shown.quiet for shown in rounds} == set(QUIET_KINDS)
@@ -177,6 +180,7 @@ def test_in_a_quiet_round_nothing_is_wrong_and_something_catches_the_eye(table: 
         assert {state for _, state in shown.devices} == {"OK"}
 
 
+@pytest.mark.slow
 def test_whether_tangy_may_be_cleared_is_what_clearing_it_comes_to(table: Tabletop) -> None:
     critical = [kind for kind in KINDS if BOOK.rule(kind.code).critical]
     right = Counter[bool]()
@@ -422,6 +426,7 @@ def test_what_the_same_person_had_the_last_time_is_told(table: Tabletop, store: 
     assert lines[1] == f"The last time: {before.points} of {before.most} points."
 
 
+@pytest.mark.slow
 def test_no_name_of_a_person_gets_into_the_log(
     learnt: DrillPolicy, store: Store, activity: Activity
 ) -> None:

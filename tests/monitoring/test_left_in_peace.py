@@ -66,6 +66,7 @@ def test_what_went_out_of_sight_after_a_request_counts_as_one_of_the_three(
     assert ended(events).stopped is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beside", ["arm-failed@3", "requests-silent@3", "voice-dead@3"])
 def test_a_fault_that_hides_no_card_lets_nobody_be_asked_more_often(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, beside: str
@@ -77,6 +78,7 @@ def test_a_fault_that_hides_no_card_lets_nobody_be_asked_more_often(
         assert max(visits.values(), default=0) <= MOST
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["never-complies@8", "card-out-of-sight~1"])
 def test_a_way_of_speaking_that_presses_is_not_used_after_a_refusal(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, kind: str
@@ -103,6 +105,7 @@ def test_what_cannot_be_seen_counts_as_not_followed_and_is_named(
     assert "never-complies" in codes(events)
 
 
+@pytest.mark.slow
 def test_a_covered_camera_says_nothing_of_a_person(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -153,6 +156,7 @@ def test_nobody_is_asked_in_vain_more_than_six_times_in_a_game(
     assert ended(events).stopped is None
 
 
+@pytest.mark.slow
 def test_an_activity_can_ask_less_often(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -167,6 +171,7 @@ def test_an_activity_can_ask_less_often(
         assert max(asked(events, person) for person in game.world.people) <= 3
 
 
+@pytest.mark.slow
 def test_nobody_hears_the_same_sentence_twice_in_a_row(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import cast
 
+import pytest
+
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.game_records import StaffAction
@@ -17,6 +19,7 @@ from tests.hw.links import FakeLink, LaidCard
 PEOPLE = ("user1", "user2", "user3", "user4")
 
 
+@pytest.mark.slow
 def test_it_is_said_once_in_each_game_who_sits_where_somebody_else_does(
     workspace: Workspace, learnt: Policy
 ) -> None:

@@ -74,6 +74,7 @@ def test_a_stuck_request_is_told_although_a_critical_fault_came_at_once() -> Non
     assert [diagnosis.rule.code for diagnosis in told] == ["emergency-stop", "request-stuck"]
 
 
+@pytest.mark.slow
 def test_what_follows_an_answer_is_expected_only_where_nothing_was_shown(
     supervise: Supervise,
 ) -> None:
@@ -91,6 +92,7 @@ def test_what_follows_an_answer_is_expected_only_where_nothing_was_shown(
 SETTINGS = {"activity": "bingo", "users": 4}
 
 
+@pytest.mark.slow
 def test_each_kind_is_told_with_whatever_behaviour_it_comes() -> None:
     rows = [row for kind in KINDS for row in monitoring.matrix(SETTINGS, (kind, 3, 1))]
     came = monitoring.added(rows, "came")
@@ -119,11 +121,13 @@ def test_games_in_which_nothing_is_wrong_have_no_alarm(lesson: int, games: int) 
     assert sum(told["codes"].values()) <= 0.01 * told["games"]
 
 
+@pytest.mark.slow
 def test_who_follows_seldom_is_told_of_and_nothing_else_is() -> None:
     told = monitoring.alarms({**SETTINGS, "follows": 0.6}, (1, 9, 60))
     assert set(told["codes"]) == {"never-complies"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("critical", "other"),
     [
@@ -140,6 +144,7 @@ def test_of_two_faults_the_critical_one_comes_first_and_both_end(critical: str, 
     assert row["came"] == row["diagnosed"] == row["first"] == row["ended"]
 
 
+@pytest.mark.slow
 def test_games_full_of_faults_come_to_an_end() -> None:
     played = monitoring.crowd(SETTINGS, (4, 20, 0.004))
     assert sum(game["came"] for game in played) >= 60

@@ -311,6 +311,7 @@ injections = st.lists(
 )
 
 
+@pytest.mark.slow
 @given(injections, st.integers(0, 10_000), st.booleans(), st.booleans())
 def test_whatever_goes_wrong_the_game_ends_and_nothing_moves_after_a_halt(
     small_policy: Policy,
@@ -335,6 +336,7 @@ def test_whatever_goes_wrong_the_game_ends_and_nothing_moves_after_a_halt(
         check_log(workspace.store)
 
 
+@pytest.mark.slow
 def test_twenty_games_full_of_faults_all_end(supervise: Supervise, workspace: Workspace) -> None:
     game: Supervision = supervise(*(f"{kind}~0.004" for kind in sorted(KINDS)), seed=8)
     faults = 0

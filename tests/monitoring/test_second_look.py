@@ -70,6 +70,7 @@ def test_looks_that_never_agree_come_to_an_end() -> None:
     assert taken == ReadingError().needed + MORE_LOOKS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("odd", ODD)
 @pytest.mark.parametrize("kind", [OddCards, OddStates])
 def test_single_odd_looks_are_no_fault_no_accusation_and_no_request(
@@ -83,6 +84,7 @@ def test_single_odd_looks_are_no_fault_no_accusation_and_no_request(
     assert (codes(told), moves(told), world.accused) == ([], [], 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", ["clear wrong marks", "set missing marks"])
 def test_a_reading_that_stays_wrong_is_left_to_staff_once_and_the_game_goes_on(
     effect: str, workspace: Workspace, learnt: Policy

@@ -25,6 +25,7 @@ from tests.support.append_body import append_body
 from tests.support.waiting import until_shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("keys", ["tt", "gg", "ee", "ii", "tgiep", "dd", "de"])
 async def test_a_key_that_comes_twice_opens_one_screen(
     keys: str, run: Run, workspace: Workspace
@@ -63,6 +64,7 @@ async def test_stop_at_home_says_that_nothing_moves(
         assert said == ["Nothing is moving."]
 
 
+@pytest.mark.slow
 async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
     run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -81,6 +81,7 @@ def updates(draw: st.DrawFn) -> LayoutUpdate:
     return LayoutUpdate(strips, Region(x, y, width, len(strips)))
 
 
+@pytest.mark.slow
 @tried(300)
 @given(st.lists(updates(), min_size=1, max_size=6))
 def test_whatever_is_drawn_is_shown_as_if_everything_had_been_written(
@@ -141,6 +142,7 @@ def test_one_letter_costs_no_more_than_a_move_and_a_letter() -> None:
     assert change == "\x1b[4;10H\x1b[38;2;16;32;48;48;2;160;176;192m9\x1b[m"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
 async def test_a_taught_game_is_shown_as_if_everything_had_been_written(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch, size: tuple[int, int]

@@ -97,6 +97,7 @@ async def over(pilot: TangyPilot, screen: PlayScreen) -> None:
     await pilot.pause()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
 async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
     run: Run, workspace: Workspace, gappy: Policy, size: tuple[int, int]
@@ -124,6 +125,7 @@ async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
     assert (made.origin, made.teacher) == ("asked", "ann")
 
 
+@pytest.mark.slow
 async def test_what_was_learnt_is_said_in_a_message(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -138,6 +140,7 @@ async def test_what_was_learnt_is_said_in_a_message(
         assert "changed." in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_what_is_typed_while_tangy_asks_may_be_a_command_as_well(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -188,6 +191,7 @@ async def test_keys_typed_ahead_answer_nothing(
         assert isinstance(pilot.app.screen, PlayScreen)
 
 
+@pytest.mark.slow
 async def test_words_that_mean_nothing_are_given_back(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -199,6 +203,7 @@ async def test_words_that_mean_nothing_are_given_back(
         assert screen.query_one(CommandBar).text == "make some tea"
 
 
+@pytest.mark.slow
 async def test_why_it_asks_is_told_by_word_and_by_key(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -215,6 +220,7 @@ async def test_why_it_asks_is_told_by_word_and_by_key(
         assert isinstance(pilot.app.screen, WhyDialog)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", ["word", "key"])
 async def test_the_game_is_given_up_on_purpose(
     run: Run, workspace: Workspace, gappy: Policy, way: str
@@ -247,6 +253,7 @@ async def test_the_game_is_given_up_on_purpose(
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
+@pytest.mark.slow
 async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -275,6 +282,7 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
             await pilot.pause(0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("words", ["stop the robot", "Please stop the bingo game!"])
 async def test_a_stop_that_is_typed_for_an_answer_stops(
     run: Run, workspace: Workspace, gappy: Policy, words: str
@@ -287,6 +295,7 @@ async def test_a_stop_that_is_typed_for_an_answer_stops(
         assert pilot.app.screen is screen and screen.control.supervision.question is not None
 
 
+@pytest.mark.slow
 async def test_pausing_while_tangy_asks_pauses_after_the_answer(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -304,6 +313,7 @@ async def test_pausing_while_tangy_asks_pauses_after_the_answer(
         assert screen.query_one(StatusLine).status.note == "paused"
 
 
+@pytest.mark.slow
 async def test_demonstrations_that_disagree_are_shown_with_the_question(
     run: Run, workspace: Workspace, cover: Cover
 ) -> None:
@@ -322,6 +332,7 @@ async def test_demonstrations_that_disagree_are_shown_with_the_question(
                 await pilot.pause(0.02)
 
 
+@pytest.mark.slow
 async def test_an_answered_step_says_who_answered(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -339,6 +350,7 @@ async def test_an_answered_step_says_who_answered(
         assert "Tangy asked, and ann answered: call number." in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
     run: Run, workspace: Workspace, gappy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -95,6 +95,7 @@ async def test_an_answer_is_said_asked_about_and_learnt(
             await pilot.pause(0.02)
 
 
+@pytest.mark.slow
 async def test_a_game_is_paused_and_goes_on_by_voice(
     run: Run, workspace: Workspace, whole: Policy
 ) -> None:
@@ -125,6 +126,7 @@ async def test_after_a_stop_no_voice_lets_the_robot_go_on(
         assert not screen.control.going
 
 
+@pytest.mark.slow
 async def test_a_spoken_no_leaves_nothing_in_the_line_and_it_listens_again(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:

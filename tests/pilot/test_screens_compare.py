@@ -76,6 +76,7 @@ async def compare_teachers(pilot: TangyPilot) -> CompareScreen:
     return screen
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
 async def test_teacher_is_compared_with_teacher(
     run: Run, workspace: Workspace, size: tuple[int, int]

@@ -31,6 +31,7 @@ async def shown(pilot: TangyPilot, holds: Callable[[DemoScreen], bool]) -> DemoS
     return screen
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE])
 async def test_it_tells_six_scenes_on_one_screen_and_ends_with_your_turn(
     run: Run, workspace: Workspace, size: tuple[int, int]
@@ -43,6 +44,7 @@ async def test_it_tells_six_scenes_on_one_screen_and_ends_with_your_turn(
         assert "Your turn" in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_space_holds_it_and_lets_it_go_on(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace, pace=1000)) as pilot:
         screen = await shown(pilot, lambda s: s.at >= 0)

@@ -138,6 +138,7 @@ async def test_a_drill_is_walked_to_its_sheet(
     assert [sheet.finished for sheet in read_sheets(workspace.store)] == [True]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "wrong"), [(1, False), (1, True)], ids=["right", "wrong"])
 async def test_rounds_as_they_look(
     run: Run,

@@ -76,6 +76,7 @@ async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
         assert number == len(screen.picture.grounds) == game.steps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL, MIDDLE], ids=["tiny", "small", "middle"])
 async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
@@ -103,6 +104,7 @@ async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
         assert any("camera covered: recovered" in said for said in sentences(screen))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, MIDDLE], ids=["tiny", "middle"])
 async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
@@ -155,6 +157,7 @@ def test_the_list_says_what_was_done_last_at_every_width(width: int) -> None:
     assert (wider.time, wider.step, wider.state) >= (columns.time, columns.step, columns.state)
 
 
+@pytest.mark.slow
 async def test_the_timeline_has_times_evidence_and_steps_for_staff(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -184,6 +187,7 @@ def test_nothing_heard_is_worded_otherwise_than_an_error() -> None:
     assert status_words(("OK", "")) == "OK"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
 async def test_a_fault_is_brought_about_by_keys_and_lifted_again(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]

@@ -120,6 +120,7 @@ async def test_how_standing_still_looks(
         looks(pilot.app)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, MIDDLE], ids=["small", "middle"])
 async def test_how_banner_and_list_look(
     run: Run,

@@ -32,6 +32,7 @@ async def typed(pilot: TangyPilot, screen: TeachScreen, phrase: str) -> int:
     return keys + 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 async def test_a_guided_game_takes_few_keys(run: Run, workspace: Workspace, seed: int) -> None:
     async def start(program: Program) -> None:

@@ -113,6 +113,7 @@ async def test_keys_typed_before_the_dialog_could_be_seen_do_nothing(
         assert pilot.app.screen is dialog
 
 
+@pytest.mark.slow
 async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -195,6 +196,7 @@ async def test_stop_works_inside_and_leaves_the_dialog(
         await until_shown(pilot, lambda: screen.query_one(Transcript).count > count)
 
 
+@pytest.mark.slow
 async def test_two_critical_faults_are_cleared_one_after_the_other(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -241,6 +243,7 @@ async def test_leaving_the_program_while_it_is_halted_ends_the_game_in_thesenten
     assert ended.body["stopped"] == "It was left before its end."
 
 
+@pytest.mark.slow
 async def test_skipping_stops_where_tangy_stands_still(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -259,6 +262,7 @@ async def test_skipping_stops_where_tangy_stands_still(
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
 
 
+@pytest.mark.slow
 async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -277,6 +281,7 @@ async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
         assert "This was not to be expected" in seen(pilot)
 
 
+@pytest.mark.slow
 async def test_what_was_not_expected_is_accepted_by_word(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -293,6 +298,7 @@ async def test_what_was_not_expected_is_accepted_by_word(
     assert accepted.body["by"] == "ann"
 
 
+@pytest.mark.slow
 async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -316,6 +322,7 @@ async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
         await until_shown(pilot, lambda: not screen.query(AskingPanel))
 
 
+@pytest.mark.slow
 async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

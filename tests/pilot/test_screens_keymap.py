@@ -87,6 +87,7 @@ async def back(pilot: TangyPilot, screen: object) -> None:
         await pilot.pause()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("opens", [home, teach, library, people, policy, play])
 async def test_no_letter_changes_what_is_kept_whatever_has_the_keys(
     run: Run, taught: Workspace, opens: Opens
@@ -131,6 +132,7 @@ async def test_pause_and_step_move_the_simulated_game_and_nothing_else(
             assert new <= {"game step"}, letter
 
 
+@pytest.mark.slow
 async def test_no_letter_changes_a_live_game_unasked(run: Run, taught: Workspace) -> None:
     link = HeldLink()
     world = live_world(taught, link)

@@ -137,6 +137,7 @@ async def test_deleting_is_asked_about_and_restored_by_the_same_key(
         assert states(workspace) == ["", "", ""]
 
 
+@pytest.mark.slow
 async def test_changes_are_undone_and_done_again_in_order(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "x", "y", "down", "x", "y")
@@ -151,6 +152,7 @@ async def test_changes_are_undone_and_done_again_in_order(run: Run, workspace: W
         assert states(workspace) == ["deleted", "deleted", ""]
 
 
+@pytest.mark.slow
 async def test_marked_ones_are_merged_and_taken_apart_again(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "asterisk", "M")
@@ -212,6 +214,7 @@ async def test_what_was_made_and_taken_back_is_not_in_the_list(
         assert "merged from demonstrations 1 and 2" in pilot.text()
 
 
+@pytest.mark.slow
 async def test_a_screen_that_is_left_takes_its_messages_along(
     run: Run, workspace: Workspace
 ) -> None:
@@ -256,6 +259,7 @@ async def test_a_demonstration_opens_at_the_chosen_step(run: Run, workspace: Wor
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
+@pytest.mark.slow
 async def test_one_is_shown_again_from_a_step_in_its_own_game(run: Run, tmp_path: Path) -> None:
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 
@@ -281,6 +285,7 @@ async def test_one_is_shown_again_from_a_step_in_its_own_game(run: Run, tmp_path
         workspace.close()
 
 
+@pytest.mark.slow
 async def test_a_step_that_is_opened_while_teaching_goes_back_in_that_session(
     run: Run, tmp_path: Path
 ) -> None:
@@ -328,6 +333,7 @@ async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_say
         assert policy.decide(conflict).sure
 
 
+@pytest.mark.slow
 async def test_what_is_left_open_is_asked_about_in_games(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "enter", "escape")

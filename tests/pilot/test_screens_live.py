@@ -106,6 +106,7 @@ async def test_where_it_drives_to_is_seen_in_a_small_window(
             link.free = True
 
 
+@pytest.mark.slow
 async def test_staff_are_told_at_once_that_a_command_has_to_wait_and_then_what_came_of_it(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -199,6 +200,7 @@ async def test_who_stops_the_robot_from_another_console_is_seen_on_a_small_scree
         guest.close()
 
 
+@pytest.mark.slow
 async def test_each_stop_is_logged_once_and_told_once(
     run: Run, program: Program, workspace: Workspace
 ) -> None:
@@ -229,6 +231,7 @@ async def test_staff_can_ask_for_help_for_somebody(
         await until_shown(pilot, lambda: world.tracker.place == "user2")
 
 
+@pytest.mark.slow
 async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that_is_over(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
@@ -267,6 +270,7 @@ async def test_between_two_calls_staff_can_step_in_and_who_asks_does_not_wait(
         assert len(world.called) == 1
 
 
+@pytest.mark.slow
 async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
@@ -310,6 +314,7 @@ async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> No
         assert live(pilot).control.supervision.question is not None
 
 
+@pytest.mark.slow
 async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
     run: Run, program: Program
 ) -> None:
@@ -424,6 +429,7 @@ async def test_a_call_is_said_again_and_taken_back(
         assert noted == [again, f"staff took a call back: {label}"]
 
 
+@pytest.mark.slow
 async def test_the_screen_says_that_it_lives_also_where_something_lies_over_it(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -445,6 +451,7 @@ async def test_the_keys_of_a_simulated_game_are_not_there(run: Run, program: Pro
             assert live(pilot).check_action(action, ()) is False
 
 
+@pytest.mark.slow
 async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
     run: Run, program: Program, link: HeldLink, draw: Callable[[App[None]], str]
 ) -> None:

@@ -97,6 +97,7 @@ async def test_staff_say_whose_a_card_is(
         assert world.cards.doubt is None
 
 
+@pytest.mark.slow
 async def test_staff_let_tangy_learn_a_card_anew(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:

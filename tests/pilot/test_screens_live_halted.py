@@ -71,6 +71,7 @@ async def lives(pilot: TangyPilot, link: HeldLink) -> None:
     await until_shown(pilot, lambda: link.stamps > stamps + 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("device", "state"), [("link", STALE), ("navigator", ERROR)])
 async def test_the_screen_lives_while_the_robot_process_is_started_again(
     run: Run, program: Program, link: HeldLink, device: str, state: DeviceState
@@ -95,6 +96,7 @@ async def test_the_screen_lives_while_the_robot_process_is_started_again(
         assert "r all is well" in pilot.text()
 
 
+@pytest.mark.slow
 async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -116,6 +118,7 @@ async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
         assert live(pilot).control.supervision.halted is None
 
 
+@pytest.mark.slow
 async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -135,6 +138,7 @@ async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
         assert not link.held_by
 
 
+@pytest.mark.slow
 async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
     run: Run, program: Program, link: HeldLink
 ) -> None:

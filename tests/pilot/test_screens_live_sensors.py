@@ -103,6 +103,7 @@ def row(pilot: TangyPilot, label: str) -> str:
     return next(line[:46] for line in pilot.lines() if label in line[:46])
 
 
+@pytest.mark.slow
 async def test_7_shows_the_devices_of_the_robot_and_none_as_simulated(
     run: Run, workspace: Workspace, policy: Policy, link: SeeingLink
 ) -> None:

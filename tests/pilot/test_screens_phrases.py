@@ -74,6 +74,7 @@ async def test_it_shows_behaviours_people_seats_and_words(run: Run, screen: Phra
         assert "Y UW Z ER" in pilot.text()
 
 
+@pytest.mark.slow
 async def test_it_says_what_cannot_be_heard_until_the_name_is_accepted(
     run: Run, screen: PhrasesScreen, workspace: Workspace
 ) -> None:
@@ -114,6 +115,7 @@ async def test_entries_and_names_are_heard(
         assert spoken == ["R OW Z AH", "R OW S AH"]
 
 
+@pytest.mark.slow
 async def test_an_empty_line_drops_what_was_noted_and_esc_leaves_it(
     run: Run, screen: PhrasesScreen, workspace: Workspace
 ) -> None:

@@ -108,6 +108,7 @@ async def test_the_policy_row_in_use_is_marked(
         assert table.rows[table.marked].behaviour == "call number"
 
 
+@pytest.mark.slow
 async def test_skipping_plays_the_game_to_its_end(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -125,6 +126,7 @@ async def test_skipping_plays_the_game_to_its_end(
         assert screen.query_one(StatusLine).status.game == 2
 
 
+@pytest.mark.slow
 async def test_speed_goes_from_life_to_a_thousand_times(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -197,6 +199,7 @@ async def test_the_room_alone_leaves_nothing_of_the_screen_empty(
         assert room.region.height == beside
 
 
+@pytest.mark.slow
 async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
     run: Run, untaught: Workspace
 ) -> None:
@@ -221,6 +224,7 @@ async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
         assert screen.query_one(StatusLine).status.alarm
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_playing_looks(
     run: Run,
@@ -260,6 +264,7 @@ async def test_the_policy_screen_says_what_was_never_shown(run: Run, untaught: W
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
+@pytest.mark.slow
 async def test_home_leads_everywhere_and_back(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -316,6 +321,7 @@ async def test_two_letters_at_home_are_one_choice(
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
+@pytest.mark.slow
 async def test_why_is_told_of_the_last_step_and_of_the_chosen_one(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

@@ -74,6 +74,7 @@ async def over(pilot: TangyPilot) -> PlayScreen:
     return screen
 
 
+@pytest.mark.slow
 async def test_leaving_twice_at_once_leaves_once(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -88,6 +89,7 @@ async def test_leaving_twice_at_once_leaves_once(
 # ------------------------------------------------------------------------------- another game
 
 
+@pytest.mark.slow
 async def test_another_game_in_mid_game_is_announced(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -101,6 +103,7 @@ async def test_another_game_in_mid_game_is_announced(
         assert screen.query_one(LogView).sentences[-1] == "2 more games will follow."
 
 
+@pytest.mark.slow
 async def test_another_game_goes_on_though_the_last_one_was_paused(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -162,6 +165,7 @@ async def test_the_keys_of_a_game_that_stands_still_say_so(
         assert pilot.lines()[-1].strip().startswith("p pause")
 
 
+@pytest.mark.slow
 async def test_nothing_lies_over_a_question(
     run: Run, workspace: Workspace, gappy: Policy, tmp_path: Path
 ) -> None:

@@ -317,6 +317,7 @@ async def test_without_a_camera_it_says_how_to_name_one(run: Run, workspace: Wor
         assert "camera=0" in pilot.text() and "No camera looks at cards." in pilot.text()
 
 
+@pytest.mark.slow
 async def test_a_real_camera_counts_in_a_game_and_7_shows_it(
     run: Run,
     workspace: Workspace,

@@ -184,6 +184,7 @@ async def test_a_guest_and_a_new_name_are_taken_in_on_the_page(run: Run, setting
         await until_shown(pilot, lambda: setting.workspace.name("user1") == "Rosa")
 
 
+@pytest.mark.slow
 async def test_a_wide_page_draws_all_at_their_seats(run: Run, setting: Setting) -> None:
     async with run(app=setting.program(), size=LARGE) as pilot:
         await opened(pilot)

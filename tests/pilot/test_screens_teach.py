@@ -54,6 +54,7 @@ def steps(workspace: Workspace) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE])
 async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
     run: Run, workspace: Workspace, size: tuple[int, int]
@@ -106,6 +107,7 @@ async def test_words_that_mean_nothing_are_said_and_stay_to_be_mended(
         assert pilot.app.screen.query_one(CommandBar).text == "flurb"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", [("escape", "escape"), (*"quit", "enter")], ids=["esc", "word"])
 async def test_who_leaves_a_game_is_told_what_was_kept(
     run: Run, workspace: Workspace, way: tuple[str, ...]
@@ -120,6 +122,7 @@ async def test_who_leaves_a_game_is_told_what_was_kept(
         )
 
 
+@pytest.mark.slow
 async def test_undo_takes_the_last_step_back(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
@@ -133,6 +136,7 @@ async def test_undo_takes_the_last_step_back(run: Run, workspace: Workspace) -> 
         assert steps(workspace) == []
 
 
+@pytest.mark.slow
 async def test_redo_brings_the_steps_back_in_order(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
@@ -153,6 +157,7 @@ async def test_redo_brings_the_steps_back_in_order(run: Run, workspace: Workspac
         assert "no step to do again" in " ".join(pilot.app.screen.query_one(LogView).sentences)
 
 
+@pytest.mark.slow
 async def test_undo_and_redo_are_commands_too(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
@@ -164,6 +169,7 @@ async def test_undo_and_redo_are_commands_too(run: Run, workspace: Workspace) ->
         assert steps(workspace) == ["greeting"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("typed", [True, False])
 async def test_the_game_is_shown_again_from_a_step(
     run: Run, workspace: Workspace, typed: bool
@@ -188,6 +194,7 @@ async def test_the_game_is_shown_again_from_a_step(
         assert len(steps(workspace)) == 13
 
 
+@pytest.mark.slow
 async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 4)
@@ -199,6 +206,7 @@ async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> 
         assert len(steps(workspace)) == 4
 
 
+@pytest.mark.slow
 async def test_it_says_what_nobody_has_shown_yet(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         assert "nobody has had a wrong mark yet" not in screen_text(pilot.app)
@@ -221,6 +229,7 @@ async def test_on_a_large_screen_it_stands_below_the_steps(run: Run, workspace: 
         assert "! nobody has had a wrong mark yet" in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
     workspace = Workspace(taught)
     try:
@@ -239,6 +248,7 @@ async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
         workspace.close()
 
 
+@pytest.mark.slow
 async def test_a_guided_session_says_so(run: Run, workspace: Workspace) -> None:
     async def start(started: Program) -> None:
         await started.push_screen(
@@ -253,6 +263,7 @@ async def test_a_guided_session_says_so(run: Run, workspace: Workspace) -> None:
         assert "game 27" in status
 
 
+@pytest.mark.slow
 async def test_why_tells_what_tangy_would_do_here_by_now(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await pilot.press("f4")  # nothing was shown, so there is nothing to tell
@@ -280,6 +291,7 @@ async def ended(pilot: Pilot[None], name: str) -> None:
             return
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("where", ["the line", "nothing", "a chosen step"])
 async def test_letters_go_to_the_line_wherever_the_keys_are(
     run: Run, workspace: Workspace, where: str
@@ -300,6 +312,7 @@ async def test_letters_go_to_the_line_wherever_the_keys_are(
         assert steps(workspace) == ["greeting"]
 
 
+@pytest.mark.slow
 async def test_what_was_not_understood_stays_selected(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         bar = pilot.app.screen.query_one(CommandBar)
@@ -335,6 +348,7 @@ async def test_going_where_nobody_asks_is_refused_with_a_way_out(
         assert "Tangy is with User 3" in str(pilot.app.screen.query_one("#now", Static).render())
 
 
+@pytest.mark.slow
 async def test_leaving_and_coming_back_finds_the_steps(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
@@ -346,6 +360,7 @@ async def test_leaving_and_coming_back_finds_the_steps(run: Run, workspace: Work
         assert "Going on where you left" in " ".join(pilot.app.screen.query_one(LogView).sentences)
 
 
+@pytest.mark.slow
 async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(
     run: Run, workspace: Workspace
 ) -> None:
@@ -367,6 +382,7 @@ async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(
         assert [d.finished for d in finished] == [True]
 
 
+@pytest.mark.slow
 async def test_stop_works_while_a_question_is_open(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await pilot.press(*"greet everyone", "enter")
@@ -388,6 +404,7 @@ async def test_a_stop_is_typed_as_it_is_said(run: Run, workspace: Workspace, wor
         assert "No steps yet" in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_a_name_with_markup_is_only_a_name(run: Run, tmp_path: Path) -> None:
     with_markup = Workspace(tmp_path / "data")
     with_markup.store.rename("user1", "[/][@click=app.quit]x")
@@ -415,6 +432,7 @@ async def mid_game(pilot: Pilot[None], steps: int) -> None:
     screen.query_one(RoomView).skip()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_it_looks_in_mid_game(
     run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
@@ -426,6 +444,7 @@ async def test_how_it_looks_in_mid_game(
         picture(pilot.app)
 
 
+@pytest.mark.slow
 async def test_how_it_looks_to_see_what_is_missing(
     run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
@@ -436,6 +455,7 @@ async def test_how_it_looks_to_see_what_is_missing(
         looks(pilot.app)
 
 
+@pytest.mark.slow
 async def test_how_a_question_looks(
     run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
@@ -446,6 +466,7 @@ async def test_how_a_question_looks(
         looks(pilot.app)
 
 
+@pytest.mark.slow
 async def test_the_picture_in_the_readme_shows_the_question_as_it_is_asked(
     run: Run, workspace: Workspace, draw: Callable[[App[None]], str]
 ) -> None:

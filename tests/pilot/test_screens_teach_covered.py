@@ -55,6 +55,7 @@ def program(
     return Program(workspace, start, clock=StillClock())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("covered", ["at the start", "at the end"])
 async def test_a_story_waits_for_the_help_to_be_closed(
     run: Run, workspace: Workspace, covered: str
@@ -111,6 +112,7 @@ async def test_who_watches_a_story_is_told_only_the_keys_that_work(
         assert "f2 undo" not in watched
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("typed", [True, False], ids=["typed", "by key"])
 async def test_escape_while_tangy_thinks_stops_that_and_no_more(
     run: Run, workspace: Workspace, typed: bool, monkeypatch: pytest.MonkeyPatch

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -34,6 +35,7 @@ def now(pilot: Pilot[None]) -> str:
     return str(pilot.app.screen.query_one("#now", Static).render())
 
 
+@pytest.mark.slow
 async def test_a_game_that_is_finished_early_says_so_at_once_and_is_over(
     run: Run, workspace: Workspace
 ) -> None:
@@ -48,6 +50,7 @@ async def test_a_game_that_is_finished_early_says_so_at_once_and_is_over(
     assert entry.demonstration.finished and len(entry.demonstration.steps) == 1
 
 
+@pytest.mark.slow
 async def test_undo_takes_a_finish_back_and_the_game_goes_on(
     run: Run, workspace: Workspace
 ) -> None:
@@ -64,6 +67,7 @@ async def test_undo_takes_a_finish_back_and_the_game_goes_on(
     assert not entry.demonstration.finished
 
 
+@pytest.mark.slow
 async def test_discarding_asks_first_and_a_new_game_begins(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
@@ -82,6 +86,7 @@ async def test_discarding_asks_first_and_a_new_game_begins(run: Run, workspace: 
     assert entry.hidden
 
 
+@pytest.mark.slow
 async def test_starting_over_goes_back_to_the_first_step(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")

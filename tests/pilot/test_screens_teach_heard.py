@@ -216,6 +216,7 @@ async def test_stop_acts_at_once_also_while_a_question_is_open(
         assert pilot.app.screen.query_one(RoomView).going is None
 
 
+@pytest.mark.slow
 async def test_yes_and_no_are_heard_when_that_is_switched_on(
     run: Run, workspace: Workspace
 ) -> None:
@@ -257,6 +258,7 @@ def dialog_text(pilot: TangyPilot) -> str:
     return " ".join(" ".join(row[box.x : box.right] for row in rows).split())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(60, 18), (80, 24), (120, 40)])
 async def test_what_is_told_while_a_question_is_open_stands_in_it(
     run: Run, workspace: Workspace, size: tuple[int, int]
@@ -337,6 +339,7 @@ async def test_a_yes_that_no_question_waits_for_does_nothing(
         assert steps(workspace) == []
 
 
+@pytest.mark.slow
 async def test_what_was_said_while_a_question_was_open_comes_next(
     run: Run, workspace: Workspace
 ) -> None:
@@ -431,6 +434,7 @@ async def test_names_are_listened_for_as_they_are_said_now(run: Run, workspace: 
         assert ears.books[-1].pronunciations() != ears.books[before - 1].pronunciations()
 
 
+@pytest.mark.slow
 async def test_the_help_tells_how_to_talk_and_leads_to_the_phrases(
     run: Run, workspace: Workspace
 ) -> None:

@@ -43,6 +43,7 @@ async def contradict(pilot: Pilot[None]) -> RemarkDialog:
     return pilot.app.screen
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("key", "right"), [("1", ("joke",)), ("2", ("call number",)), ("3", ("joke", "call number"))]
 )
@@ -59,6 +60,7 @@ async def test_a_contradiction_is_answered_in_place(
         assert said.right == right
 
 
+@pytest.mark.slow
 async def test_escape_puts_it_off_and_letters_type_the_next_command(
     run: Run, workspace: Workspace
 ) -> None:
@@ -73,6 +75,7 @@ async def test_escape_puts_it_off_and_letters_type_the_next_command(
         assert pilot.app.screen.query_one(CommandBar).text == "call"
 
 
+@pytest.mark.slow
 async def test_a_slip_is_taken_back_from_there(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await contradict(pilot)
@@ -81,6 +84,7 @@ async def test_a_slip_is_taken_back_from_there(run: Run, workspace: Workspace) -
         assert pilot.app.screen.query_one(Transcript).count == 1
 
 
+@pytest.mark.slow
 async def test_a_remark_that_was_put_off_is_answered_by_no_later_number(
     run: Run, workspace: Workspace
 ) -> None:

@@ -27,6 +27,7 @@ async def shows(pilot: Pilot[Any], words: str) -> None:
     await until_shown(pilot, lambda: words in screen_text(pilot.app))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE])
 async def test_a_new_teacher_gives_one_real_command_and_answers_its_question(
     run: Run, workspace: Workspace, size: tuple[int, int]
@@ -92,6 +93,7 @@ async def teach_one_step(workspace: Workspace, run: Run, *renames: str) -> list[
     return [shown.teacher for shown in read_demonstrations(workspace.store, "bingo")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "renames", [("ctrl+n", *"Bea", "enter"), (*"my name is Bea", "enter")], ids=["key", "words"]
 )
@@ -102,6 +104,7 @@ async def test_the_name_is_changed_while_one_teaches(
     assert workspace.teacher == "Bea"
 
 
+@pytest.mark.slow
 async def test_a_game_that_was_begun_stays_its_teachers(run: Run, workspace: Workspace) -> None:
     assert await teach_one_step(workspace, run) == ["Ada"]
     async with run(app=program(workspace)) as pilot:

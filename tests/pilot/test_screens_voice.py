@@ -73,6 +73,7 @@ async def do(pilot: TangyPilot, words: str) -> None:
     await pilot.pause()
 
 
+@pytest.mark.slow
 async def test_what_tangy_says_while_teaching_is_spoken(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
@@ -91,6 +92,7 @@ async def test_what_tangy_says_while_teaching_is_spoken(
     assert voices[0].closed
 
 
+@pytest.mark.slow
 async def test_a_new_step_cuts_what_was_said_for_the_last(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
@@ -113,6 +115,7 @@ async def test_of_lines_that_follow_at_once_only_the_last_is_spoken(
         assert voices[0].lines == ["one", "four"]
 
 
+@pytest.mark.slow
 async def test_nothing_is_made_before_it_is_switched_on(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
@@ -139,6 +142,7 @@ async def test_the_palette_switches_it_on_too(
         assert titles.count("Voice on or off") == 1
 
 
+@pytest.mark.slow
 async def test_where_nothing_can_speak_that_is_said_once_and_the_text_is_shown(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -159,6 +163,7 @@ async def test_where_nothing_can_speak_that_is_said_once_and_the_text_is_shown(
         assert not pilot.app.speaker.on
 
 
+@pytest.mark.slow
 async def test_the_microphone_is_shut_while_tangy_speaks_and_t_lets_it_fall_silent(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
@@ -246,6 +251,7 @@ async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
         assert voices[0].hushed >= 2
 
 
+@pytest.mark.slow
 async def test_a_game_that_is_skipped_to_its_end_is_silent(
     run: Run, workspace: Workspace, policy: Policy, voices: list[FakeVoice]
 ) -> None:

@@ -334,6 +334,7 @@ def test_the_driver_still_has_what_switches_the_mouse() -> None:
     assert callable(LinuxDriver._disable_mouse_support)
 
 
+@pytest.mark.slow
 async def test_plus_enlarges_the_panel_that_has_the_keys(run: Run) -> None:
     screen = GalleryScreen()
     async with run(screen, LARGE) as pilot:
@@ -438,6 +439,7 @@ async def test_pictures_to_look_at(run: Run, picture: Any, size: tuple[int, int]
         picture(pilot.app)
 
 
+@pytest.mark.slow
 async def test_everything_survives_any_size(run: Run) -> None:
     async with run(GalleryScreen(8), LARGE) as pilot:
         await pilot.press("escape", "d")

@@ -37,6 +37,7 @@ class Busy(TangyScreen[None]):
             await asyncio.sleep(0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("leaves", [False, True], ids=["it is closed", "the program is left"])
 async def test_nothing_is_written_on_panels_that_have_gone(run: Run, leaves: bool) -> None:
     for _ in range(5):

@@ -137,6 +137,7 @@ class AllNasty(TangyScreen[None]):
         self.query_one(LogView).write(text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", NASTY)
 @pytest.mark.parametrize("size", [SMALL, LARGE])
 async def test_data_is_harmless_in_every_widget(
@@ -184,6 +185,7 @@ async def test_a_paste_is_cleaned(run: Run) -> None:
         assert pilot.app.screen.query_one(CommandBar).text == "call\ufffd[31m number\ufffd"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
 @pytest.mark.parametrize("people", [1, 4, 8])
 async def test_ascii_mode_draws_only_ascii(run: Run, size: tuple[int, int], people: int) -> None:

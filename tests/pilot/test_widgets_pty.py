@@ -116,6 +116,7 @@ def window() -> Iterator[Window]:
     opened.close()
 
 
+@pytest.mark.slow
 def test_a_y_in_the_same_write_does_not_answer_and_a_later_one_does(window: Window) -> None:
     window.type("call number\ry")
     window.until("Did you say: call number?")
@@ -127,6 +128,7 @@ def test_a_y_in_the_same_write_does_not_answer_and_a_later_one_does(window: Wind
     assert "> y" not in window.text()
 
 
+@pytest.mark.slow
 def test_it_is_silent_while_nothing_happens(window: Window) -> None:
     assert window.read(1.5) == b""
     window.type("c")
@@ -138,12 +140,14 @@ def test_it_is_silent_while_nothing_happens(window: Window) -> None:
     assert window.read(1.5) == b""
 
 
+@pytest.mark.slow
 def test_ctrl_c_leaves_the_terminal_as_it_was(window: Window) -> None:
     window.type("\x03")
     assert window.status() == 0
     assert termios.tcgetattr(window.child) == window.before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["TERM", "HUP"]
 )
@@ -153,6 +157,7 @@ def test_signals_leave_the_terminal_as_it_was(window: Window, number: int, code:
     assert termios.tcgetattr(window.child) == window.before
 
 
+@pytest.mark.slow
 def test_the_mouse_can_be_switched_off_and_on(window: Window) -> None:
     for keys, expected in (("\x1b", b""), ("m", b"\x1b[?1000l"), ("m", b"\x1b[?1000h")):
         window.type(keys)
@@ -162,6 +167,7 @@ def test_the_mouse_can_be_switched_off_and_on(window: Window) -> None:
         assert expected in written
 
 
+@pytest.mark.slow
 def test_a_terminal_that_goes_away_ends_it(window: Window) -> None:
     os.close(window.child)
     os.close(window.terminal)
@@ -170,6 +176,7 @@ def test_a_terminal_that_goes_away_ends_it(window: Window) -> None:
     assert window.process.wait(PATIENCE) == 129
 
 
+@pytest.mark.slow
 def test_a_small_window_says_so_and_loses_nothing(window: Window) -> None:
     window.type("call num")
     window.settle()
@@ -181,6 +188,7 @@ def test_a_small_window_says_so_and_loses_nothing(window: Window) -> None:
     window.until("> call num")
 
 
+@pytest.mark.slow
 def test_ascii_writes_only_ascii() -> None:
     window = Window(100, 30, "--ascii")
     try:

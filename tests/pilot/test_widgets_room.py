@@ -59,6 +59,7 @@ def robot_at(lines: list[str]) -> tuple[int, int]:
     raise AssertionError("the robot is not seen")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(60, 18), SMALL, (120, 40), LARGE])
 @pytest.mark.parametrize("people", [1, 2, 3, 4, 5, 6, 7, 8])
 async def test_everybody_is_seen_at_every_size(

@@ -86,6 +86,7 @@ def test_looking_at_the_terminal_needs_no_textual() -> None:
     assert not loaded("tangy_tui.ui.terminal") & {"textual", "rich"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", ["tangy_tui.ui.app", "tests.support.gallery"])
 def test_the_screens_load_nothing_heavy(module: str) -> None:
     heavy = {"numpy", "sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "joblib"}

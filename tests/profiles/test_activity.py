@@ -111,6 +111,7 @@ def test_a_name_is_shown_as_it_is_and_never_filled_in(name: str) -> None:
     assert activity.fill("{name}: {numbers}", name, ()) == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

@@ -27,11 +27,13 @@ def flaws(folder: Path, *changes: tuple[str, str]) -> set[tuple[str, str]]:
     return {(found.flaw, found.name) for found in findings(read_declared(path)).flaws}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DECLARED)
 def test_what_ships_has_no_flaw(name: str) -> None:
     assert findings(declared(name), Limit(states=5_000, seconds=10.0)).flaws == ()
 
 
+@pytest.mark.slow
 def test_a_stage_that_no_game_comes_to_and_a_flag_that_nothing_sets(tmp_path: Path) -> None:
     never = '{ name = "never", when = ["lost is yes"] },\n  { name = "over"'
     changes = (('{ name = "over"', never), ('flags = ["greeted"', 'flags = ["lost", "greeted"'))
@@ -41,11 +43,13 @@ def test_a_stage_that_no_game_comes_to_and_a_flag_that_nothing_sets(tmp_path: Pa
     }
 
 
+@pytest.mark.slow
 def test_a_game_that_cannot_end(tmp_path: Path) -> None:
     stuck = flaws(tmp_path, ('does = ["finish"]', 'needs = ["greeted is no"]\ndoes = ["finish"]'))
     assert any(flaw == "never ends" for flaw, _ in stuck)
 
 
+@pytest.mark.slow
 def test_a_game_that_does_not_end_as_it_is_expected_to_go(tmp_path: Path) -> None:
     round_and_round = (
         '["over", "told is no", "tell scores"],',
@@ -54,11 +58,13 @@ def test_a_game_that_does_not_end_as_it_is_expected_to_go(tmp_path: Path) -> Non
     assert any(flaw == "never ends" for flaw, _ in flaws(tmp_path, round_and_round))
 
 
+@pytest.mark.slow
 def test_a_text_that_lacks_a_word_when_it_is_said(tmp_path: Path) -> None:
     early = flaws(tmp_path, ("Welcome to the quiz!", "Welcome! The first is: {ask}"))
     assert early == {("text lacks a word", "welcome everyone")}
 
 
+@pytest.mark.slow
 def test_a_fact_that_is_never_set_back(tmp_path: Path) -> None:
     assert ("fact never cleared", "answer") in flaws(tmp_path, ('"clear answer", ', ""))
 
@@ -77,6 +83,7 @@ def test_a_search_that_is_cut_says_so_and_what_it_had_not_met() -> None:
     assert found.flaws == ()
 
 
+@pytest.mark.slow
 def test_a_search_ends_with_its_time() -> None:
     found = findings(declared("exercises"), Limit(states=12_000, seconds=0.2))
     whole = findings(declared("trivia"))

@@ -51,6 +51,7 @@ def test_a_page_that_is_overwritten_costs_the_events_on_it(folder: Path, content
         assert store.notices == []
 
 
+@pytest.mark.slow
 def test_whatever_page_is_overwritten_nothing_is_invented(folder: Path, tmp_path: Path) -> None:
     whole = {event.seq: event for event in _events(folder)}
     bytes_of_it = (folder / "tangy.db").read_bytes()

@@ -109,6 +109,7 @@ def fails(deed: Any) -> bool:
     return deed[0] == "block" and (deed[2] or any(map(fails, deed[1])))
 
 
+@pytest.mark.slow
 @tried(80)
 @given(stories)
 def test_what_was_committed_reads_back_in_order_and_nothing_else(story: list[Any]) -> None:

@@ -14,6 +14,7 @@ from tests.support.declared import DECLARED, each_of_first
 Tangy = Callable[..., CompletedProcess[str]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", each_of_first(DECLARED))
 def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
     name: str, tangy: Tangy, tmp_path: Path
@@ -36,6 +37,7 @@ def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
     assert all(row["success"] in (None, 1.0) for row in document["rows"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "answers", ["Poem circle\npoem\ny\n", "Finger rhymes\n\nn\n", "!\nJoke hour\njoke\nn\n"]
 )

@@ -39,6 +39,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 class TestCamera:
+    @pytest.mark.slow
     def test_a_stream_that_works_is_told_so(self, tangy: Tangy, tmp_path: Path) -> None:
         with CameraServer() as server:
             picture = tmp_path / "last.png"
@@ -51,6 +52,7 @@ class TestCamera:
         assert found["frames"] > 1
         assert cv2.imread(str(picture)) is not None
 
+    @pytest.mark.slow
     def test_one_that_is_covered_is_told_why_and_fails(self, tangy: Tangy) -> None:
         with CameraServer() as server:
             server.mode = "covered"
@@ -96,6 +98,7 @@ class TestCapture:
         assert into.stat().st_mode & 0o077 == 0
         assert (into / "000001.png").stat().st_mode & 0o077 == 0
 
+    @pytest.mark.slow
     def test_a_set_is_added_to_and_nothing_is_overwritten(
         self, tangy: Tangy, folder: Path, tmp_path: Path
     ) -> None:
@@ -113,6 +116,7 @@ class TestCapture:
             rows = [one async for one in capture(camera, tmp_path / "set", count=2, reader=reader)]
         assert [row["seen"] for row in rows] == [{"height": 120}] * 2
 
+    @pytest.mark.slow
     async def test_pictures_are_so_far_apart_as_asked(self, tmp_path: Path) -> None:
         with CameraServer() as server:
             async with Camera(find_camera(server.url)) as camera:
@@ -153,6 +157,7 @@ def test_cameras_are_listed_as_the_system_has_them(tmp_path: Path) -> None:
 
 
 class TestSensors:
+    @pytest.mark.slow
     def test_each_device_has_its_line_and_a_camera_that_works_its_age(
         self, tangy: Tangy, tmp_path: Path
     ) -> None:

@@ -62,6 +62,7 @@ def test_a_deck_is_another_with_another_seed_and_the_same_with_the_same(
     assert CardLayout(lanterns.deck).grid.right <= WIDTH
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("paper", "sheets"), [("a4", 3), ("letter", 3), ("a5", 4)])
 def test_sheets_are_the_same_bytes_every_time(
     paper: str, sheets: int, lanterns: Activity, activity: Activity

@@ -74,6 +74,7 @@ def test_the_policy_is_shown_exact_over_all_242_joint_states(tangy: Tangy, taugh
     assert "ask to move the card closer" in text.stdout
 
 
+@pytest.mark.slow
 def test_the_same_seed_plays_the_same_games(tangy: Tangy, taught: Path, tmp_path: Path) -> None:
     import shutil
 
@@ -87,6 +88,7 @@ def test_the_same_seed_plays_the_same_games(tangy: Tangy, taught: Path, tmp_path
     assert played[0] == played[1] != played[2]
 
 
+@pytest.mark.slow
 def test_without_a_seed_no_two_runs_are_alike(tangy: Tangy, taught: Path) -> None:
     for verb in (("play", "--games", 4), ("teach", "--teacher", "scripted")):
         told = [document(tangy(*verb, "--json", "--data", taught)) for _ in range(2)]
@@ -96,6 +98,7 @@ def test_without_a_seed_no_two_runs_are_alike(tangy: Tangy, taught: Path) -> Non
     assert seeds == [4, 5], "games count on from the three demonstrations there are"
 
 
+@pytest.mark.slow
 def test_beliefs_grow_from_game_to_game(tangy: Tangy, taught: Path) -> None:
     trials = []
     for _ in range(2):
@@ -107,6 +110,7 @@ def test_beliefs_grow_from_game_to_game(tangy: Tangy, taught: Path) -> None:
     assert kept == trials[1]
 
 
+@pytest.mark.slow
 def test_one_to_eight_people_can_be_played_with(tangy: Tangy, taught: Path) -> None:
     for users in range(1, 9):
         played = document(tangy("play", "--games", 3, "--users", users, "--json", "--data", taught))
@@ -149,6 +153,7 @@ def test_a_script_is_taught_from_a_file(tangy: Tangy, tmp_path: Path) -> None:
     assert not learnt["exact"]
 
 
+@pytest.mark.slow
 def test_a_made_up_activity_is_taught_learnt_and_played(tangy: Tangy, tmp_path: Path) -> None:
     lanterns = Path(__file__).parent.parent / "lanterns.toml"
     about = ("--activity", lanterns, "--data", tmp_path / "mine", "--json")
@@ -184,6 +189,7 @@ def test_json_is_one_document_and_nothing_else(
     assert document(tangy(*arguments, "--json", "--data", taught, "--seed", 3))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -223,6 +229,7 @@ def test_a_name_that_somebody_answers_to_is_not_given_again(tangy: Tangy, taught
     assert tangy("people", "rename", "user1", "Rosa", "--data", taught).returncode == 0
 
 
+@pytest.mark.slow
 def test_a_new_name_is_used_everywhere_and_the_id_stays(tangy: Tangy, taught: Path) -> None:
     tangy("people", "rename", "User 1", "Josè [/] {call}", "--data", taught)
     shown = document(tangy("people", "show", "Josè [/] {call}", "--json", "--data", taught))

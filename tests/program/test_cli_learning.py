@@ -56,6 +56,7 @@ def test_what_is_missing_is_said_in_words(tangy: Tangy, disagreeing: Path) -> No
     assert "the game has not begun: greet everyone or tell a joke" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_conflict_is_shown_settled_and_opened_again(tangy: Tangy, disagreeing: Path) -> None:
     at = ("--unfinished", "--data", disagreeing)
     (conflict,) = document(tangy("demonstrations", "conflicts", "--json", *at))
@@ -84,6 +85,7 @@ def test_a_conflict_is_shown_settled_and_opened_again(tangy: Tangy, disagreeing:
     assert document(tangy("demonstrations", "conflicts", "--json", *at)) == []
 
 
+@pytest.mark.slow
 def test_demonstrations_are_listed_and_edited(tangy: Tangy, taught: Path) -> None:
     at = ("--data", taught)
 
@@ -115,6 +117,7 @@ def test_demonstrations_are_listed_and_edited(tangy: Tangy, taught: Path) -> Non
     assert tangy("demonstrations", "show", "1", *at).stdout.count("->") == steps[0]
 
 
+@pytest.mark.slow
 def test_policies_have_names_and_are_compared(tangy: Tangy, taught: Path) -> None:
     at = ("--data", taught)
     document(tangy("learn", "--name", "all three", "--json", *at))
@@ -174,6 +177,7 @@ def test_without_a_teacher_a_game_stops_where_tangy_is_not_sure(
     assert played["steps"] == 0
 
 
+@pytest.mark.slow
 def test_a_scripted_teacher_answers_and_then_nothing_is_asked_any_more(
     tangy: Tangy, untaught: Path
 ) -> None:
@@ -192,6 +196,7 @@ def test_a_scripted_teacher_answers_and_then_nothing_is_asked_any_more(
     assert again["faults"] == []
 
 
+@pytest.mark.slow
 def test_a_teacher_answers_by_lines_and_each_answer_is_verified(
     tangy: Tangy, untaught: Path
 ) -> None:
@@ -254,6 +259,7 @@ def test_a_script_for_the_scripted_teacher_is_refused(tangy: Tangy, tmp_path: Pa
     assert "leave out --script" in refusal(done)
 
 
+@pytest.mark.slow
 def test_learning_says_what_is_done_otherwise_than_before(tangy: Tangy, disagreeing: Path) -> None:
     at = ("--data", disagreeing)
     told = refusal(tangy("learn", *at))
@@ -269,6 +275,7 @@ def test_learning_says_what_is_done_otherwise_than_before(tangy: Tangy, disagree
     assert "It does the same as" in again
 
 
+@pytest.mark.slow
 def test_answers_by_script_are_told(tangy: Tangy, untaught: Path) -> None:
     at = ("--headless", "--teacher", "scripted", "--seed", 3, "--data", untaught)
     told = tangy("play", *at).stdout
@@ -277,6 +284,7 @@ def test_answers_by_script_are_told(tangy: Tangy, untaught: Path) -> None:
     assert all(set(a) >= {"situation", "behaviour", "words"} for a in played.get("answers", []))
 
 
+@pytest.mark.slow
 def test_a_policy_cannot_take_a_name_that_means_another(tangy: Tangy, taught: Path) -> None:
     for name in ("last", "last~1", "teacher:Ada"):
         assert "choose another name" in refusal(tangy("learn", "--name", name, "--data", taught))
@@ -353,6 +361,7 @@ def test_injections_are_listed_without_a_game(tangy: Tangy, tmp_path: Path) -> N
         assert one["what"] in said
 
 
+@pytest.mark.slow
 def test_a_policy_is_called_as_expected_only_where_it_asks_nothing(
     tangy: Tangy, tmp_path: Path
 ) -> None:

@@ -35,6 +35,7 @@ def tangy(
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "environment",
     [
@@ -55,6 +56,7 @@ def test_a_session_by_lines_runs_in_any_terminal_and_locale(
     assert b"You left after 1 step." in taught.stdout
 
 
+@pytest.mark.slow
 def test_bytes_that_are_no_text_are_words_that_nobody_knows(tmp_path: Path) -> None:
     done = tangy("teach", "--plain", home=tmp_path, typed=b"\xff\xfe\x80\x1b[2J\nquit\n")
     assert (done.returncode, done.stderr) == (0, b"")
@@ -62,6 +64,7 @@ def test_bytes_that_are_no_text_are_words_that_nobody_knows(tmp_path: Path) -> N
     assert b"\x1b" not in done.stdout
 
 
+@pytest.mark.slow
 def test_without_a_terminal_the_program_says_what_it_can_do(tmp_path: Path) -> None:
     done = tangy(home=tmp_path)
     assert (done.returncode, done.stderr) == (0, b"")
@@ -76,6 +79,7 @@ def test_the_demonstration_of_everything_is_one_json_document(tmp_path: Path) ->
     assert not list(tmp_path.rglob("tangy.db")), "a demonstration leaves nothing behind"
 
 
+@pytest.mark.slow
 def test_whoever_has_read_enough_is_no_error(tmp_path: Path) -> None:
     with subprocess.Popen(  # noqa: S603 - our own interpreter
         [*TANGY, "demo", "--plain", "--data", str(tmp_path / "data")],
@@ -104,6 +108,7 @@ def greeting(data: list[str], until: bytes) -> Iterator[subprocess.Popen[bytes]]
         yield taught
 
 
+@pytest.mark.slow
 def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) -> None:
     data = ["--data", str(tmp_path / "data")]
     with greeting(data, b"Tangy says") as taught:
@@ -117,6 +122,7 @@ def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) 
     assert b"demonstration of 1 steps" in again.stdout
 
 
+@pytest.mark.slow
 def test_ctrl_c_leaves_a_session_by_lines_at_once_and_keeps_its_steps(tmp_path: Path) -> None:
     data = ["--data", str(tmp_path / "data")]
     with greeting(data, b"Now: Nobody asks") as taught:

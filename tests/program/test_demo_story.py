@@ -85,6 +85,7 @@ def test_captions_fit_the_two_lines_of_a_small_screen() -> None:
     assert all(len(frame.caption) < 2 * 76 - 14 for frame in told()[0][1:])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("activity", ["exercises", "memory", "trivia"])
 def test_other_activities_have_their_story(tmp_path: Path, activity: str) -> None:
     with closing(Workspace(tmp_path, activity=activity)) as workspace:

@@ -207,6 +207,7 @@ def test_a_picture_without_a_face_is_told(tangy: Tangy, data: Path) -> None:
     assert (row["person"], row["likeness"], row["faces"]) == (None, None, [])
 
 
+@pytest.mark.slow
 def test_bad_pictures_of_a_folder_are_named_with_the_reason(
     tangy: Tangy, album: Path, tmp_path: Path
 ) -> None:
@@ -244,6 +245,7 @@ def test_somebody_who_looks_like_another_is_told(tangy: Tangy, album: Path, data
     assert "also look like Rosa (user2)" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_video_enrols_and_its_frames_vote(tangy: Tangy, data: Path, tmp_path: Path) -> None:
     video = tmp_path / "video.avi"
     code = cv2.VideoWriter.fourcc(*"MJPG")
@@ -300,6 +302,7 @@ def test_mistakes_are_said_in_one_sentence(
     assert done.returncode == 2 and says in done.stderr and done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_a_name_that_cannot_be_one_leaves_nothing(
     tangy: Tangy, album: Path, tmp_path: Path
 ) -> None:

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 HEAVY = ("sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy")
 
 PAINT = """
@@ -32,6 +34,7 @@ print(json.dumps({"text": text, "loaded": loaded}))
 """
 
 
+@pytest.mark.slow
 def test_the_first_screen_loads_nothing_heavy(tmp_path: Path) -> None:
     done = subprocess.run(  # noqa: S603 - our own interpreter
         [sys.executable, "-c", PAINT, str(tmp_path / "data")],

@@ -28,6 +28,7 @@ def test_a_line_that_belongs_to_a_list_goes_on_further_in() -> None:
     assert fitted("undo: take the last step back", 0) == "undo: take the last step back"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", [40, 80])
 def test_teaching_by_lines_breaks_no_word_at_the_edge_of_a_terminal(
     tmp_path: Path, columns: int

@@ -272,6 +272,7 @@ def test_after_a_game_by_lines_tangy_learns_and_plays_by_their_words(tangy: Tang
     assert said.index("tangy learn") < said.index("Learnt 'bingo-1'") < said.index("Game 1 begins")
 
 
+@pytest.mark.slow
 @given(st.lists(st.text(max_size=20) | st.sampled_from(["y", "n", "1", "undo", "next number"])))
 def test_whatever_is_typed_is_answered_in_printable_lines(lines: list[str]) -> None:
     with TemporaryDirectory() as folder:

@@ -56,6 +56,7 @@ def _is_s(node: ast.expr) -> bool:
     return isinstance(node, ast.Constant) and node.value == "s"
 
 
+@pytest.mark.slow
 def test_plurals_are_made_in_one_place() -> None:
     found = [where for source in PROGRAM.rglob("*.py") for where in plural_rules(source)]
     assert {where.partition(":")[0] for where in found} <= {"text/numbers.py"}

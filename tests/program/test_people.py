@@ -250,6 +250,7 @@ def test_bad_input_is_one_sentence_with_the_nearest_word(
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_a_person_with_a_method_of_their_own_is_played_with_it(tangy: Tangy, taught: Path) -> None:
     about = ("--data", taught, "--json")
     for strategy in ("praise", "scarcity", "suggestion"):

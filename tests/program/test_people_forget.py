@@ -196,6 +196,7 @@ def test_without_a_terminal_it_does_not_forget_unasked(tangy: Tangy, data: Path)
         assert store.names()["user2"] == NAME
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("answer", "status", "there"), [("n", 1, True), ("y", 0, False)])
 def test_on_a_terminal_it_says_what_goes_and_waits_for_a_yes(
     data: Path, answer: str, status: int, there: bool

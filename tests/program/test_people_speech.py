@@ -50,6 +50,7 @@ class TestNames:
         done = tangy("people", "pronounce", "Rosa", "--data", data)
         assert done.stdout == "Rosa is said R OW Z AH, as in the dictionary.\n"
 
+    @pytest.mark.slow
     def test_a_new_name_is_accepted_heard_or_changed(
         self, tangy: Tangy, data: Path, spoken: list[tuple[str, VoicePreference | None]]
     ) -> None:
@@ -125,6 +126,7 @@ class TestNames:
 
 
 class TestNamesThatSoundAlike:
+    @pytest.mark.slow
     def test_a_pronunciation_that_is_anothers_is_refused(self, tangy: Tangy, data: Path) -> None:
         tangy("people", "rename", "user2", "Xanthippe", "--data", data)
         tangy("people", "rename", "user4", "Xantippe", "--data", data)
@@ -163,6 +165,7 @@ class TestNamesThatSoundAlike:
         again = tangy("people", "rename", "user1", "Anne", "--json", "--data", data)
         assert json.loads(again.stdout)["sounds_like"] == "Ann (user3)"
 
+    @pytest.mark.slow
     def test_what_is_suggested_for_a_name_is_not_offered_if_it_is_anothers(
         self, tangy: Tangy, data: Path
     ) -> None:

@@ -16,6 +16,7 @@ Tangy = Callable[..., CompletedProcess[str]]
 TABLE = ",".join(f"{x:g},{y:g}" for x, y in CORNERS)
 
 
+@pytest.mark.slow
 def test_signs_in_pictures_are_shown_with_who_sits_there(tangy: Tangy, tmp_path: Path) -> None:
     seed = next(seed for seed in range(9_000, 9_100) if len(next(sequence(seed, 1)).asking) == 1)
     scenes = list(sequence(seed, 8))

@@ -139,6 +139,7 @@ def refused(path: Path, missing_ok: bool = False) -> None:
     raise PermissionError(13, "Permission denied")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("speaker")
 def test_a_new_name_forgets_what_was_spoken_with_the_old_one(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -95,6 +95,7 @@ def elsewhere(folder: Path) -> Iterator[Terminal]:
     terminal.end()
 
 
+@pytest.mark.slow
 def test_a_y_that_is_typed_ahead_executes_nothing(here: Terminal) -> None:
     here.type("greet everyone\ny\n")
     here.until("Type Y to execute it")
@@ -106,6 +107,7 @@ def test_a_y_that_is_typed_ahead_executes_nothing(here: Terminal) -> None:
     here.until("Tangy says:")
 
 
+@pytest.mark.slow
 def test_from_elsewhere_a_question_names_the_digit_that_is_its_yes(elsewhere: Terminal) -> None:
     elsewhere.type("greet everyone\n")
     shown = elsewhere.until("to execute it or N")

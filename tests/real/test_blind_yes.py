@@ -43,6 +43,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
         terminal.end()
 
 
+@pytest.mark.slow
 def test_a_yes_before_its_question_was_seen_is_told_to_be_too_early(start: Start) -> None:
     far = start(Link(delay=0.3), **SSH)
     ask_blindly(far, "y", 0.2)
@@ -53,6 +54,7 @@ def test_a_yes_before_its_question_was_seen_is_told_to_be_too_early(start: Start
     far.until(lambda: steps(far) == 1)
 
 
+@pytest.mark.slow
 def test_what_answers_for_the_terminal_makes_the_yes_a_digit(start: Start) -> None:
     far = start(Link(delay=0.3), "near", TMUX="a-socket,1,0", **SSH)
     assert blind(far, "y", 3, 0.5) == 0
@@ -66,12 +68,14 @@ def test_what_answers_for_the_terminal_makes_the_yes_a_digit(start: Start) -> No
     far.until(lambda: steps(far) == 1)
 
 
+@pytest.mark.slow
 def test_where_nothing_answers_a_remote_yes_is_a_digit(start: Start) -> None:
     far = start(Link(delay=0.2), "nobody", **SSH)
     ask(far)
     assert yes_of(far) in "456789"
 
 
+@pytest.mark.slow
 def test_beside_the_machine_y_is_the_yes_whatever_answers(start: Start) -> None:
     far = start(Link(), "nobody")
     ask(far)

@@ -135,6 +135,7 @@ def server() -> Iterator[CameraServer]:
 class TestStream:
     """One camera through all its troubles; each is named, and so is its end."""
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("mode", "state"),
         [
@@ -162,6 +163,7 @@ class TestStream:
         assert before is not None and after is not None
         assert after.seq > before.seq and after.stamp > before.stamp
 
+    @pytest.mark.slow
     async def test_a_camera_that_is_unplugged_is_opened_anew(self) -> None:
         with CameraServer() as server:
             async with Camera(find_camera(server.url)) as camera:
@@ -172,6 +174,7 @@ class TestStream:
                 server.listen()
                 await until(camera, "OK")
 
+    @pytest.mark.slow
     async def test_only_whole_pictures_are_given(self) -> None:
         with CameraServer() as server:
             async with Camera(find_camera(server.url)) as camera:
@@ -186,6 +189,7 @@ class TestStream:
 
 
 class TestProcess:
+    @pytest.mark.slow
     async def test_recording_ends_with_ctrl_c_and_says_what_there_is(
         self, server: CameraServer, tmp_path: Path
     ) -> None:
@@ -205,6 +209,7 @@ class TestProcess:
         assert names[:2] == ["000001.json", "000001.png"]
         assert len(names) % 2 == 0  # none without what is known of it
 
+    @pytest.mark.slow
     async def test_one_that_is_killed_is_started_again_and_owes_nothing(
         self, server: CameraServer
     ) -> None:
@@ -217,6 +222,7 @@ class TestProcess:
             later = await asyncio.wait_for(asked, PATIENCE)
         assert later is not None and later.seq > first.seq + 20
 
+    @pytest.mark.slow
     async def test_one_that_hangs_as_a_whole_is_ended_and_started_again(
         self, server: CameraServer
     ) -> None:
@@ -232,6 +238,7 @@ class TestProcess:
         with pytest.raises(ProcessLookupError):
             os.kill(hung, 0)
 
+    @pytest.mark.slow
     async def test_one_that_hangs_in_a_read_is_ended_and_started_again(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:

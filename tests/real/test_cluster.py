@@ -84,6 +84,7 @@ def sweep(groups: int = 6) -> Sweep:
     return Sweep("persuading", play, settings, [(9000 + at, 1) for at in range(groups)])
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_what_this_machine_gives_and_is_left_running(
     two_workers: Cluster, tmp_path: Path
 ) -> None:
@@ -100,6 +101,7 @@ def test_a_cluster_gives_what_this_machine_gives_and_is_left_running(
     assert all(p.poll() is None for p in (two_workers.scheduler, *two_workers.workers))
 
 
+@pytest.mark.slow
 def test_the_command_line_works_there(two_workers: Cluster, tmp_path: Path) -> None:
     words = ["experiment", "2", "--people", "4", "--json", "--data", str(tmp_path / "there")]
     done = subprocess.run(  # noqa: S603 - our own interpreter
@@ -119,6 +121,7 @@ def test_workers_with_other_code_are_not_used(
         sweep().run(Where(cluster=two_workers.address))
 
 
+@pytest.mark.slow
 def test_a_cluster_without_workers_is_said(tmp_path: Path) -> None:
     empty = Cluster(tmp_path, 0)
     try:
@@ -128,6 +131,7 @@ def test_a_cluster_without_workers_is_said(tmp_path: Path) -> None:
         empty.end()
 
 
+@pytest.mark.slow
 def test_a_cluster_that_ends_meanwhile_is_said_and_what_was_done_is_kept(tmp_path: Path) -> None:
     short_lived = Cluster(tmp_path, 1)
     data = tmp_path / "data"
@@ -147,6 +151,7 @@ def test_a_cluster_that_ends_meanwhile_is_said_and_what_was_done_is_kept(tmp_pat
     assert told[0] >= 2
 
 
+@pytest.mark.slow
 def test_nobody_there_is_said_within_seconds(
     tangy_in_process: Callable[..., subprocess.CompletedProcess[str]],
 ) -> None:
@@ -158,6 +163,7 @@ def test_nobody_there_is_said_within_seconds(
     assert "no Dask scheduler answers there" in done.stderr
 
 
+@pytest.mark.slow
 def test_without_dask_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(TangyError, match=r"tangy\[cluster\]"):

@@ -6,6 +6,8 @@ import json
 import subprocess
 from pathlib import Path
 
+import pytest
+
 from tangy_sim.rendering.faces import drawn_face
 from tests.hw.pictures import encoded
 from tests.real.camera_server import CameraServer
@@ -18,6 +20,7 @@ def looking_at(camera: CameraServer, person: int) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_somebody_before_a_camera_is_enrolled_and_known(tangy: str, tmp_path: Path) -> None:
     def faces(*arguments: str) -> subprocess.CompletedProcess[str]:
         command = [tangy, "faces", *arguments, "--json", "--data", str(tmp_path / "d")]

@@ -12,6 +12,7 @@ from tests.support.terminal import TANGY
 QUIET = 0.3  # s
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
 def test_teaching_writes_no_frame_that_changes_nothing(
     tmp_path: Path, size: tuple[int, int]

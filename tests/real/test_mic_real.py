@@ -111,6 +111,7 @@ async def robot(tmp_path: Path) -> AsyncIterator[Robot]:
         await process.communicate()
 
 
+@pytest.mark.slow
 async def test_five_seconds_arrive_exactly_through_two_programs(robot: Robot) -> None:
     listener = await robot.listener()
     mic = await robot.mic()
@@ -136,6 +137,7 @@ async def test_a_wav_is_taken_and_its_header_is_not_heard(robot: Robot) -> None:
     assert await mic.end() == 0
 
 
+@pytest.mark.slow
 async def test_what_is_killed_is_found_again_and_nothing_old_is_heard(robot: Robot) -> None:
     mic = await robot.mic()
     await mic.until("does not listen yet")
@@ -152,6 +154,7 @@ async def test_what_is_killed_is_found_again_and_nothing_old_is_heard(robot: Rob
     assert await mic.end() == 0
 
 
+@pytest.mark.slow
 async def test_a_killed_mic_is_missed_and_the_next_one_is_heard(robot: Robot) -> None:
     listener = await robot.listener()
     for word in (SOUND[:3_000], SOUND[3_000:6_000]):
@@ -164,6 +167,7 @@ async def test_a_killed_mic_is_missed_and_the_next_one_is_heard(robot: Robot) ->
         assert await listener.hear(len(QUIET)) == QUIET
 
 
+@pytest.mark.slow
 async def test_of_two_the_newer_is_heard_and_the_older_ends(robot: Robot) -> None:
     listener = await robot.listener()
     older = await robot.mic()
@@ -190,6 +194,7 @@ async def test_another_place_may_be_named(robot: Robot, tmp_path: Path) -> None:
     assert await mic.end() == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("content", "word"),
     [

@@ -41,6 +41,7 @@ async def filming() -> AsyncIterator[MjpegServer]:
     await server.close()
 
 
+@pytest.mark.slow
 async def test_the_camera_driver_likes_it_and_notices_every_fault(filming: MjpegServer) -> None:
     def is_in(*states: str) -> bool:
         return camera.sight.state in states

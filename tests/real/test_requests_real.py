@@ -98,6 +98,7 @@ class TestSigns:
         self.asking = sorted(seat + 1 for seat in scenes[0].asking)
         return tmp_path
 
+    @pytest.mark.slow
     async def test_signs_ask_at_their_seats_until_they_are_turned_down(
         self, pictures: Path
     ) -> None:

@@ -25,6 +25,7 @@ def teaching(tmp_path: Path) -> Iterator[Terminal]:
     terminal.end()
 
 
+@pytest.mark.slow
 def test_a_wiped_screen_comes_back_whole(teaching: Terminal) -> None:
     shown = teaching.text
     teaching.wipe()
@@ -44,6 +45,7 @@ def test_a_wiped_screen_comes_back_whole(teaching: Terminal) -> None:
     teaching.until(lambda text: text == shown)
 
 
+@pytest.mark.slow
 def test_a_letter_costs_tens_of_bytes_and_a_question_a_few_thousand(teaching: Terminal) -> None:
     teaching.type("call numbe")
     teaching.until("call numbe")

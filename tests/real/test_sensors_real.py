@@ -37,6 +37,7 @@ def cards(tmp_path_factory: pytest.TempPathFactory, activity: Activity) -> Path:
     return folder
 
 
+@pytest.mark.slow
 async def test_the_last_card_is_read_as_long_as_somebody_looks(
     cards: Path, activity: Activity
 ) -> None:
@@ -53,6 +54,7 @@ async def test_the_last_card_is_read_as_long_as_somebody_looks(
         assert last.numbers == numbers_of(activity.deck, 17)
 
 
+@pytest.mark.slow
 async def test_what_is_no_card_is_told_and_the_last_one_kept(
     cards: Path, activity: Activity, tmp_path: Path
 ) -> None:
@@ -71,6 +73,7 @@ async def test_what_is_no_card_is_told_and_the_last_one_kept(
         assert sensors.cards.problem == "no card in sight"
 
 
+@pytest.mark.slow
 async def test_each_camera_says_how_it_is_and_gives_small_pictures() -> None:
     robot = load_robot()
     with CameraServer(1) as one, CameraServer(2) as other:
@@ -89,6 +92,7 @@ async def test_each_camera_says_how_it_is_and_gives_small_pictures() -> None:
             await until(lambda: sensors.sight("requests").state == "OK")
 
 
+@pytest.mark.slow
 async def test_they_are_open_as_long_as_anybody_is_in_it_and_leave_nothing() -> None:
     robot = load_robot()
     before = asyncio.all_tasks()

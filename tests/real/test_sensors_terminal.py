@@ -50,6 +50,7 @@ def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
         assert not [pid for pid in started if alive(pid)]
 
 
+@pytest.mark.slow
 def test_a_window_that_is_closed_leaves_no_camera(open_terminal: OpenTerminal) -> None:
     with CameraServer() as server:
         terminal = open_terminal("sensors", "--camera", f"camera={server.url}")

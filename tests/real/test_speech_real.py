@@ -143,6 +143,7 @@ def studio(_studio: Studio) -> Studio:
 
 
 class TestVoices:
+    @pytest.mark.slow
     def test_known_phrases_are_sure(self, studio: Studio, voices: Voices) -> None:
         found = {said: studio.hear(voices.say(said, voice)) for said, voice, _, _ in KNOWN}
         assert found == {said: ("sure", name, who) for said, _, name, who in KNOWN}
@@ -159,6 +160,7 @@ class TestVoices:
         found = {said: studio.hear(voices.say(said, voice))[0] for said, voice in OTHER}
         assert found == dict.fromkeys(found, "nothing")
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("voice", ["slt", "kal16", FESTIVAL])
     @pytest.mark.parametrize(
         "words", ["stop", "stop the robot", "emergency stop", "stop the game", "stop right away"]
@@ -223,6 +225,7 @@ class TestStream:
         assert studio.run(talk()).words == "call the next number"
         assert len(set(shown)) >= 3
 
+    @pytest.mark.slow
     def test_a_worker_that_is_killed_in_mid_utterance_loses_nothing(
         self, studio: Studio, voices: Voices
     ) -> None:
@@ -267,6 +270,7 @@ class TestStream:
 
         assert isinstance(understand(studio.run(talk()), BOOK, USUAL), StopCommand)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("voice", ["slt", "rms", "awb"])
     @pytest.mark.parametrize(
         ("said", "soon"), [("stop the robot", 0.2), ("emergency stop", 0.2), ("make it stop", 0.5)]
@@ -281,6 +285,7 @@ class TestStream:
         assert isinstance(understand(evidence, BOOK, USUAL), StopCommand)
         assert seconds - last <= soon
 
+    @pytest.mark.slow
     def test_hands_free_at_most_one_of_other_sentences_with_stop_stops_in_doubt(
         self, voices: Voices
     ) -> None:
@@ -321,6 +326,7 @@ class TestStream:
 
 
 class TestEars:
+    @pytest.mark.slow
     def test_a_stream_is_cut_into_utterances_and_each_is_understood(
         self, voices: Voices, tmp_path: Path
     ) -> None:
@@ -361,6 +367,7 @@ class TestEars:
         assert commands == ["call number", "joke"]
         assert StopCommand("stop") in heard
 
+    @pytest.mark.slow
     def test_files_are_listened_to(self, voices: Voices, tmp_path: Path) -> None:
         both = tmp_path / "both.wav"
         both.write_bytes(
@@ -374,6 +381,7 @@ class TestEars:
         assert rows[-1]["heard"] == ""
         json.dumps(rows)
 
+    @pytest.mark.slow
     def test_the_papers_mode_understands_phrases_too(self, voices: Voices) -> None:
         settings = EvidenceSettings(mode="paper")
         files = [voices.file(said, voice) for said, voice, _, _ in KNOWN[:3]]
@@ -383,6 +391,7 @@ class TestEars:
 
 
 class TestWorker:
+    @pytest.mark.slow
     def test_what_cannot_be_pronounced_is_left_out_and_said(self, voices: Voices) -> None:
         people = [Person("user1", "Xhqzr"), Person("user2", "Rosa")]
         book = Phrasebook(load_activity("bingo"), people)
@@ -416,6 +425,7 @@ class TestWorker:
         finally:
             studio.close()
 
+    @pytest.mark.slow
     def test_garbage_is_answered_with_errors_and_the_end_of_input_ends_it(self) -> None:
         requests: list[object] = [
             b"hello\n",
@@ -447,6 +457,7 @@ class TestWorker:
         assert "(" in answers[8]["left_out"]
         assert answers[10]["found"] == []
 
+    @pytest.mark.slow
     def test_nothing_is_written_to_the_terminal(self, voices: Voices, tmp_path: Path) -> None:
         code = (
             "import asyncio, os, sys\n"

@@ -74,6 +74,7 @@ def children(pid: int) -> list[int]:
     return found
 
 
+@pytest.mark.slow
 def test_a_recording_is_asked_about_and_becomes_a_step(
     open_terminal: OpenTerminal, voices: Voices, tangy: str, tmp_path: Path
 ) -> None:
@@ -88,6 +89,7 @@ def test_a_recording_is_asked_about_and_becomes_a_step(
     assert steps(tangy, tmp_path / "data") == ["greeting"]
 
 
+@pytest.mark.slow
 def test_a_laptops_microphone_is_pushed_to_talk_and_becomes_a_step(
     open_terminal: OpenTerminal,
     laptop: Callable[[], Laptop],
@@ -121,6 +123,7 @@ def test_a_laptops_microphone_is_pushed_to_talk_and_becomes_a_step(
     assert "ERROR" not in shown
 
 
+@pytest.mark.slow
 def test_a_decoder_that_is_killed_in_mid_utterance_shows_and_loses_nothing(
     open_terminal: OpenTerminal, laptop: Callable[[], Laptop], voices: Voices
 ) -> None:
@@ -166,6 +169,7 @@ def _confirmed(tmux: Tmux, text: str) -> bool:
     return False
 
 
+@pytest.mark.slow
 def test_no_is_heard_as_nothing_done_and_the_next_command_is_taken(
     open_terminal: OpenTerminal, voices: Voices
 ) -> None:
@@ -180,6 +184,7 @@ def test_no_is_heard_as_nothing_done_and_the_next_command_is_taken(
     terminal.until("Did you say: greet everyone?")
 
 
+@pytest.mark.slow
 def test_lines_hear_a_recording_and_a_script_answers(
     voices: Voices, tangy: str, tmp_path: Path
 ) -> None:

@@ -50,6 +50,7 @@ def start(script: str, folder: Path) -> subprocess.Popen[str]:
     )
 
 
+@pytest.mark.slow
 def test_every_acknowledged_event_outlives_a_kill(tmp_path: Path) -> None:
     """Kill the writer again and again, at a random acknowledgement, while it goes on writing."""
     rng = random.Random()  # a new story each time; the law holds for all of them

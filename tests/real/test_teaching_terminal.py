@@ -51,6 +51,7 @@ def _answered(tmux: Tmux, text: str) -> bool:
     return False
 
 
+@pytest.mark.slow
 def test_a_y_typed_ahead_does_not_answer(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1")
     terminal.until("type a command")
@@ -63,6 +64,7 @@ def test_a_y_typed_ahead_does_not_answer(open_terminal: OpenTerminal) -> None:
     terminal.until("-> greet everyone")
 
 
+@pytest.mark.slow
 def test_no_puts_the_words_back(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1")
     terminal.until("type a command")
@@ -75,6 +77,7 @@ def test_no_puts_the_words_back(open_terminal: OpenTerminal) -> None:
     assert "No steps yet" in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["term", "hup"]
 )
@@ -136,6 +139,7 @@ def test_a_window_that_is_too_small_says_so_and_loses_nothing(
     terminal.until("> greet every")
 
 
+@pytest.mark.slow
 def test_a_dumb_terminal_gets_lines(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1", environment={"TERM": "dumb"})
     terminal.until("or one of:")
@@ -157,6 +161,7 @@ def test_a_terminal_without_utf8_gets_ascii(open_terminal: OpenTerminal) -> None
     assert terminal.raw.isascii()
 
 
+@pytest.mark.slow
 def test_nothing_is_written_while_nothing_happens(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1", columns=120, lines=40)
     terminal.until("type a command")

@@ -29,6 +29,7 @@ def test_some_steps_are_typed_asked_about_and_kept() -> None:
     assert done["ordinary"]["minutes"] > done["minutes"]
 
 
+@pytest.mark.slow
 def test_a_program_that_never_asks_is_not_waited_for_for_ever(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -259,6 +259,7 @@ async def test_without_a_sound_card_aplay_says_so(synthesiser: Synthesiser) -> N
     assert (player, problem.startswith("aplay finds nothing to play on (")) == ("", True)
 
 
+@pytest.mark.slow
 @needs_aplay
 def test_the_program_speaks_and_writes_nothing_but_the_text(
     card: int, tmp_path: Path, tangy: str

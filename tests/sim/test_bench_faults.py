@@ -262,6 +262,7 @@ class TestPeople:
         world.step(25.0)
         assert player.marked == 0b1 and "no-effect" in world.faults
 
+    @pytest.mark.slow
     def test_a_dead_voice_is_not_heard_and_may_come_back_when_switched_on_again(self) -> None:
         came = Counter[bool]()
         for seed in range(30):

@@ -223,6 +223,7 @@ class TestPlaying:
         assert played(seed) == played(seed)
         assert played(seed) != played(seed + 1)
 
+    @pytest.mark.slow
     def test_games_are_as_in_table_two(self) -> None:
         """The fitted model's figures for twenty games; tests/sim/test_table_two.py has them."""
         games = 6

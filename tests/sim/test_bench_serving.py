@@ -291,6 +291,7 @@ class TestMachineTime:
 
 
 class TestProcess:
+    @pytest.mark.slow
     async def test_it_says_where_it_is_does_what_it_is_told_and_ends_with_its_stdin(self) -> None:
         process = await asyncio.create_subprocess_exec(
             *CHILD, "--seed", "5", "--stepped", "--person", "ann=Ann", "--person", "bo",

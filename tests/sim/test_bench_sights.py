@@ -37,6 +37,7 @@ def picture(jpeg: bytes) -> Any:
 
 
 class TestCards:
+    @pytest.mark.slow
     def test_the_reader_reads_what_lies_there_and_is_marked(self) -> None:
         reader, random, read = CardReader(ACTIVITY.deck), np.random.default_rng(7), 0
         head = camera(3)
@@ -50,6 +51,7 @@ class TestCards:
             read += not reading.hidden
         assert read >= 5
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("hides", HIDES)
     def test_of_a_card_that_is_out_of_view_nothing_is_told(self, hides: str) -> None:
         reader, head = CardReader(ACTIVITY.deck), camera(4)
@@ -70,6 +72,7 @@ class TestCards:
 
 
 class TestFaces:
+    @pytest.mark.slow
     def test_everybody_is_known_by_a_face_enrolled_from_other_pictures(self) -> None:
         reader, head = HaarReader(), camera()
         enrolled = {
@@ -132,6 +135,7 @@ class TestFrames:
 
 
 class TestSigns:
+    @pytest.mark.slow
     @pytest.mark.parametrize("count", [1, 4, 8])
     def test_signs_are_seen_at_the_seats_of_those_who_ask_alone(self, count: int) -> None:
         people = [f"user{number}" for number in range(1, count + 1)]
@@ -143,6 +147,7 @@ class TestSigns:
                 seen = watcher.look(picture(infrared.frame([people[seat] for seat in group])))
             assert set(seen) == {seat + 1 for seat in group}
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("count", [9, 12, 24])
     def test_signs_in_a_hall_are_told_apart(self, count: int) -> None:
         hall = load_room("hall")

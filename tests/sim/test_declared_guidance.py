@@ -151,6 +151,7 @@ class Copies(DeclaredGame):
         return other
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", each_of_first(DECLARED))
 def test_a_guided_game_of_twelve_people_shows_as_much(name: str) -> None:
     activity = declared(name)
@@ -176,6 +177,7 @@ def test_a_search_names_what_was_not_shown() -> None:
     assert all(why == UNDECIDED for one, why in found.open.items() if one != left_out)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DECLARED)
 @pytest.mark.parametrize("guided", [False, True])
 def test_other_words_for_everything_change_nothing(name: str, *, guided: bool) -> None:

@@ -37,6 +37,7 @@ from tests.sim.guided import (
 # --------------------------------------------------------------------- what one game is enough for
 
 
+@pytest.mark.slow
 @pytest.mark.xdist_group("guide")
 @pytest.mark.parametrize("users", range(1, 9))
 def test_one_game_shows_every_situation_whatever_the_seed(users: int) -> None:
@@ -57,6 +58,7 @@ def test_one_game_teaches_the_exact_policy(seed: int, users: int) -> None:
         assert decision.behaviour == BINGO.expected[state.situation]
 
 
+@pytest.mark.slow
 @pytest.mark.xdist_group("guide")
 def test_an_activity_without_a_word_in_common_is_shown_whole_too() -> None:
     """Somebody asks at its end in every other game, since one game has but one end."""
@@ -236,6 +238,7 @@ def test_whoever_has_a_full_line_of_marks_asks() -> None:
 # ----------------------------------------------------------------------------- had again, by seed
 
 
+@pytest.mark.slow
 @examples(max_examples=30)
 @given(st.integers(), st.integers(1, 8), MISTAKES)
 def test_the_same_seed_and_actions_give_the_same_states_and_looking_changes_nothing(

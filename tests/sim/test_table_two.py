@@ -77,6 +77,7 @@ def test_visits_read_more_cards_than_there_are_visits(live: Totals) -> None:
     assert live.readings / live.done["navigate to user"] == pytest.approx(87 / 71, rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_teaching_game_has_the_papers_62_behaviours(activity: Activity) -> None:
     totals = Totals(activity, 20260731, load_users().teaching())
     assert totals.steps / GAMES == pytest.approx(62, rel=0.03)
