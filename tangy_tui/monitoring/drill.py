@@ -6,21 +6,18 @@ log round by round, so that an interrupted drill can go on; nothing else of a dr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from random import Random
 from time import monotonic
 from typing import Literal, TypeAlias, get_args
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.errors import TangyError
-from tangy_profiles.fault_file import load_faults
 from tangy_profiles.game_records import DrillAnswered, DrillHeld
-from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.drill_log import read_sheets
-from tangy_tui.monitoring.drill_policy import DrillNote, policy_for_drill
+from tangy_tui.monitoring.drill_policy import DrillNote
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop, draw_rounds
 
 ROUNDS, MOST_ROUNDS = 6, 50
@@ -122,35 +119,6 @@ class Drill:
         self._since = 0.0
         self._answered = [] if past is None else list(past.answered)
         self._kept = False
-
-    @classmethod
-    def of(
-        cls,
-        activity: Activity,
-        robot: Robot,
-        names: Mapping[str, str],
-        store: Store,
-        *,
-        who: str,
-        seed: int | None = None,
-        rounds: int = ROUNDS,
-        clock: Callable[[], float] = monotonic,
-        past: Sheet | None = None,
-    ) -> Drill:
-        """Make a drill by what Tangy has learnt, or else by what it is shown now; it takes a while.
-
-        Raises:
-            TangyError: there is nothing to rehearse with, or the fault rules have a mistake.
-        """
-        activity.need_cards()
-        learnt = policy_for_drill(store, activity)
-        tabletop = Tabletop(
-            learnt.policy, learnt.effects, load_faults(robot), robot, activity, names
-        )
-        return cls(
-            tabletop, store,
-            who=who, seed=seed, rounds=rounds, clock=clock, note=learnt.note, past=past,
-        )  # fmt: skip
 
     @property
     def number(self) -> int:

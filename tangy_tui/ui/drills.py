@@ -23,7 +23,8 @@ async def hold_drill(
 
     It goes on with a `past` drill, or asks about one that was interrupted.
     """
-    from tangy_tui.monitoring.drill import ROUNDS, Drill
+    from tangy_tui.app.drill_opening import open_drill
+    from tangy_tui.monitoring.drill import ROUNDS
     from tangy_tui.ui.screens.drill import DrillScreen
 
     workspace = program.workspace
@@ -33,12 +34,9 @@ async def hold_drill(
         return
     made = await program.in_thread(
         text.PREPARING_DRILL,
-        lambda: Drill.of(
-            workspace.activity,
-            workspace.robot,
-            workspace.names,
-            workspace.store,
-            who=name,
+        lambda: open_drill(
+            workspace,
+            name,
             seed=seed,
             rounds=rounds or ROUNDS,
             clock=program.clock,

@@ -88,23 +88,14 @@ def drill(
                 )
             )
         past = _by_lines(workspace, past, anew=as_json and not resume)
+        from tangy_tui.app.drill_opening import open_drill
         from tangy_tui.console.drills import drill_by_lines
         from tangy_tui.console.inputs import line_reader
-        from tangy_tui.monitoring.drill import Drill
         from tangy_tui.text.drills import left_words
 
         if not as_json:
             print_line(PREPARING_DRILL)
-        made = Drill.of(
-            workspace.activity,
-            workspace.robot,
-            workspace.names,
-            workspace.store,
-            who=name,
-            seed=seed,
-            rounds=rounds,
-            past=past,
-        )
+        made = open_drill(workspace, name, seed=seed, rounds=rounds, past=past)
         if not as_json:
             drill_by_lines(made, print_line, line_reader(None))
             return
