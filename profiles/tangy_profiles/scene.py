@@ -47,7 +47,7 @@ class Scene:
 
     `place` is where the robot is (or is driving to), `requests` who asks for help, first come
     first, `doing` what each person is seen to do in a word or two, `called` the numbers so far
-    in order, `card` the card that the robot can read, if any.
+    in order, `card` the card that the robot can read, if any, `away` who has not come, or has left.
     """
 
     place: str
@@ -55,3 +55,4 @@ class Scene:
     doing: Mapping[str, str]
     called: tuple[int, ...]
     card: CardView | None
+    away: frozenset[str] = frozenset()

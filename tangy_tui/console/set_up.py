@@ -48,6 +48,9 @@ class SetUpLines:
             words = " ".join(line.split()).strip(" .")
             if words.casefold() == "begin":
                 return True
+            if words.casefold() in _ACTIVITIES:
+                self._write(text.activities_line(self.setup.activities().values()))
+                continue
             try:
                 done = self._own(words) or self._take(self._command(words))
             except TangyError as error:
@@ -94,8 +97,6 @@ class SetUpLines:
             setup.rename(self._find(name[1]), name[2])
         elif wanted := _ACTIVITY.fullmatch(words):
             self._play(wanted[1])
-        elif words.casefold() in _ACTIVITIES:
-            self._write(text.activities_line(setup.activities().values()))
         else:
             return False
         return True

@@ -59,7 +59,7 @@ class WatchingLines:
                     self._json({"game": news.game.id, **moment.to_json(), **when})
             else:
                 if news.begun:
-                    self._write(plain(game_words(news.game)))
+                    self._write(plain(game_words(news.game, news.activity)))
                 for moment in news.moments:
                     for line in moment_lines(moment, news.replay.timed, news.activity, self._name):
                         self._write(plain(line))

@@ -16,6 +16,7 @@ from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.memory import PersonModel, PersonModels, counted, replayed
 from tangy_tui.interaction.tally import TallyRow
+from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import BORNE, OPEN, Diagnosed, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
@@ -286,7 +287,7 @@ def _people(
     activity: Activity | None,
     names: Mapping[str, str],
 ) -> tuple[Progress, ...]:
-    present = dict.fromkeys(person for replay in replays for person in replay.game.people)
+    present = tuple(attention(replays))  # without those who were away all along
     if not present:
         return ()
     said = {a.uuid: a.followed for replay in replays for _, a in replay.answers}

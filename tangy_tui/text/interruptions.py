@@ -22,9 +22,16 @@ BOTH = "Use either --resume or --discard."
 
 def interrupted_words(past: PastGame, calls: int) -> str:
     """Say when a game was interrupted, and how far it had come."""
-    when = day_and_time(past.at)
-    far = counted(calls, "call") if calls else counted(len(past.steps), "step")
-    return f"A game was interrupted after {far} ({when})."
+    return f"A game was interrupted after {_far(past, calls)} ({day_and_time(past.at)})."
+
+
+def still_open_words(past: PastGame, calls: int) -> str:
+    """Say beside a choice that a game was interrupted there, and that it can go on."""
+    return f"interrupted after {_far(past, calls)}: Enter asks whether to go on"
+
+
+def _far(past: PastGame, calls: int) -> str:
+    return counted(calls, "call") if calls else counted(len(past.steps), "step")
 
 
 def begins_anew(verb: str) -> str:

@@ -27,10 +27,12 @@ MOST_TOLD = 30
 """Games that a report tells one by one; of more, only those in which something was the matter."""
 
 
-def game_words(game: Game) -> str:
-    """Name a game: its number, id, activity, world, policy and when it was."""
+def game_words(game: Game, activity: Activity | None = None) -> str:
+    """Name a game: its number, id, activity (by its title, if it is this one), world, and so on."""
+    known = activity is not None and activity.name == game.activity
+    played = activity.title if activity is not None and known else game.activity
     return (
-        f"Game {game.number} ({game.id}), {game.activity}, {game.world}, policy {game.policy}, "
+        f"Game {game.number} ({game.id}), {played}, {game.world}, policy {game.policy}, "
         f"{day_and_time(game.at)}"
     )
 
@@ -38,7 +40,7 @@ def game_words(game: Game) -> str:
 def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> Iterator[str]:
     """Tell a game step by step; each line begins with the time in the game and on the clock."""
     game = replay.game
-    yield game_words(game)
+    yield game_words(game, activity)
     yield f"With {', '.join(map(name, game.people)) or 'nobody that the log names'}."
     if not replay.timed:
         yield "An older Tangy kept no times within a game: what is given is the time of day alone."
@@ -120,7 +122,7 @@ def answer_words(answer: AnsweredRequest) -> str:
 
 def session_lines(session: Session) -> Iterator[str]:
     """Tell a session in short: which games, faults, people, and what to look after."""
-    yield from _games_lines(session.games)
+    yield from _games_lines(session.games, session.activity)
     if session.timed:
         yield f"Time in the room: {length(session.seconds)}."
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
@@ -169,7 +171,7 @@ def limits_lines(games: Sequence[Game]) -> Iterator[str]:
         yield f"The robot waited for late data {times}, for {seconds:.1f} s in all."
 
 
-def _games_lines(games: Sequence[Game]) -> Iterator[str]:
+def _games_lines(games: Sequence[Game], activity: Activity | None) -> Iterator[str]:
     """Tell each game; of many only those in which something was the matter, and of all the sum."""
     told = games
     if len(games) > MOST_TOLD:
@@ -180,7 +182,7 @@ def _games_lines(games: Sequence[Game]) -> Iterator[str]:
             yield "Those with faults, or that did not go to their end:"
     for game in told:
         words = f"{counted(game.steps, 'step')}; {game.ending}"
-        yield f"{game_words(game)}: {words}" + ("" if words.endswith(".") else ".")
+        yield f"{game_words(game, activity)}: {words}" + ("" if words.endswith(".") else ".")
     if len(told) < len(games):
         rest = counted(len(games) - len(told), "game")
         other = "other " if told else ""

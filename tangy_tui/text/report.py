@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
+from tangy_tui.app.card_news import BY as TANGY
 from tangy_tui.monitoring.attention import Attention, Call
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
@@ -150,7 +151,7 @@ def with_names(words: str, replay: GameReplay, name: Name) -> str:
 def _staff_words(moment: Moment) -> tuple[str, str] | None:
     what = moment.what
     if isinstance(what, Noted):
-        return (what.by, what.what) if what.by else None
+        return (what.by, what.what) if what.by not in ("", TANGY) else None
     move = getattr(what, "move", None)
     fault: Fault | None = getattr(what, "fault", None)
     if move is None or fault is None or not move.by or move.kind not in STAFF_MOVES:

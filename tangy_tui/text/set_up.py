@@ -54,9 +54,11 @@ def people_words(setup: SetUp) -> str:
 
 def patterns_words(setup: SetUp) -> str:
     """Name the patterns that are played for."""
-    rules = setup.workspace.activity.rules
-    labels = [rules.pattern(name).label for name in setup.patterns]
-    return ", then ".join(labels) or "as usual"
+    rules, deck = setup.workspace.activity.rules, setup.workspace.activity.deck
+    if labels := [rules.pattern(name).label for name in setup.patterns]:
+        return ", then ".join(labels)
+    usual = [one.label for one in rules.patterns if one.on(deck) == deck]
+    return f"{usual[0]}, as usual" if usual else "as usual"
 
 
 def pattern_keys(setup: SetUp) -> str:

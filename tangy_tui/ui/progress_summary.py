@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from tangy_profiles.game_world import SIMULATED
+from tangy_profiles.past_game import interrupted_game
 from tangy_tui.learning import library, policies
 from tangy_tui.monitoring.drill_log import last_sheet
+from tangy_tui.text.interruptions import still_open_words
 from tangy_tui.text.numbers import counted
 
 if TYPE_CHECKING:
@@ -23,13 +26,18 @@ def how_far(workspace: Workspace) -> Mapping[str, str]:
     kept = policies.last_policy(workspace.store, workspace.activity.name)
     people = ", ".join(person.name for person in workspace.people)
     sheet = last_sheet(workspace.store)
+    play = "" if kept is not None else "learn first"
+    live = _robot_of(workspace) if kept is not None else "learn first"
+    if kept is not None and (past := interrupted_game(workspace.store, workspace.activity.name)):
+        words = still_open_words(past, len(past.called(workspace.activity)))
+        play, live = (words, live) if past.world == SIMULATED else (play, words)
     return {
         "teach": counted(finished, "demonstration")
         + (f", {unfinished} unfinished" if unfinished else ""),
         "library": f"{len(shown)} in use, {away} put away" if away else "",
         "learn": "" if kept is None else f"from {len(kept.demonstrations)} so far",
-        "play": "" if kept is not None else "learn first",
-        "live": _robot_of(workspace) if kept is not None else "learn first",
+        "play": play,
+        "live": live,
         "rehearse": "" if sheet is None else f"last: {sheet.points} of {sheet.most} points",
         "policy": "" if kept is None else kept.name,
         "people": people,

@@ -17,7 +17,7 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, TangyPilot
-from tests.support.waiting import until
+from tests.support.waiting import until, until_shown
 
 STEPS = 9
 
@@ -57,6 +57,12 @@ async def test_it_goes_on_paused_with_its_steps_counted(interrupted: Workspace, 
         await until(lambda: screen.query_one(Transcript).count == STEPS + 1)
 
     assert len(list(interrupted.store.events(GameBeginning))) == 1
+
+
+async def test_the_first_screen_says_where_it_can_go_on(interrupted: Workspace, run: Run) -> None:
+    async with run(app=Program(interrupted, clock=StillClock())) as pilot:
+        await until_shown(pilot, lambda: "Play      interrupted after" in pilot.text())
+        assert "Live      on the bench" in pilot.text()
 
 
 async def test_it_ends_with_a_report(interrupted: Workspace, run: Run) -> None:

@@ -77,6 +77,19 @@ async def test_people_patterns_and_seats_are_chosen_by_keys_and_nothing_moves(
         assert setup.patterns == ["full card"] and setting.link.done == []
 
 
+async def test_the_line_of_the_cursor_is_marked_and_says_which_keys_change_it(
+    run: Run, setting: Setting
+) -> None:
+    async with run(app=setting.program()) as pilot:
+        await pilot.press(*["down"] * (len(setting.setup.seats) + 1))
+        await until_shown(
+            pilot, lambda: "▸ Played for             a line, as usual" in pilot.text()
+        )
+        assert "← →" not in pilot.text()
+        await pilot.press("down")
+        await until_shown(pilot, lambda: "▸ Winners                one  ← →" in pilot.text())
+
+
 async def test_begin_switches_on_and_begins(run: Run, setting: Setting) -> None:
     async with run(app=setting.program()) as pilot:
         await opened(pilot)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -9,10 +10,12 @@ from syrupy.assertion import SnapshotAssertion
 from textual.app import ComposeResult
 from textual.geometry import Region
 
-from tangy_profiles.room import load_room
+from tangy_profiles.person import Person
+from tangy_profiles.room import Point, load_room
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.widgets.card_lines import LEGEND
 from tangy_tui.ui.widgets.room_plan import Grid, plan
 from tangy_tui.ui.widgets.room_view import RoomView
 
@@ -355,3 +358,44 @@ def test_each_table_of_a_hall_is_seen_to_both_its_ends(people: int, width: int) 
     for left, right in grid.tables:
         cards = [centre for centre in grid.centres if left <= centre <= right]
         assert cards and left < cards[0] - 1 and cards[-1] + 1 < right
+
+
+async def test_names_in_a_full_hall_are_whole_and_who_is_away_is_marked(
+    run: Run, sample: Sample
+) -> None:
+    names = [f"Person{chr(65 + number)}" for number in range(12)]
+    people = [Person(name, name) for name in names]
+    hall = RoomScreen(replace(sample, room=load_room("hall"), people=tuple(people)))
+    async with run(hall, SMALL) as pilot:
+        doing = dict.fromkeys(names, "watches")
+        hall.room.show(Scene(FRONT, (), doing, (), None, frozenset(names[4:6])))
+        await pilot.pause()
+        text = pilot.text()
+    assert [name for name in names if name not in text] == []
+    assert (text.count("●"), text.count("○")) == (10, 2)
+
+
+async def test_marks_cover_neither_the_card_nor_stand_behind_the_table(
+    run: Run, sample: Sample
+) -> None:
+    screen = RoomScreen(sample)
+    room = sample.room
+    async with run(screen, SMALL) as pilot:
+        card = CardView("user2", tuple(range(1, 26)), 0, 0)
+        screen.room.show(Scene("user2", (), {}, (), card))
+        at = room.stand("user2", [person.id for person in sample.people])
+        screen.room.track(at, "", ())
+        await pilot.pause()
+        without = pilot.text()
+        everywhere = [Point(x / 5, y / 5) for x in range(50) for y in range(40)]
+        behind = [point for point in everywhere if point.y > room.table[1]]
+        screen.room.track(at, "", [(point, "*", "warn") for point in behind])
+        await pilot.pause()
+        assert pilot.text() == without
+        screen.room.track(at, "", [(point, "*", "warn") for point in everywhere])
+        await pilot.pause()
+        marked = pilot.text()
+    legend = "".join(words for words, _ in LEGEND)
+    assert "*" in marked
+    assert "The card of User 2" in marked
+    assert legend.strip() in marked

@@ -355,6 +355,7 @@ class LiveWorld(LivePlan):
             doing,
             tuple(self.called),
             view if view is not None and view.person == tracker.place else None,
+            self.away,
         )
 
     @property

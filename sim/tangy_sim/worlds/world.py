@@ -157,7 +157,7 @@ class SimulatedWorld(PlannedGame):
             beside = self.players[tracker.place]
             card = CardView(beside.id, beside.numbers, beside.marked, beside.called)
         called = tuple(self.order[: self._calls])
-        return Scene(tracker.place, tuple(tracker.queue), doing, called, card)
+        return Scene(tracker.place, tuple(tracker.queue), doing, called, card, self.away)
 
     def health(self) -> Health:
         """Return the readings of devices of which none has a fault (see `FaultyWorld`)."""

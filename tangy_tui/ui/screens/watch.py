@@ -13,7 +13,7 @@ from textual.widgets import Static
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import CallMade, GameChange
 from tangy_profiles.person import Person
-from tangy_profiles.room import Point, load_room
+from tangy_profiles.room import Point, room_for
 from tangy_profiles.store import Store
 from tangy_tui.app.game_view import GameView
 from tangy_tui.app.watching import WATCH_SECONDS, Guest, NobodyThere, WatchedLog
@@ -128,7 +128,7 @@ class WatchScreen(TangyScreen[None]):
             return
         log = self.query_one(LogView)
         if news.begun:
-            log.write(game_words(news.game))
+            log.write(game_words(news.game, news.activity))
         for moment in news.moments:
             kind = _kind(moment)
             for line in moment_lines(moment, news.replay.timed, news.activity, self._called):
@@ -162,7 +162,7 @@ class WatchScreen(TangyScreen[None]):
         left = self.query_one("#left", Vertical)
         left.remove_children(".panel")
         self._activity = self._log.activity(view.activity)
-        room = load_room()
+        room = room_for(len(people))
         seated = room.placed([Person(one, self._called(one)) for one in people])
         label = str if self._activity is None else self._activity.deck.label
         left.mount(panel(RoomView(room, seated, label=label)), before="#called")

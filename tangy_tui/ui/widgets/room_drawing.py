@@ -109,6 +109,7 @@ class RoomDrawing:
             return
         for y, row in enumerate(rows, plan.table_row - len(rows)):
             self._lines[y].put(start - 1, " " * (width + 2), "text")
+            self._lines[y].keep(start - 1, start + width + 1)
             column = start
             for text, ink in row:
                 self._lines[y].put(column, text, ink)
@@ -116,23 +117,48 @@ class RoomDrawing:
 
     def everybody(self, scene: Scene) -> None:
         """Draw the people: head with the mark of a request, name, and what they do."""
-        for person, centre, (start, end) in zip(
-            self._people, self._grid.centres, self._grid.slots, strict=False
-        ):
-            self._person(person, scene, centre, end - start - 1)
+        slots = list(zip(self._people, self._grid.slots, strict=False))
+        deep = self._names_deep()
+        for place, (person, (start, end)) in enumerate(slots):
+            if deep > 1:  # to the middle of the slots of the next names on the same line
+                start = (slots[place - deep + 1][1][0] + start) // 2 if place >= deep - 1 else 0
+                after = place + deep - 1
+                end = (slots[after][1][1] + end) // 2 if after < len(slots) else self._plan.width
+            self._person(person, scene, place, (start, end - 1), place % deep, deep)
 
-    def _person(self, person: Person, scene: Scene, centre: int, width: int) -> None:
-        row, most = self._plan.head_row, self._plan.doing
-        asking = person.id in scene.requests
-        ink = "warn" if asking else "person"
+    def _names_deep(self) -> int:
+        """Return on how many lines names stand by turns, so that neighbours' names have room."""
+        if not self._plan.crowded:
+            return 1
+        slots = zip(self._people, self._grid.slots, strict=False)
+        tight = [cell_len(clean(one.name)) >= end - start for one, (start, end) in slots]
+        return 1 + self._plan.doing if any(tight) else 1
+
+    def _person(
+        self,
+        person: Person,
+        scene: Scene,
+        place: int,
+        within: tuple[int, int],
+        below: int,
+        deep: int,
+    ) -> None:
+        """Draw a person; the name stands so many lines `below`, of `deep`, between two columns."""
+        row, most, centre = self._plan.head_row, self._plan.doing, self._grid.centres[place]
+        width = within[1] - within[0]
+        asking, away = person.id in scene.requests, person.id in scene.away
+        ink = "warn" if asking else "dim" if away else "person"
         turn = f"?{scene.requests.index(person.id) + 1}" if asking else ""
-        self._lines[row].put(centre, f"●{turn}", ink)
-        self._lines[row + 1].centre(centre, shorten(clean(person.name), width), ink)
+        self._lines[row].put(centre, f"{'○' if away else '●'}{turn}", ink)
+        name = shorten(clean(person.name), width)
+        self._lines[row + 1 + below].within(centre, *within, name, ink)
+        if deep > 1:
+            return  # names have taken the lines of what people do
         doing = wrap(clean(scene.doing.get(person.id, "")), width)
         if len(doing) > most:
             doing = [*doing[: most - 1], " ".join(doing[most - 1 :])]
         for y, text in enumerate(doing, row + 2):
-            self._lines[y].centre(centre, shorten(text, width), "dim")
+            self._lines[y].within(centre, *within, shorten(text, width), "dim")
 
 
 def draw_room(

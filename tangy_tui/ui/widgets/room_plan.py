@@ -30,6 +30,8 @@ class RoomPlan:
     floor: int
     table: int
     doing: int
+    crowded: bool = False
+    """Whether a person's slot is too narrow for what they do to stand on one line."""
 
     @property
     def board_row(self) -> int:
@@ -83,7 +85,7 @@ def plan(width: int, height: int, people: int = 4) -> RoomPlan:
             rows[part] += step
             spare -= step
     rows["floor"] += max(0, spare)
-    return RoomPlan(width, height, **rows)
+    return RoomPlan(width, height, **rows, crowded=crowded)
 
 
 class Grid:
@@ -101,6 +103,7 @@ class Grid:
         self._scale = plan.width / max(0.1, end - self._from)
         self._top = room.front.y
         self._depth = max(0.1, near - room.reach - room.front.y)
+        self._near = near
         self._plan = plan
         self.centres = [self.column(x) for x in seats]
         middles = [round(((a + b) / 2 - self._from) * self._scale) for a, b in pairwise(seats)]
@@ -115,6 +118,10 @@ class Grid:
         if not cards:
             return start, end
         return max(0, min(start, cards[0] - 2)), min(self._plan.width - 1, max(end, cards[-1] + 2))
+
+    def on_floor(self, point: Point) -> bool:
+        """Say whether a place in m is in front of the table, where there is floor to draw on."""
+        return point.y < self._near
 
     def column(self, x: float) -> int:
         """Return the column, in cells, of a place in m."""
@@ -142,6 +149,7 @@ class PlanLine:
     def __init__(self, width: int) -> None:
         self._cells = [" "] * width
         self._inks = ["text"] * width
+        self._kept = range(0)
 
     def put(self, column: int, text: str, ink: str) -> None:
         """Place text from a column on; what lies outside the line is cut."""
@@ -162,7 +170,22 @@ class PlanLine:
         line = PlanLine(0)
         line._cells = self._cells[:]
         line._inks = self._inks[:]
+        line._kept = self._kept
         return line
+
+    def keep(self, start: int, end: int) -> None:
+        """Let no mark be put on the columns from `start` to before `end`."""
+        self._kept = range(start, end)
+
+    def mark(self, column: int, character: str, ink: str) -> None:
+        """Place a mark, except where something stands that has to stay readable."""
+        if column not in self._kept:
+            self.put(column, character, ink)
+
+    def within(self, column: int, start: int, end: int, text: str, ink: str) -> None:
+        """Place text around a column, moved as far as it has to be to stay from start to end."""
+        at = column - (cell_len(text) - 1) // 2
+        self.put(max(start, min(at, end - cell_len(text))), text, ink)
 
     def centre(self, column: int, text: str, ink: str) -> None:
         """Place text around a column, within the line."""

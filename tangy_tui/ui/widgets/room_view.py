@@ -167,7 +167,8 @@ class RoomView(Inked):
         self._marks = {}
         if self._grid is not None:
             for point, character, ink in marks:
-                self._marks[self._grid.floor(point)] = (character, ink)
+                if self._grid.on_floor(point):
+                    self._marks[self._grid.floor(point)] = (character, ink)
         self._draw_again()
 
     def say(self, speech: str) -> None:
@@ -348,7 +349,7 @@ class RoomView(Inked):
         if marked:
             line = line.copy()
             for x, (character, ink) in marked:
-                line.put(x, character, ink)
+                line.mark(x, character, ink)
         x, top = self._sprite_at
         if not top <= y < top + self._plan.sprite:
             return line

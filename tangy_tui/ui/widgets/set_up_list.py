@@ -18,6 +18,11 @@ LABEL = 22
 STATE = 6
 """Columns of whether a person is here, at one of several tables."""
 
+TURNS = "  ← →"
+"""Says at the cursor that left and right change a choice."""
+KEYED = ("activity", "patterns")
+"""Choices that left and right do not change."""
+
 LineKind = Literal["head", "person", "choice", "check"]
 
 
@@ -191,8 +196,12 @@ class SetUpList(Choosable):
         if line.seat is not None:
             tables = 1 + max(one.seat[0] for one in self.choices if one.seat is not None)
             return tuple(span for one in lines for span in self._sitting(one, width // tables))
-        value = shorten(clean(line.value), max(0, width - LABEL - 3))
-        return ((f"  {fit(clean(line.label), LABEL)} ", "text"), (value, line.ink))
+        there = line == self.chosen
+        turns = TURNS if there and line.kind == "choice" and line.id not in KEYED else ""
+        value = shorten(clean(line.value), max(0, width - LABEL - 3 - len(turns)))
+        mark = "▸ " if there else "  "  # the stripe of colour alone is not seen by everybody
+        label = fit(clean(line.label), LABEL)
+        return ((f"{mark}{label} ", "text"), (value, line.ink), (turns, "dim"))
 
     def _sitting(self, line: SetUpLine, width: int) -> tuple[Span, ...]:
         """Write a person at a table."""

@@ -121,15 +121,22 @@ class StaffPanel(RowView, can_focus=True):
         if left := len(self._people) - len(shown):
             shown = (*shown[:-1], (more_words(left + 1), "", "dim"))
         slot = width // across
+        longest = max((cell_len(clean(name)) for name, how, _ in shown if how), default=0)
+        names = min(NAME if slot >= SLOT else SHORT_NAME, longest)
         return [
-            tuple(span for person in shown[at : at + across] for span in self._person(person, slot))
+            tuple(
+                span
+                for person in shown[at : at + across]
+                for span in self._person(person, slot, names)
+            )
             for at in range(0, len(shown), across)
         ]
 
     @staticmethod
-    def _person(person: PersonLine, width: int) -> Row:
+    def _person(person: PersonLine, width: int, columns: int) -> Row:
         name, how, ink = person
-        columns = NAME if width >= SLOT else SHORT_NAME
+        if not how:  # how many more there are
+            return ((fit(clean(name), width), ink),)
         how = how if width >= SLOT else how.partition(",")[0]
         return (
             (fit(clean(name), columns) + " ", "strong" if ink == "warn" else "text"),
