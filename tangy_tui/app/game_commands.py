@@ -144,10 +144,15 @@ class AskFor:
 
 @dataclass(frozen=True, slots=True)
 class Tell:
-    """Tell what a person, by id, says or does; None: the one whom the game waits for."""
+    """Tell what a person, by id, says or does; None: the one whom the game waits for.
+
+    `sure` is the likelihood that it is so, `source` where it comes from.
+    """
 
     person: str | None
     words: str
+    sure: float = 1.0
+    source: str = "staff"
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tangy_hw.robot_process.stop_latch import STAFF
+from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.typed_observations import about, sayable
 from tangy_tui.app.game_commands import (
     LONGEST_DRIVE,
@@ -117,10 +118,12 @@ class RobotControls:
             return self._tell_of_card(robot.eyes, command)
         if not isinstance(robot, DeclaredLiveWorld):
             return StaffNote("nothing to tell")
-        unclear = said.rstrip().endswith(UNCLEAR)
-        if not robot.tell(command.person, said, UNCLEAR_SURE if unclear else 1.0):
+        unclear = said.rstrip().endswith(UNCLEAR) or command.sure < CERTAIN
+        sure = min(command.sure, UNCLEAR_SURE if unclear else 1.0)
+        if not robot.tell(command.person, said, sure, command.source):
             return StaffNote("not told", words=", ".join(sayable(robot.game)))
-        self._note(f"staff told of {command.person or 'the group'}: {said}")
+        teller = "a voice" if command.source == "speech" else "staff"
+        self._note(f"{teller} told of {command.person or 'the group'}: {said}")
         asked = robot.may_ask_again(command.person or about(robot.game))
         if unclear and not asked:  # staff are asked in their place
             return StaffNote("not told", words=", ".join(sayable(robot.game)))

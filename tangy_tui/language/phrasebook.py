@@ -15,6 +15,7 @@ from typing import Literal
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.person import Person
 from tangy_profiles.state import EVERYBODY
 from tangy_tui.language.words import Words, bare, clean, spoken, words_of
@@ -64,6 +65,8 @@ class Phrases:
         self._order = tuple(activity.behaviours)
         self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
         """The behaviours as they are asked about, as it is said."""
+        self.answers = _answers_in(activity)
+        """What people may answer in a game, as it is said."""
         self.numbers = _numbers_of(people)
         self.names = _names_of(people)
         self.seats = _seats_of(people)
@@ -212,3 +215,22 @@ def _names_of(people: Sequence[Person]) -> dict[Words, str]:
 def _seats_of(people: Sequence[Person]) -> dict[Words, str]:
     """Return ids by the ways to call their seats."""
     return {words_of(seat): person.id for person in people for seat in person.seats}
+
+
+def _answers_in(activity: Activity) -> tuple[str, ...]:
+    """Return everything people may answer aloud: the options of each item, and right answers.
+
+    Letters alone are left out: B, C and D sound too much alike to be judged.
+    """
+    if not isinstance(activity, DeclaredActivity):
+        return ()
+    items = activity.declaration.items
+    asked = [f for f in activity.declaration.facts.values() if f.checks and "speech" in f.sources]
+    columns = dict.fromkeys(c for fact in asked for c in (*fact.options, fact.checks))
+    texts = (
+        spoken(words_of(clean(way)))
+        for row in range(len(items.rows))
+        for column in columns
+        for way in items.value(row, column).split("|")
+    )
+    return tuple(dict.fromkeys(text for text in texts if len(text) > 1))

@@ -74,8 +74,7 @@ class SpeechInput:
         self.hands_free = hands_free
         self.answers = answers
         self.meter = Meter()
-        self.words = ""
-        """The words so far of what is being said."""
+        self.words = ""  # so far of what is being said
         self.sound = b""
         """The last utterance that was heard, 16 kHz mono s16le."""
         self.tell: Callable[[HearingNote], None] = lambda note: None
@@ -373,8 +372,9 @@ class SpeechInput:
     def _understand(self, evidence: AcousticEvidence) -> Heard | None:
         heard: Heard | None
         if self._asking:
+            people = self._phrasebook.table.answers if self.steering else ()
             heard, told = replied(
-                evidence, self._settings, self._choices, self.steering, answers=self.answers
+                evidence, self._settings, self._choices, self.steering, people, answers=self.answers
             )
         else:
             heard, told = commanded(evidence, self._phrasebook, self._settings, live=self.live)

@@ -49,6 +49,12 @@ OWN_NAME = {"tangy": ("T AE NG IY",)}
 LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The margins from which words are an answer: where the grammar finds it too, and where not."""
 
+BOTH_HEARD, ONE_HEARD = 0.95, 0.5
+"""How likely an answer of people is that both decoders hear, and one that only one of them hears.
+
+Chosen, not fitted: the first is judged, and the second is below what is judged.
+"""
+
 LEAST_STEERING = -0.6
 """The margin from which words steer the program where the grammar does not find them, too."""
 
@@ -69,10 +75,11 @@ def wanted(
     teaching, games = (
         steering_texts(ways) if learnt else () for ways in (WHILE_TEACHING, IN_GAMES)
     )
+    given = phrasebook.table.answers if learnt else ()
     answers = (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions)
     return Wanted(
         (*(phrasebook.spoken() if phrases is None else phrases), *STOPS, *teaching),
-        (*answers, *STOPS, *games),
+        (*answers, *STOPS, *games, *given),
         STOPS,
         {**OWN_NAME, **phrasebook.pronunciations()},
         settings,
@@ -82,9 +89,9 @@ def wanted(
     )
 
 
-def sounds_of(phrasebook: Phrasebook) -> tuple[object, object]:
-    """Return what is to be heard of a phrasebook: two that have the same are listened for alike."""
-    return phrasebook.spoken(), phrasebook.pronunciations()
+def sounds_of(phrasebook: Phrasebook) -> tuple[object, ...]:
+    """Return what is to be heard of a phrasebook: those with the same are listened for alike."""
+    return phrasebook.spoken(), phrasebook.pronunciations(), phrasebook.table.answers
 
 
 def understand(
@@ -165,20 +172,40 @@ def replied(
     settings: EvidenceSettings,
     choices: Sequence[str] = (),
     steering: Collection[Steering] = (),
+    people: Collection[str] = (),
     *,
     answers: bool,
 ) -> tuple[Reply | Say | StopCommand | None, HearingKind | None]:
     """Return what an utterance answers to a question, and what is to be said of it, if any.
 
     Where no `answers` are taken, only what stops the robot counts, and what steers the program in
-    one of the ways of `steering`; `choices` are the words of what can be chosen instead.
+    one of the ways of `steering`; `choices` are the words of what can be chosen instead, and
+    `people` what people may answer while the program itself does not ask anything.
     """
     said = answer(evidence, settings, choices)
     if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):
         return Say(evidence.words, 1.0, None), None
+    if answers and said is None and (given := answered(evidence, settings, people)) is not None:
+        return given, None
     none = answers and said is None and evidence.seconds
     told: HearingKind | None = "no answer" if none else None
     return (said if answers or isinstance(said, StopCommand) else None), told
+
+
+def answered(
+    evidence: AcousticEvidence, settings: EvidenceSettings, people: Collection[str]
+) -> Say | None:
+    """Return which of the possible answers of people an utterance is, and how sure that is.
+
+    The grammar knows whole answers only, so that its phrase counts where the words are another
+    answer or none; then the answer is never sure, and the person is asked again.
+    """
+    phrase, words = evidence.phrase, evidence.words
+    text = words if words in people else phrase
+    quiet = evidence.margin - settings.shift < LEAST_ANSWER
+    if text not in people or quiet or yes_or_no(words) is not None:
+        return None
+    return Say(text, BOTH_HEARD if words == phrase else ONE_HEARD, None)
 
 
 def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str, float]:

@@ -91,7 +91,7 @@ class Hearing:
         self._failed = ""
         self._state = ""
         self._about: VerifyingDialog | None = None  # the question when somebody began to speak
-        self._steer: Callable[[str], None] | None = None
+        self._steer: Callable[[str, float], None] | None = None
         ears.changed = self._changed
         ears.tell = lambda note: self.tell(hearing_words(note))
 
@@ -151,8 +151,11 @@ class Hearing:
             self._understood = spoken
             self.ears.understand_by(spoken)
 
-    def steer_by(self, steer: Callable[[str], None] | None) -> None:
-        """Give what steers a game to this while nobody takes commands; None: to nobody any more."""
+    def steer_by(self, steer: Callable[[str, float], None] | None) -> None:
+        """Give what steers a game, with how sure it is, to this while nobody takes commands.
+
+        None: to nobody any more.
+        """
         from tangy_tui.language.steering import IN_GAMES
 
         self._steer = steer
@@ -230,10 +233,10 @@ class Hearing:
                 self.tell(f"Heard: {text}.", "warn")
             case Reply():
                 self._answer(heard)
-            case Say(text, commands=None) if self._steer is not None and not self._free:
+            case Say(text, sure, commands=None) if self._steer is not None and not self._free:
                 self.tell(f"Heard: {text}.")
                 if self.on:
-                    self._steer(text)
+                    self._steer(text, sure)
             case Say() if self._listeners and self.on:
                 self._kept.append(heard)
                 self.look()
@@ -296,7 +299,7 @@ def hearing_of(app: object) -> Hearing | None:
 class HearingLine(MicrophoneLine):
     """The microphone of the program on one line, for as long as it is on a screen."""
 
-    def __init__(self, hearing: Hearing, steer: Callable[[str], None] | None = None) -> None:
+    def __init__(self, hearing: Hearing, steer: Callable[[str, float], None] | None = None) -> None:
         """Make the line; `steer` takes what steers the screen while it takes no commands."""
         super().__init__(hearing.ears, lambda: hearing.expects)
         self._hearing = hearing

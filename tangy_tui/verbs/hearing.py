@@ -30,7 +30,7 @@ HandsFree = Annotated[
     bool, typer.Option("--hands-free", help="Listen all the time, not only after t.")
 ]
 SpokenAnswers = Annotated[
-    bool, typer.Option("--spoken-answers", help="Also take yes and no by voice.")
+    bool, typer.Option("--spoken-answers", help="Also take yes, no and people's answers by voice.")
 ]
 Mode = Annotated[
     str | None,

@@ -47,3 +47,23 @@ def test_the_robot_asks_again_and_after_the_cap_staff_are_asked() -> None:
     assert world.observe().stage == "listen"
     assert controls.do(Tell(None, "b")).kind == "told"
     assert world.observe().stage == "judge"
+
+
+def test_a_voice_that_is_not_sure_is_not_judged_and_one_that_is_sure_is() -> None:
+    link, activity = FakeLink(("user1", "user2")), declared("trivia")
+    world = DeclaredLiveWorld(
+        activity, ("user1", "user2"), cast(RobotLink, link), load_robot(), load_room(), seed=1
+    )
+    world.begin()
+    noted: list[str] = []
+    controls = RobotControls(world, noted.append, lambda: False, paced=False)
+    for name, target in (("welcome everyone", None), ("ask question", "user1")):
+        world.execute(activity.action(activity.behaviour(name), target, None))
+    option = activity.declaration.items.value(world.game.row, "a")
+    assert controls.do(Tell(None, option, 0.5, "speech")).kind == "told"
+    assert world.observe().stage == "listen"
+    done = world.execute(activity.action(activity.behaviour("allow time"), None, None))
+    assert [(one.source, one.asked_again) for one in done.unclear] == [("speech", True)]
+    assert controls.do(Tell(None, option, 0.95, "speech")).kind == "told"
+    assert world.observe().stage == "judge"
+    assert any("voice" in note for note in noted)

@@ -72,8 +72,8 @@ class PlayPanels(TangyScreen[Tally]):
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         raise NotImplementedError
 
-    def steer(self, text: str) -> None:
-        """Do what somebody said that steers the game."""
+    def steer(self, text: str, sure: float) -> None:
+        """Do what was said that steers the game, or is a person's answer (`sure`: likelihood)."""
         raise NotImplementedError
 
     def _fail(self, reason: str) -> None:

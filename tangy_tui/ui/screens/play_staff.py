@@ -22,11 +22,13 @@ from tangy_tui.app.game_commands import (
     Proposal,
     StaffNote,
     StopRobot,
+    Tell,
 )
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
+from tangy_tui.language.steering import steering_of
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
@@ -113,8 +115,14 @@ class PlayStaff(PlayPanels):
                 self._tell_now(said, "warn" if result.kind in REFUSALS else "dim")
         self._tell([result for result in results if not isinstance(result, StaffNote)])
 
-    def steer(self, text: str) -> None:
-        """Pause, go on or call again, as somebody said; after a STOP only a key goes on."""
+    def steer(self, text: str, sure: float) -> None:
+        """Pause, go on or call again, or take an answer, as somebody said.
+
+        After a STOP only a key goes on. `sure` is the likelihood that it was said.
+        """
+        if steering_of(text) is None:  # an answer of the person whom the game waits for
+            self._do(Tell(None, text, sure, "speech"))
+            return
         command = read_command(text, lambda name: self._workspace.find_person(name).id)
         if isinstance(command, GoOn) and not self.control.going:
             if not self._refused():

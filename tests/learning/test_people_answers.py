@@ -1,0 +1,65 @@
+"""People's spoken answers: which words are one, and how sure it is that they were said."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.declared.judging import CERTAIN
+from tangy_profiles.person import load_people
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.steering import IN_GAMES
+from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence
+from tangy_tui.speech.understanding import LEAST_ANSWER, replied, wanted
+from tests.support.declared import declared
+
+GIVEN = ("the dove", "the crow", "no milk")
+
+
+def taken(words: str, phrase: str, margin: float = 0.0) -> Say | Reply | None:
+    evidence = AcousticEvidence(words, phrase, margin, 1.0, 1.0)
+    said, _ = replied(evidence, USUAL, (), IN_GAMES, GIVEN, answers=True)
+    assert said is None or isinstance(said, Say | Reply)
+    return said
+
+
+@pytest.mark.parametrize(
+    ("words", "phrase", "margin", "judged"),
+    [
+        ("the dove", "the dove", 0.0, True),
+        ("the dove", "", 0.0, False),  # only one of the decoders heard it
+        ("above", "the dove", 0.0, False),
+        ("the crow", "the dove", 0.0, False),
+    ],
+)
+def test_what_both_decoders_hear_is_judged_and_what_one_hears_is_asked_again(
+    words: str, phrase: str, margin: float, judged: bool
+) -> None:
+    said = taken(words, phrase, margin)
+    assert isinstance(said, Say)
+    assert said.text == (words if words in GIVEN else phrase)
+    assert (said.confidence >= CERTAIN) is judged
+
+
+def test_other_words_and_other_sounds_are_no_answer() -> None:
+    assert taken("what a lovely day", "") is None
+    assert taken("the dove", "the dove", LEAST_ANSWER - 0.1) is None
+
+
+def test_a_yes_is_none_of_their_answers() -> None:
+    assert taken("yes please", "yes please") == Reply(True)
+    assert taken("yes please", "the dove") is None
+
+
+def test_without_spoken_answers_nothing_of_people_is_taken() -> None:
+    evidence = AcousticEvidence("the dove", "the dove", 0.0, 1.0, 1.0)
+    assert replied(evidence, USUAL, (), IN_GAMES, GIVEN, answers=False) == (None, None)
+
+
+def test_what_can_be_answered_is_listened_for_but_no_single_letters() -> None:
+    trivia = Phrasebook(declared("trivia"), load_people(2))
+    options = trivia.table.answers
+    assert "a bakery" in options
+    assert all(len(text) > 1 for text in options)
+    assert set(options) <= set(wanted(trivia, USUAL).answers)
+    assert Phrasebook(declared("exercises"), load_people(2)).table.answers == ()
