@@ -44,6 +44,8 @@ class Behaviour:
     needs: tuple[str, ...]
     phrases: tuple[str, ...]
     keywords: tuple[tuple[str, ...], ...]
+    wordings: tuple[str, ...] = ()
+    """Other ways to ask for it: the understanding learns from them, nothing listens for them."""
     to: tuple[str, ...] = ()
     """In activities declared by facts: the selectors of its possible persons."""
 
@@ -105,6 +107,7 @@ def read_behaviour(entry: Table, strategies: dict[str, str], states: list[str]) 
         keywords=tuple(
             tuple(_spoken(entry, "keywords", k).split()) for k in entry.words("keywords")
         ),
+        wordings=tuple(_spoken(entry, "wordings", w) for w in entry.words("wordings", None, ())),
     )
 
 

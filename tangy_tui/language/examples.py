@@ -24,6 +24,7 @@ ASKS = "ask"  # how the question of a behaviour begins that asks a person to do 
 ARTICLES = frozenset(("a", "an", "the", "any", "next", "another"))
 MADE = ARTICLES - {"the"}  # before what a behaviour makes, rather than what it is done to
 EVERY = 3  # each phrase is put into one of so many templates
+WORDED = 10  # each other wording is put into one of so many templates of talk
 
 
 class Example(NamedTuple):
@@ -59,6 +60,9 @@ def _asking(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
     for place, phrase in enumerate(own):
         for form in known["asking"][place % EVERY :: EVERY]:
             yield _fill(form, do=phrase, doing=_doing(phrase))
+    for text in behaviour.wordings:
+        for form in known["wordings"]:
+            yield _fill(form, do=text)
     for thing in _things(behaviour, MADE):
         for form in known["things"]:
             yield form.replace("{thing}", thing)
@@ -103,6 +107,7 @@ def _talk(activity: Activity) -> Iterator[str]:
         for place, form in enumerate(talk["about"]):
             if "{do}" in form:
                 some = phrases[place % EVERY :: EVERY] or phrases[:1]
+                some += behaviour.wordings[place % WORDED :: WORDED]
                 yield from (form.replace("{do}", phrase) for phrase in some)
             elif "{thing}" in form:
                 yield from (form.replace("{thing}", thing) for thing in things)

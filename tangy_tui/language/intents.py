@@ -17,7 +17,7 @@ from tangy_profiles.activity import Activity
 from tangy_tui.language.examples import examples_of, templates
 from tangy_tui.language.intent_model import IntentModel, UnreadableModel, read_model
 
-VERSION = 1
+VERSION = 2
 """Counted up when examples, features or the fit change: what was learnt before is learnt anew."""
 SHIPPED = Path(__file__).parent / "learnt"
 MOST = 32
@@ -87,7 +87,8 @@ class Intents:
 def digest_of(activity: Activity) -> str:
     """Return the digest that a model is kept by: of all that its examples are made of."""
     own = [
-        (b.name, b.phrases, b.question, b.effect, b.persuades) for b in activity.behaviours.values()
+        (b.name, b.phrases, b.wordings, b.question, b.effect, b.persuades)
+        for b in activity.behaviours.values()
     ]
     made_of = json.dumps([VERSION, templates(), activity.object, own])
     return hashlib.sha256(made_of.encode()).hexdigest()[:32]

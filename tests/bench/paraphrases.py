@@ -2,7 +2,8 @@
 
 Run by hand: `python -m tests.bench.paraphrases`. The sentences of `sentences.py` at even places set
 the limits of `paraphrases` and `understanding`, the others are quoted; `--staff` counts the set of
-`staff_sayings.toml`, which chose nothing. `--phrases` counts phrases and keywords alone, and
+`staff_requests.toml`, which chose nothing, and `--seen` that of `staff_sayings.toml`, which showed
+which wordings were missing. `--phrases` counts phrases and keywords alone, and
 `--show` lists what went wrong (of the sentences that set limits only).
 """
 
@@ -25,7 +26,8 @@ from tangy_tui.speech.evidence import USUAL
 from tangy_tui.speech.understanding import clearly_heard, understand
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 
-STAFF = Path(__file__).parent / "staff_sayings.toml"
+STAFF = Path(__file__).parent / "staff_requests.toml"
+SEEN = Path(__file__).parent / "staff_sayings.toml"
 OUTCOMES = ("right", "offered", "wrong", "misled", "nothing")
 
 
@@ -46,9 +48,9 @@ def written_sentences(half: int) -> list[Sentence]:
     return [one for listed in (asked, *others) for one in listed[half::2]]
 
 
-def staff_sentences() -> list[Sentence]:
-    """Return the sentences of the set that chose nothing."""
-    read = tomllib.loads(STAFF.read_text(encoding="utf-8"))
+def staff_sentences(file: Path) -> list[Sentence]:
+    """Return the sentences of a set in a file."""
+    read = tomllib.loads(file.read_text(encoding="utf-8"))
     found = [
         Sentence("paraphrase", text, behaviour)
         for behaviour, texts in read["requests"].items()
@@ -115,13 +117,15 @@ def main() -> None:
     """Print the tables."""
     options = argparse.ArgumentParser(description="Measure what is understood of paraphrases.")
     options.add_argument("--staff", action="store_true")
+    options.add_argument("--seen", action="store_true")
     options.add_argument("--phrases", action="store_true")
     options.add_argument("--show", action="store_true")
     chosen = options.parse_args()
     learnt = None if chosen.phrases else Intents().model
     book = Phrasebook(load_activity("bingo"), load_room().placed(load_people(4)), learnt)
-    if chosen.staff:
-        table(staff_sentences(), book)
+    if chosen.staff or chosen.seen:
+        file = STAFF if chosen.staff else SEEN
+        table(staff_sentences(file), book, show=chosen.show and chosen.seen)
         return
     for name, half in (("set the limits", 0), ("quoted", 1)):
         print(name)

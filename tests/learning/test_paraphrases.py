@@ -33,6 +33,9 @@ REQUESTS = [
     ("would you say hello to all of them", "greeting"),
     ("could you draw another number", "call number"),
     ("tell her to take the wrong markers off", "remove markers"),
+    ("please make us laugh", "joke"),
+    ("say something kind to him", "encourage"),
+    ("she won, clap for the winner", "celebrate"),
 ]
 VISITS = [
     ("player one needs a hand", "user1"),
@@ -160,3 +163,11 @@ def test_a_mention_is_one_token_whoever_it_is() -> None:
         assert found.words == ("look", "at", SOMEBODY, "card")
         assert found.users == {"user2"}
     assert mentions.find(words_of("look at user 9")).strangers
+
+
+def test_other_wordings_are_learnt_but_not_listened_for() -> None:
+    examples = {example.words: example.behaviour for example in examples_of(BINGO)}
+    for behaviour in BINGO.behaviours.values():
+        for text in behaviour.wordings:
+            assert examples[words_of(text)] == behaviour.name
+            assert words_of(text) not in {phrase.words for phrase in BOOK.table.all()}
