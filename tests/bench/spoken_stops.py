@@ -1,11 +1,12 @@
 """How many spoken sentences that stop the robot do so, and how many others.
 
 Run by hand: `python -m tests.bench.spoken_stops` (needs flite, festival and espeak-ng). The
-sentences of `stop_sayings.toml` set the limits of `stop_decoder` (`--set`); figures are quoted on
-those of `stop_quotes.toml`, which chose nothing. Each is said by some of the voices, in turn. White
-noise, or the babble of other voices, is added to whole sentences. Other talk is what asks for
-nothing, or for something else, and holds no word of stopping. Everything goes through the real
-decoder. A synthetic voice is not a person; those of espeak are the hardest to hear.
+sentences of `stop_sayings.toml` and `stop_quotes.toml` set the limits of `stop_decoder` (`--set`);
+figures are quoted on those of `stop_third.toml`, which chose nothing. Each is said by some of the
+voices, in turn. White noise, or the babble of other voices, is added to whole sentences. Other talk
+is what asks for nothing, or for something else, and holds no word of stopping. Everything goes
+through the real decoder. A synthetic voice is not a person; those of espeak are the hardest to
+hear.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ from tests.bench.sentences import FAR, NEAR, WORDINGS
 from tests.bench.speech import BOOK
 
 HERE = Path(__file__).parent
-SETS, QUOTES = HERE / "stop_sayings.toml", HERE / "stop_quotes.toml"
+SETS = HERE / "stop_sayings.toml", HERE / "stop_quotes.toml"
+QUOTES = HERE / "stop_third.toml"
 FESTIVAL = {"kal_diphone": "kal_diphone", "slt_hts": "cmu_us_slt_arctic_hts"}
 VOICES = (
     *("slt", "rms", "awb", "kal", *FESTIVAL, "en-gb", "en-gb+m3", "en-us+f2"),
@@ -134,7 +136,8 @@ def main() -> None:
     chosen = options.parse_args()
     decoder = make_decoder(wanted(BOOK, USUAL))
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
-    said = list(sayings(SETS if chosen.set else QUOTES, chosen.voices))[:: chosen.every]
+    files = SETS if chosen.set else (QUOTES,)
+    said = [one for file in files for one in sayings(file, chosen.voices)][:: chosen.every]
     with tempfile.TemporaryDirectory() as folder:
         voices = Voices(Path(folder))
         voices.say(said)
