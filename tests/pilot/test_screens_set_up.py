@@ -90,6 +90,15 @@ async def test_the_line_of_the_cursor_is_marked_and_says_which_keys_change_it(
         await until_shown(pilot, lambda: "▸ Winners                one  ← →" in pilot.text())
 
 
+async def test_every_pattern_is_named_beside_the_room(run: Run, setting: Setting) -> None:
+    patterns = setting.workspace.activity.rules.patterns
+    async with run(app=setting.program(), size=(120, 40)) as pilot:
+        last = patterns[-1].name.split()[-1]
+        await until_shown(pilot, lambda: last in pilot.text())
+        words = " ".join(pilot.text().split())
+        assert [one.name for one in patterns if one.name.split()[-1] not in words] == []
+
+
 async def test_begin_switches_on_and_begins(run: Run, setting: Setting) -> None:
     async with run(app=setting.program()) as pilot:
         await opened(pilot)

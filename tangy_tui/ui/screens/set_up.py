@@ -9,6 +9,7 @@ from functools import partial
 from time import monotonic
 from typing import ClassVar
 
+from rich.cells import cell_len
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
@@ -35,6 +36,7 @@ from tangy_tui.ui.panels import WIDE, key_line, panel
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.set_up_list import SetUpLine, SetUpList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.wrapping import wrap
 
 LOOK_SECONDS = 0.5
 """Between two looks at what is ready."""
@@ -192,8 +194,12 @@ class SetUpScreen(TangyScreen[bool]):
             rows = [row for row in rows if row[0] != "pace"]
         if not rules.patterns:
             rows = [row for row in rows if row[0] not in ("patterns", "several", "visits")]
-        head = SetUpLine("head", "game", text.GAME, text.pattern_keys(setup))
-        return [head, *(SetUpLine("choice", id, label, value) for id, label, value in rows)]
+        width = self.query_one(SetUpList).content_size.width - cell_len(text.GAME) - 3
+        first, *more = wrap(text.pattern_keys(setup), max(20, width)) or [""]
+        heads = [SetUpLine("head", "game", text.GAME, first)]
+        heads += [SetUpLine("head", f"game{at}", " " * cell_len(text.GAME), one)
+                  for at, one in enumerate(more)]  # fmt: skip
+        return [*heads, *(SetUpLine("choice", id, label, value) for id, label, value in rows)]
 
     def _checks(self) -> list[SetUpLine]:
         lines = [SetUpLine("head", "checks", text.READY, "")]
