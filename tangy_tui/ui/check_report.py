@@ -52,7 +52,7 @@ def print_checked(checked: CheckedFile, activity: Activity | None) -> None:
         )
         console.print(_verdict(checked.file, not checked.warnings, words))
     for line in checked.warnings:
-        console.print(Text(f"  look at: {line}", style="yellow"))
+        console.print(Text(f"  hint: {line}", style="yellow"))
     for line in checked.notes:
         console.print(Text(f"  {line}"))
 
@@ -100,7 +100,7 @@ def _print_left(console: Console, what: str, words: Sequence[str]) -> None:
 
 
 def _verdict(file: str, well: bool, words: str) -> Text:
-    mark = Text("ok       " if well else "look at  ", style="green" if well else "yellow")
+    mark = Text("ok       " if well else "hints    ", style="green" if well else "yellow")
     return mark.append(plain(f"{file}: {words}"), style="")
 
 

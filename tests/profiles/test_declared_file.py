@@ -72,6 +72,8 @@ def test_every_mistake_is_told_at_once_with_its_place_and_the_nearest_word(folde
         ('is open" },', 'is open", when = ["open is no"] },', "the last stage"),
         ('does = ["finish"]', "does = []", "'finish'"),
         ("{hint}", "{hunt}", "{hunt}"),
+        ("repeat question -> first asking", "repeat question -> quietest", "among its 'to'"),
+        ('"set open no", "next turn"', '"invite open"', "needs a value"),
         ('sees = ["clock", "hinted"]', 'sees = ["score"]', "bands"),
         ('when = ["items is over"]', 'when = ["any items is over"]', "each player"),
         ('to = "whose turn"', 'to = "whose trun"', "'whose turn'"),
@@ -91,6 +93,27 @@ def test_what_cannot_be_is_refused_by_name(folder: Path, old: str, new: str, tol
 @pytest.mark.parametrize("name", DECLARED)
 def test_what_ships_has_80_lines_at_most(name: str) -> None:
     assert shipped_activities()[name].read_text(encoding="utf-8").count("\n") <= 80
+
+
+def first_right(folder: Path, right: str) -> str:
+    """Write the right answer of the first item, with Saturn's letter or words, into the file."""
+    lines = (folder / "trivia.csv").read_text(encoding="utf-8").splitlines()
+    lines[1] = f"Which planet has rings?,Mars,Saturn,Venus,{right},It has rings."
+    (folder / "trivia.csv").write_text("\n".join(lines), encoding="utf-8")
+    shutil.copy(SHIPPED, folder / "mine.toml")
+    return read_declaration(folder / "mine.toml").items.value(0, "right")
+
+
+@pytest.mark.parametrize("right", ["Saturn", "saturn", "b", "B"])
+def test_a_right_answer_is_the_words_of_an_option_or_its_letter(folder: Path, right: str) -> None:
+    assert first_right(folder, right).casefold() == "saturn"
+
+
+def test_a_right_answer_that_is_no_option_is_a_mistake(folder: Path) -> None:
+    with pytest.raises(MistakesError) as caught:
+        first_right(folder, "d")
+    (line,) = caught.value.lines
+    assert "row 2: right 'd' is none of its options" in line
 
 
 def test_a_mark_of_the_byte_order_and_blank_lines_are_no_items(folder: Path) -> None:

@@ -131,4 +131,6 @@ class Phrasing:
 
     def _no_value(self, fact: Fact, value: str) -> str:
         near = nearest(value, fact.values)
+        if not value:
+            return f"{fact.name!r} needs a value; {near}"
         return f"{value!r} is not a value of {fact.name!r}; {near}"

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 
-from tangy_profiles.declared.model import Items
+from tangy_profiles.declared.judging import LETTERS, plain_words
+from tangy_profiles.declared.model import Fact, Items
+from tangy_profiles.declared.section import Section
 from tangy_profiles.declared.source import SourceText
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.given_file import read_given
@@ -61,6 +64,38 @@ def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[
                 source.wrong(key, f"{plain(path.name)}: row {number} cannot be shown")
                 return []
     return rows
+
+
+def with_right_options(top: Section, items: Items, facts: Iterable[Fact]) -> Items:
+    """Return items in which each right answer is the words of an option.
+
+    Authors may write its letter, or the name of its column, in place of its words. A right answer
+    that is no option is noted as a mistake: nobody could give it.
+    """
+    for fact in facts:
+        if fact.checks and fact.options:
+            rows = tuple(_right_in(top, items, fact, number) for number in range(len(items.rows)))
+            items = replace(items, rows=rows)
+    return items
+
+
+def _right_in(top: Section, items: Items, fact: Fact, number: int) -> tuple[str, ...]:
+    """Return a row whose right answer is the words of an option; note a mistake in it."""
+    row = items.rows[number]
+    options = [items.value(number, column) for column in fact.options]
+    known = [plain_words(option) for option in options]
+    right = items.value(number, fact.checks)
+    ways = [plain_words(way) for way in right.split("|")]
+    if set(ways) & set(known):
+        return row
+    names = dict(zip(LETTERS, options, strict=False))
+    names |= dict(zip(map(plain_words, fact.options), options, strict=True))
+    if (chosen := names.get(plain_words(right))) is None:
+        problem = f"row {number + 2}: {fact.checks} {right!r} is none of its options"
+        top.wrong("items", f"{problem}; write the words of one, or its letter", right)
+        return row
+    place = items.columns.index(fact.checks)
+    return (*row[:place], chosen, *row[place + 1 :])
 
 
 def order_of(items: Items, uniform: Callable[[], float]) -> list[int]:

@@ -10,7 +10,7 @@ from typing import cast
 from tangy_profiles.declared.behaviour_reader import SLOT, read_behaviours
 from tangy_profiles.declared.conditions import Phrasing
 from tangy_profiles.declared.facts_reader import read_facts, read_words
-from tangy_profiles.declared.items import read_csv
+from tangy_profiles.declared.items import read_csv, with_right_options
 from tangy_profiles.declared.model import (
     Declaration,
     DeclaredBehaviour,
@@ -62,6 +62,7 @@ def _read(top: Section, path: Path) -> Declaration:
     top.only(*KEYS)
     items = _read_items(top, path.parent)
     facts = read_words(top, read_facts(top, items.columns))
+    items = with_right_options(top, items, facts.values())
     phrasing = Phrasing(facts)
     name = top.text("name")
     title = top.text("title", name[:1].upper() + name[1:])
@@ -209,6 +210,8 @@ def _read_expected(
             top.wrong("expected", f"{behaviour!r} is not a behaviour; {near}", last)
         if to and to not in SELECTORS:
             top.wrong("expected", f"{to!r} is not known; {nearest(to, SELECTORS)}", last)
+        elif to and behaviour in behaviours and to not in behaviours[behaviour].to:
+            top.wrong("expected", f"{behaviour!r} lacks {to!r} among its 'to'", last)
         chosen = cast(Selector, to) if to in SELECTORS else None
         found.append(
             Expectation(stage, phrasing.all_of(top, "expected", conditions), behaviour, chosen)
