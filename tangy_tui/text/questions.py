@@ -18,7 +18,7 @@ SAID_TOO_EARLY = "You said that before the question was on the screen."
 TOO_EARLY = "Too early: please answer again."
 DID_YOU_SAY = "Did you say: "
 NO_QUESTION = "There is no question open: give a command."
-ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
+ANSWER_HELP = "Please answer Y to do it, or N for another command."
 LEAVE = "leave without executing it"
 ANSWER_MEANINGS = (
     ("y", "yes, execute it"),

@@ -119,7 +119,7 @@ def verification_lines(said: Verification, yes: str = "Y") -> list[str]:
     """Put what the verification of a command says into lines; `yes` is what to type for yes."""
     match said:
         case Asked(question=question, heard=heard, confidence=confidence, others=others):
-            lines = [f"Did you say: {question}? Type {yes} to execute it or N for a new command."]
+            lines = [f"Did you say: {question}? Type {yes} to do it, or N for another command."]
             if confidence < 1:
                 lines.append(f"  heard {plain(heard)!r}, {confidence:.0%} sure")
             return lines + [

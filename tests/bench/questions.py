@@ -31,7 +31,7 @@ A_GAME = 25
 
 READING = 0.3  # s
 
-ASKED = re.compile(r"Type (\S) to execute it")
+ASKED = re.compile(r"Type (\S) to do it")
 DONE = re.compile(r"Tangy says:")
 
 

@@ -61,9 +61,9 @@ def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(
 
 def test_the_question_names_the_behaviour_and_only_y_executes_it(workspace: Workspace) -> None:
     said = told(workspace, "greet everyone", "", "yep", "ok", "Y")
-    question = "Did you say: greet everyone? Type Y to execute it or N for a new command."
+    question = "Did you say: greet everyone? Type Y to do it, or N for another command."
     assert said[3] == question
-    assert said[4:6] == ["Please answer Y to execute it, or N to give a new command."] * 2
+    assert said[4:6] == ["Please answer Y to do it, or N for another command."] * 2
     assert said[6] == "1. the game has not begun -> greet everyone"
     assert said[7].startswith("   Tangy says: Hello")
 
@@ -75,7 +75,7 @@ def test_yes_in_full_is_taken_as_well(workspace: Workspace, yes: str) -> None:
 
 def test_help_at_the_question_says_what_can_be_answered(workspace: Workspace) -> None:
     said = told(workspace, "goodbye number", "help", "n", "greet everyone", "?")
-    at = said.index("Please answer Y to execute it, or N to give a new command.")
+    at = said.index("Please answer Y to do it, or N for another command.")
     assert [line.partition(":")[0] for line in said[at + 1 : at + 5]] == [
         "  y", "  n", "  1 to 2", "  quit",
     ]  # fmt: skip
@@ -396,7 +396,7 @@ def test_while_tangy_asks_nothing_is_taken_back(workspace: Workspace, word: str)
 def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(workspace: Workspace) -> None:
     said = asked(workspace, "greet everyone", "perhaps", "help", "YES", "quit")
     assert said[0].startswith("Did you say: greet everyone?")
-    assert said[1] == said[2] == "Please answer Y to execute it, or N to give a new command."
+    assert said[1] == said[2] == "Please answer Y to do it, or N for another command."
     assert said[3].startswith("  y: ")
     assert "1. the game has not begun -> greet everyone, as Cleo said" in said, (
         "not by votes for another"

@@ -98,11 +98,11 @@ def elsewhere(folder: Path) -> Iterator[Terminal]:
 @pytest.mark.slow
 def test_a_y_that_is_typed_ahead_executes_nothing(here: Terminal) -> None:
     here.type("greet everyone\ny\n")
-    here.until("Type Y to execute it")
+    here.until("Type Y to do it")
     here.type("n\n")
     here.until("Not done: greet everyone.")
     here.type("greet everyone\n")
-    here.until(lambda text: text.count("Type Y to execute it") == 2)
+    here.until(lambda text: text.count("Type Y to do it") == 2)
     here.type("y\n")
     here.until("Tangy says:")
 
@@ -110,8 +110,8 @@ def test_a_y_that_is_typed_ahead_executes_nothing(here: Terminal) -> None:
 @pytest.mark.slow
 def test_from_elsewhere_a_question_names_the_digit_that_is_its_yes(elsewhere: Terminal) -> None:
     elsewhere.type("greet everyone\n")
-    shown = elsewhere.until("to execute it or N")
-    found = re.search(r"Type (\d) to execute it", shown)
+    shown = elsewhere.until("to do it, or N")
+    found = re.search(r"Type (\d) to do it", shown)
     assert found is not None
     elsewhere.type("y\n")
     elsewhere.until(f"The yes of this question is {found[1]}.")
