@@ -117,7 +117,7 @@ class GameChange(EventRecord):
     waits until others were seen to, the game is played on for the next pattern, or is won;
     a card was found to win, `person` left the game or came to it, or gets a visit unasked;
     so many calls (`number`) come before those who ask; all numbers were called, so that each
-    person gets a visit; after these visits nobody has won;
+    person gets a visit; after these visits nobody has won, or nobody else after `number` patterns;
     staff let everybody win who has it at the same call, or one; let people be visited, or not; or
     chose another pace (`seconds` from one call to the next).
     """

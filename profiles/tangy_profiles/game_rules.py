@@ -142,6 +142,8 @@ class Patterns:
     deck: Deck
     left: list[Pattern] = field(default_factory=list)
     present: Pattern | None = None
+    won: int = 0
+    """How many patterns were won before the present one."""
 
     @classmethod
     def of(cls, rules: GameRules, deck: Deck, names: Sequence[str]) -> Patterns:
@@ -163,6 +165,7 @@ class Patterns:
         if not self.left:
             return False
         self.present = self.left.pop(0)
+        self.won += 1
         return True
 
 

@@ -152,11 +152,9 @@ class PastGame:
         """Return after how many calls each person was visited last; see `PlannedGame`."""
         draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
         visited, calls = dict[str, int](), 0
-        anew = {
-            one.steps
-            for one in self.changes
-            if one.game == self.beginning.game and one.what == "all called"
-        }
+        mine = [one for one in self.changes if one.game == self.beginning.game]
+        last = next((n for n, one in enumerate(mine) if one.what == "all called"), len(mine))
+        anew = {one.steps for one in mine[last:] if one.what in ("all called", "played on")}
         for number, step in enumerate(self.steps):
             if number in anew:
                 visited.clear()

@@ -126,7 +126,7 @@ class PlannedGame:
     def due(self) -> Due | None:
         """Return the next change before a behaviour, and its person; None if there is none."""
         tracker = self.tracker
-        if tracker.place != FRONT:
+        if tracker.place in tracker.queue or (tracker.place != FRONT and not self.all_called):
             self._visited[tracker.place] = len(self.called_now)
         if tracker.finished:
             winner = tracker.place if tracker.place in tracker.queue else tracker.queue[:1]
@@ -136,11 +136,11 @@ class PlannedGame:
             return Due("played on", person) if self.patterns.left else None
         if self.winner and not tracker.queue:
             return Due("played on" if self.patterns.left else "won", self.winner)
+        if len(self.called_now) >= len(self.own_deck.numbers):
+            return self._visit_due() if self.all_called else Due("all called")
         if calls := self._calls_due():
             return Due("calls first", number=calls)
-        if not self.all_called and len(self.called_now) >= len(self.own_deck.numbers):
-            return Due("all called")
-        return self._visit_due() if self.game_plan.visits or self.all_called else None
+        return self._visit_due() if self.game_plan.visits else None
 
     def _calls_due(self) -> int:
         """Return how many calls come before the next visit; 0 for none."""
@@ -168,7 +168,7 @@ class PlannedGame:
         here = [person for person in self.people if person not in self.away]
         if self.all_called:
             unseen = next((person for person in here if person not in self._visited), "")
-            return Due("visit", unseen) if unseen else Due("nobody won")
+            return Due("visit", unseen) if unseen else Due("nobody won", number=self.patterns.won)
         if not self.activity.rules.unvisited:
             return None
         longest = min(here, key=lambda person: self._visited.get(person, 0), default="")
@@ -195,6 +195,8 @@ class PlannedGame:
                 self.tracker.set_aside(person)
                 if self.patterns.advance():
                     self._play_pattern()
+                if self.all_called:  # each card may win by the next pattern
+                    self._visited = {}
             case "won":
                 self.winner = ""
                 self._wins_by_word(person)
@@ -218,7 +220,7 @@ class PlannedGame:
             case "visit over":
                 self.visiting = ""
             case "all called":
-                self.all_called, self._visited = True, {}
+                self.all_called, self._visited, self.tracker.calls_first = True, {}, 0
             case "nobody won":
                 pass  # the game is over
             case "taken back":

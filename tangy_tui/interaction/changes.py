@@ -15,8 +15,6 @@ from tangy_profiles.store import Store
 from tangy_tui.interaction.game_events import GameChanged
 from tangy_tui.world import World
 
-NOBODY_WON = "All numbers have been called, and nobody has won."
-
 
 class GameChanges:
     """The changes of one world's games; other worlds than those with cards have none."""

@@ -18,7 +18,7 @@ from tangy_profiles.past_game import PastGame
 from tangy_profiles.person import Person
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_profiles.store import Store
-from tangy_tui.interaction.changes import NOBODY_WON, GameChanges
+from tangy_tui.interaction.changes import GameChanges
 from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
@@ -172,7 +172,7 @@ class Facilitation:
             return []
         if changed := self.changes.due(self._game, self.steps):
             over = changed[-1].what == "nobody won"
-            return [*changed, self._end(NOBODY_WON)] if over else [*changed]
+            return [*changed, self._end(None)] if over else [*changed]
         state = self.look()
         decision = self.policy.decide(state.situation)
         if self.steps >= MOST_STEPS:

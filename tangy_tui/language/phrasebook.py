@@ -66,7 +66,7 @@ class Phrases:
         self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
         """The behaviours as they are asked about, as it is said."""
         self.answers = _answers_in(activity)
-        """What people may answer in a game, as it is said."""
+        """What people may answer in a game, by how it is spoken."""
         self.numbers = _numbers_of(people)
         self.names = _names_of(people)
         self.seats = _seats_of(people)
@@ -217,20 +217,22 @@ def _seats_of(people: Sequence[Person]) -> dict[Words, str]:
     return {words_of(seat): person.id for person in people for seat in person.seats}
 
 
-def _answers_in(activity: Activity) -> tuple[str, ...]:
-    """Return everything people may answer aloud: the options of each item, and right answers.
+def _answers_in(activity: Activity) -> dict[str, str]:
+    """Return all answers people may say: as they are spoken, and as the items have them.
+
+    They are the options of each item and the right answers.
 
     Letters alone are left out: B, C and D sound too much alike to be judged.
     """
     if not isinstance(activity, DeclaredActivity):
-        return ()
+        return {}
     items = activity.declaration.items
     asked = [f for f in activity.declaration.facts.values() if f.checks and "speech" in f.sources]
     columns = dict.fromkeys(c for fact in asked for c in (*fact.options, fact.checks))
     texts = (
-        spoken(words_of(clean(way)))
+        (spoken(words_of(clean(way))), way)
         for row in range(len(items.rows))
         for column in columns
         for way in items.value(row, column).split("|")
     )
-    return tuple(dict.fromkeys(text for text in texts if len(text) > 1))
+    return {said: way for said, way in texts if len(said) > 1}

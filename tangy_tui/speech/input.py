@@ -372,7 +372,7 @@ class SpeechInput:
     def _understand(self, evidence: AcousticEvidence) -> Heard | None:
         heard: Heard | None
         if self._asking:
-            people = self._phrasebook.table.answers if self.steering else ()
+            people = self._phrasebook.table.answers if self.steering else {}
             heard, told = replied(
                 evidence, self._settings, self._choices, self.steering, people, answers=self.answers
             )

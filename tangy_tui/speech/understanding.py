@@ -8,9 +8,10 @@ robot do so in every mode. In the paper's mode there is one tier: n-gram and key
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
+from types import MappingProxyType
 
 from tangy_tui.language.answers import NO, YES, choice_in, choice_phrases, yes_or_no
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
@@ -75,7 +76,7 @@ def wanted(
     teaching, games = (
         steering_texts(ways) if learnt else () for ways in (WHILE_TEACHING, IN_GAMES)
     )
-    given = phrasebook.table.answers if learnt else ()
+    given = tuple(phrasebook.table.answers) if learnt else ()
     answers = (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions)
     return Wanted(
         (*(phrasebook.spoken() if phrases is None else phrases), *STOPS, *teaching),
@@ -91,7 +92,7 @@ def wanted(
 
 def sounds_of(phrasebook: Phrasebook) -> tuple[object, ...]:
     """Return what is to be heard of a phrasebook: those with the same are listened for alike."""
-    return phrasebook.spoken(), phrasebook.pronunciations(), phrasebook.table.answers
+    return phrasebook.spoken(), phrasebook.pronunciations(), tuple(phrasebook.table.answers)
 
 
 def understand(
@@ -172,7 +173,7 @@ def replied(
     settings: EvidenceSettings,
     choices: Sequence[str] = (),
     steering: Collection[Steering] = (),
-    people: Collection[str] = (),
+    people: Mapping[str, str] = MappingProxyType({}),
     *,
     answers: bool,
 ) -> tuple[Reply | Say | StopCommand | None, HearingKind | None]:
@@ -180,7 +181,7 @@ def replied(
 
     Where no `answers` are taken, only what stops the robot counts, and what steers the program in
     one of the ways of `steering`; `choices` are the words of what can be chosen instead, and
-    `people` what people may answer while the program itself does not ask anything.
+    `people` what people may answer in a game, by how it is spoken.
     """
     said = answer(evidence, settings, choices)
     if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):
@@ -193,7 +194,7 @@ def replied(
 
 
 def answered(
-    evidence: AcousticEvidence, settings: EvidenceSettings, people: Collection[str]
+    evidence: AcousticEvidence, settings: EvidenceSettings, people: Mapping[str, str]
 ) -> Say | None:
     """Return which of the possible answers of people an utterance is, and how sure that is.
 
@@ -205,7 +206,7 @@ def answered(
     quiet = evidence.margin - settings.shift < LEAST_ANSWER
     if text not in people or quiet or yes_or_no(words) is not None:
         return None
-    return Say(text, BOTH_HEARD if words == phrase else ONE_HEARD, None)
+    return Say(people[text], BOTH_HEARD if words == phrase else ONE_HEARD, None)
 
 
 def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str, float]:

@@ -8,7 +8,6 @@ from typing import assert_never
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.planned_game import PlannedGame
-from tangy_tui.interaction.changes import NOBODY_WON
 from tangy_tui.interaction.game_events import GameChanged
 from tangy_tui.text.numbers import counted
 from tangy_tui.world import World
@@ -54,7 +53,8 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
         case "all called":
             return "All numbers have been called. Tangy goes to each person and looks at the card."
         case "nobody won":
-            return NOBODY_WON
+            who = "nobody else has won" if event.number else "nobody has won"
+            return f"All numbers have been called, and {who}."
         case "several winners":
             return "Everybody who has the pattern at the same call wins."
         case "one winner":

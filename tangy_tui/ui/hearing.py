@@ -235,7 +235,7 @@ class Hearing:
                 self._answer(heard)
             case Say(text, sure, commands=None) if self._steer is not None and not self._free:
                 self.tell(f"Heard: {text}.")
-                if self.on:
+                if self.on and self._question is None:  # it is talk about what is asked
                     self._steer(text, sure)
             case Say() if self._listeners and self.on:
                 self._kept.append(heard)

@@ -9,6 +9,9 @@ from typing import cast
 
 import pytest
 
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.commands import Commands
+from tangy_hw.robot_client.help_requests import HelpRequestTracker
 from tangy_profiles.cards import winning_state
 from tangy_profiles.game_records import GameChange, GameStep, StaffAction
 from tangy_profiles.game_rules import GamePlan
@@ -41,6 +44,7 @@ from tangy_tui.pages.session import session_page
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.log import replay_lines, session_lines
 from tangy_tui.text.report import changes_lines
+from tests.hw.links import FakeLink
 
 
 class Planned:
@@ -420,7 +424,7 @@ def test_a_game_that_nobody_can_win_comes_to_its_end(planned: Planned) -> None:
     assert visits(planned) == list(world.people)
     assert planned.changes()[-1] == "nobody won" and planned.celebrated() == []
     ended = planned.events[-1]
-    assert isinstance(ended, GameEnded) and "nobody has won" in str(ended.stopped)
+    assert isinstance(ended, GameEnded) and ended.stopped is None
     assert "no-progress" not in [fault.code for fault in planned.supervision.faults]
     store = planned.workspace.store
     session = read_session(
@@ -468,3 +472,38 @@ def test_who_was_looked_at_after_the_last_number_is_not_looked_at_again(planned:
     past = interrupted_game(planned.workspace.store, "bingo")
     assert past is not None
     assert list(past.visited(planned.workspace.activity)) == list(world.people[:2])
+
+
+def test_no_number_is_called_when_none_is_left_however_many_ask(taught: Path) -> None:
+    planned = Planned(taught, users=8)
+    world = all_called(planned)
+    world.read_card = lambda: None  # type: ignore[method-assign]
+    for person in world.people:
+        world.tracker.ask(person)
+    planned.play()
+    acted = [event for event in planned.events if isinstance(event, Acted)]
+    draws = [a for a in acted if a.action.behaviour.effect == "draw"]
+    assert len(draws) == 75 and all(a.outcome.numbers for a in draws)
+    assert "calls first" not in planned.changes() and planned.changes()[-1] == "nobody won"
+    planned.workspace.close()
+
+
+def test_after_a_pattern_was_won_nobody_else_has_won(planned: Planned) -> None:
+    planned.world.users = replace(planned.world.users, miss=1.0, ask=1e-9)
+    planned.begin(GamePlan(("line", "two lines", "full card")))
+    planned.play(calls=75)
+    planned.play()
+    assert planned.celebrated() == list(planned.world.people[:1]) * 3
+    assert visits(planned) == list(planned.world.people[:1]) * 3  # for each pattern anew
+    change = GameChanged("nobody won", "", 2, (), "")
+    assert "nobody else has won" in changed_words(change, None, str)
+
+
+def test_a_resumed_robot_visits_nobody_again() -> None:
+    """Requests by word are replayed from the log; those that were answered are over."""
+    people = ("user1", "user2", "user3", "user4")
+    requests = HelpRequestTracker(people, Commands(cast(RobotLink, FakeLink(people))))
+    for person in people:
+        requests.ask_for(person)
+    requests.keep(["user3"])
+    assert list(requests.all) == ["user3"]

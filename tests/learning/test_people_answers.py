@@ -10,10 +10,10 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.steering import IN_GAMES
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence
-from tangy_tui.speech.understanding import LEAST_ANSWER, replied, wanted
+from tangy_tui.speech.understanding import BOTH_HEARD, LEAST_ANSWER, replied, wanted
 from tests.support.declared import declared
 
-GIVEN = ("the dove", "the crow", "no milk")
+GIVEN = {"the dove": "the dove", "the crow": "the crow", "no milk": "no milk", "seven": "7"}
 
 
 def taken(words: str, phrase: str, margin: float = 0.0) -> Say | Reply | None:
@@ -41,6 +41,10 @@ def test_what_both_decoders_hear_is_judged_and_what_one_hears_is_asked_again(
     assert (said.confidence >= CERTAIN) is judged
 
 
+def test_a_number_is_judged_as_the_item_has_it() -> None:
+    assert taken("seven", "seven") == Say("7", BOTH_HEARD, None)
+
+
 def test_other_words_and_other_sounds_are_no_answer() -> None:
     assert taken("what a lovely day", "") is None
     assert taken("the dove", "the dove", LEAST_ANSWER - 0.1) is None
@@ -62,4 +66,4 @@ def test_what_can_be_answered_is_listened_for_but_no_single_letters() -> None:
     assert "a bakery" in options
     assert all(len(text) > 1 for text in options)
     assert set(options) <= set(wanted(trivia, USUAL).answers)
-    assert Phrasebook(declared("exercises"), load_people(2)).table.answers == ()
+    assert Phrasebook(declared("exercises"), load_people(2)).table.answers == {}

@@ -124,6 +124,13 @@ async def test_tab_says_so_when_nothing_fits(run: Run) -> None:
         assert bar_of(pilot).text == "c" and NOTHING_FITS not in pilot.text()
 
 
+async def test_blanks_alone_are_an_empty_line_to_tab(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        pilot.type("space", "tab", "tab")
+        await pilot.pause()
+        assert bar_of(pilot).text == NOW[0]
+
+
 async def test_tab_takes_what_is_meant_by_other_words(run: Run) -> None:
     meant = ("call number", "tell a joke")
     async with run(Bar(lambda typed: meant if typed == "numbers" else ())) as pilot:

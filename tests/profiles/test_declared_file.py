@@ -95,25 +95,26 @@ def test_what_ships_has_80_lines_at_most(name: str) -> None:
     assert shipped_activities()[name].read_text(encoding="utf-8").count("\n") <= 80
 
 
-def first_right(folder: Path, right: str) -> str:
+def first_right(folder: Path, right: str, third: str = "Venus") -> str:
     """Write the right answer of the first item, with Saturn's letter or words, into the file."""
     lines = (folder / "trivia.csv").read_text(encoding="utf-8").splitlines()
-    lines[1] = f"Which planet has rings?,Mars,Saturn,Venus,{right},It has rings."
+    lines[1] = f"Which planet has rings?,Mars,Saturn,{third},{right},It has rings."
     (folder / "trivia.csv").write_text("\n".join(lines), encoding="utf-8")
     shutil.copy(SHIPPED, folder / "mine.toml")
     return read_declaration(folder / "mine.toml").items.value(0, "right")
 
 
-@pytest.mark.parametrize("right", ["Saturn", "saturn", "b", "B"])
+@pytest.mark.parametrize("right", ["Saturn", "saturn", "b", "B", "b|the one with rings"])
 def test_a_right_answer_is_the_words_of_an_option_or_its_letter(folder: Path, right: str) -> None:
-    assert first_right(folder, right).casefold() == "saturn"
+    assert first_right(folder, right).casefold().partition("|")[0] == "saturn"
 
 
-def test_a_right_answer_that_is_no_option_is_a_mistake(folder: Path) -> None:
+@pytest.mark.parametrize("right", ["d", "", "c"])
+def test_a_right_answer_that_is_no_option_is_a_mistake(folder: Path, right: str) -> None:
     with pytest.raises(MistakesError) as caught:
-        first_right(folder, "d")
+        first_right(folder, right, third="")  # the letter of an option without words is none
     (line,) = caught.value.lines
-    assert "row 2: right 'd' is none of its options" in line
+    assert f"row 2: right {right!r} is none of its options" in line
 
 
 def test_a_mark_of_the_byte_order_and_blank_lines_are_no_items(folder: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 
 from tangy_hw.device_protocols import DeviceError
@@ -63,6 +63,10 @@ class HelpRequestTracker:
     def over(self, person: str) -> None:
         """What somebody asked for by word is over."""
         self._by_word.pop(person, None)
+
+    def keep(self, asking: Collection[str]) -> None:
+        """Keep requests by word of these people alone; a resumed game has answered the others."""
+        self._by_word = {one: since for one, since in self._by_word.items() if one in asking}
 
     def set_aside(self, person: str) -> None:
         """Close a person's request, also while the sign stays up."""

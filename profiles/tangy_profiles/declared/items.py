@@ -83,19 +83,21 @@ def _right_in(top: Section, items: Items, fact: Fact, number: int) -> tuple[str,
     """Return a row whose right answer is the words of an option; note a mistake in it."""
     row = items.rows[number]
     options = [items.value(number, column) for column in fact.options]
-    known = [plain_words(option) for option in options]
+    known = [plain_words(option) for option in options if option]
     right = items.value(number, fact.checks)
-    ways = [plain_words(way) for way in right.split("|")]
-    if set(ways) & set(known):
+    ways = right.split("|")
+    if {plain_words(way) for way in ways} & set(known):
         return row
     names = dict(zip(LETTERS, options, strict=False))
     names |= dict(zip(map(plain_words, fact.options), options, strict=True))
-    if (chosen := names.get(plain_words(right))) is None:
+    chosen = [names.get(plain_words(way), "") for way in ways]
+    if not any(chosen):
         problem = f"row {number + 2}: {fact.checks} {right!r} is none of its options"
         top.wrong("items", f"{problem}; write the words of one, or its letter", right)
         return row
     place = items.columns.index(fact.checks)
-    return (*row[:place], chosen, *row[place + 1 :])
+    told = "|".join(words or way for words, way in zip(chosen, ways, strict=True))
+    return (*row[:place], told, *row[place + 1 :])
 
 
 def order_of(items: Items, uniform: Callable[[], float]) -> list[int]:

@@ -147,6 +147,7 @@ class CommandInput(Input):
             self.post_message(self.Listed(fitting))
         elif listed := self._sayable():
             self._listed, self._taken = listed, -1
+            self.put("")  # blanks alone are an empty line
             self.post_message(self.Listed(listed))
         else:
             self.screen.focus_next()
