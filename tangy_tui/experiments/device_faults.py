@@ -29,7 +29,7 @@ class InducingBench(BenchedWorld):
     """A world on the bench in which planned faults come."""
 
     def plan(self, plan: Sequence[Sequence[Planned]]) -> InducingBench:
-        """Name what is to come in each game."""
+        """Return the planned faults of each game."""
         self.inducer = Inducer(plan)
         return self
 

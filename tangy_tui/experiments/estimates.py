@@ -18,7 +18,7 @@ def summary(values: Sequence[float]) -> dict[str, Any]:
 
 
 def share_of(flags: Sequence[bool]) -> float | None:
-    """Return the share of what is true, or None of nothing."""
+    """Return the share of true values, or None without values."""
     return sum(flags) / len(flags) if flags else None
 
 

@@ -51,7 +51,7 @@ class Induced:
 
     @property
     def could_show(self) -> bool:
-        """Whether there was something to be noticed of it."""
+        """Whether the fault could be observed."""
         once = self.kind.shows in (WAITING, MOVING_ON)  # is over as soon as it has come about
         return not self.hidden and (not once or self.lifted is not None)
 
@@ -148,7 +148,7 @@ class Inducer:
     def choose(
         self, step: int, action: Action, there: Iterable[Kind], shows: Callable[[Kind], bool]
     ) -> str:
-        """Return the kind that is to come with an action, "" if none is.
+        """Return the kind of fault planned for an action, "" if none.
 
         Args:
             step: the number of the behaviour that the action is of.
@@ -171,7 +171,7 @@ class Inducer:
         return ""
 
     def came(self, name: str, step: int, seconds: float) -> None:
-        """Note that a fault of a kind has come, at a time in s of the game."""
+        """Record an occurred fault of a kind, at a time in s of the game."""
         self.induced.append(Induced(KINDS[name], step, seconds))
 
     def lifted(self, name: str, step: int) -> None:
@@ -230,7 +230,7 @@ class InducingWorld(FaultyWorld):
             self.bring_about(name)
 
     def bring_about(self, name: str) -> None:
-        """Let a fault of a kind come with the behaviour that is about to be carried out."""
+        """Inject a fault of a kind into the next behaviour."""
         self.inducer.came(name, self.tracker.step + 1, self.seconds)
         self.inject(name)
 

@@ -1,4 +1,4 @@
-"""Diagnoses held against what was induced: right, wrong, again, missed, or of nothing."""
+"""Matching of diagnoses and induced faults: right, wrong, repeated, missed, or false."""
 
 from __future__ import annotations
 

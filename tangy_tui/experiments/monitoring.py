@@ -58,7 +58,7 @@ class AimingWorld(InducingWorld):
 
 
 def apart(kinds: Sequence[Kind], action: Action) -> bool:
-    """Say whether each of some kinds can be seen by itself if they come with the same action.
+    """Return whether faults of several kinds stay distinguishable in the same action.
 
     A robot that is held does not arrive, whatever else came to nothing; and while nothing at all
     is heard, nobody can see what happens once.

@@ -1,4 +1,4 @@
-"""Scenario 2: does Tangy find out which strategy works with whom, and how soon?
+"""Scenario 2: does Tangy learn which strategy works with which person, and how soon?
 
 Games are facilitated by a policy that was learnt as in Scenario 1, for four people who each
 comply best with another strategy. What is counted is how often the chosen strategy was the best

@@ -1,4 +1,4 @@
-"""Scenario 3: does Tangy notice what is wrong in games, and choose what to do?
+"""Scenario 3: does Tangy detect faults in games, and choose the right recovery?
 
 Games of four people with a learnt policy, and faults that are induced in the proportions of
 Table II. What is counted was diagnosed and done; what was induced is only held against it.
@@ -48,7 +48,7 @@ GAMES_A_PIECE = 20
 
 
 def plan_of(games: int, seed: int, piece: int = GAMES_A_PIECE) -> list[list[Planned]]:
-    """Return what is to be induced in each game, in the paper's proportions.
+    """Return the faults to induce in each game, in the paper's proportions.
 
     Args:
         games: how many games.
@@ -164,7 +164,7 @@ def run(
     piece: Piece = play,
     a_piece: int = GAMES_A_PIECE,
 ) -> dict[str, Any]:
-    """Play games with induced faults and say what Scenario 3 says of its twenty.
+    """Play games with induced faults, and report as Scenario 3 does for its twenty.
 
     Args:
         activity: what is played.

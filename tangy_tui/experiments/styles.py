@@ -19,12 +19,12 @@ Order = Callable[[Sequence[str], Sequence[str], str, Random], str]
 
 
 def first_come(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
-    """Go to whoever asked first."""
+    """Go to the person who asked first."""
     return asking[0]
 
 
 def last_come(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
-    """Go to whoever asked last."""
+    """Go to the person who asked last."""
     return asking[-1]
 
 

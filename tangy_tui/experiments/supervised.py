@@ -43,7 +43,7 @@ ENDLESS = 20_000
 
 @dataclass(frozen=True)
 class Supervised:
-    """Demonstrations in a scratch log, what was learnt from them, and the fault rules."""
+    """Demonstrations in a scratch log, the learnt policy and effects, and the fault rules."""
 
     activity: str
     people: tuple[Person, ...]
@@ -129,5 +129,5 @@ def play(
 
 
 def people_of(one: Supervised) -> Sequence[str]:
-    """Return the ids of those who take part."""
+    """Return the participants' ids."""
     return [person.id for person in one.people]

@@ -31,7 +31,7 @@ Tell: TypeAlias = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class Where:
-    """Where sweeps are worked at, and where their results are kept.
+    """Where sweeps run, and where their results are stored.
 
     `jobs`: processes on this machine (-1: one for each core). `cluster`: the address of a Dask
     scheduler that does the work instead. `folder`: where the results are kept (None: nowhere).
@@ -142,7 +142,7 @@ def _key(case: Case) -> str:
 
 
 def _work(sweep: Sweep, cases: list[Case], where: Where) -> Iterator[tuple[str, Any]]:
-    """Yield the results of cases as they are done, wherever the work is done."""
+    """Yield the results of cases as they finish, locally or on a cluster."""
     if not cases:
         return
     if where.cluster is not None:

@@ -1,4 +1,4 @@
-"""Scenario 1, second part: do different teachers make a difference to what is learnt?
+"""Scenario 1, second part: do different teachers lead to different policies?
 
 Five simulated teachers give the paper's three demonstrations each, in games of their own, and go
 on while the program tells them that a situation has not been shown. Then they are asked about the
@@ -37,7 +37,7 @@ FEWEST, MOST = int(SCENARIO_ONE["demonstrations"]), 8
 
 
 def resolved(activity: Activity, shown: Sequence[Demonstration]) -> list[Resolution]:
-    """Settle every conflict as somebody does who knows what is expected."""
+    """Settle every conflict by the expected behaviour."""
     return [
         conflict.resolved(activity.expected[conflict.situation])
         for conflict in find_conflicts(shown)

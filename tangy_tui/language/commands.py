@@ -53,7 +53,7 @@ REFUSALS = frozenset(("don't", "dont", "never", "no", "nobody", "not", "without"
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A behaviour as it was asked for, to be verified before it is executed.
+    """A requested behaviour, to be verified before it is executed.
 
     `arguments` is empty or names the person to go to ({"user": id}); `confidence` runs from 0 to
     1; `heard` is the text it was understood from; `alternatives` are up to three other
@@ -86,7 +86,7 @@ class Phrasebook:
         people: Sequence[Person],
         learnt: Learnt | None = None,
     ) -> None:
-        """Make the phrasebook of an activity for the people who take part in it.
+        """Make the phrasebook of an activity and its participants.
 
         `learnt` returns what was learnt of how people ask in the activity; it is called when the
         first text that is no phrase comes. Without it only phrases and keywords are understood.
@@ -141,11 +141,11 @@ class Phrasebook:
 
     @property
     def learns(self) -> bool:
-        """Whether it understands by what was learnt, too."""
+        """Whether it also uses the learnt intents."""
         return self._learnt is not None
 
     def paraphrased(self, text: str) -> tuple[Command, ...]:
-        """Return up to three commands that a text is by what was learnt, the likeliest first."""
+        """Return up to three commands for a text by the learnt intents, the likeliest first."""
         words = words_of(heard := clean(text))
         if self._learnt is None or self._stranger(words) is not None:
             return ()
@@ -156,7 +156,7 @@ class Phrasebook:
         )
 
     def _nearest(self, heard: str, words: Words, mended: Words, trust: float) -> Command | None:
-        """Find the behaviour whose phrases or keywords a text comes near to."""
+        """Find the behaviour with the phrases or keywords nearest to a text."""
         if self._refuses(words) or self._stranger(words) is not None:
             return None
         found, confidence = self._find(words, mended)

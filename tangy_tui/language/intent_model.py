@@ -54,7 +54,7 @@ class IntentModel:
     weights: Mapping[str, tuple[float, ...]]
 
     def probabilities(self, words: Words) -> dict[str, float]:
-        """Return the probability of each behaviour to be asked for; they sum to 1."""
+        """Return the probability that each behaviour is requested; they sum to 1."""
         scores = list(self.offsets)
         for name, value in features(words).items():
             for place, weight in enumerate(self.weights.get(name, ())):

@@ -29,7 +29,7 @@ _log = logging.getLogger(__name__)
 
 
 class Intents:
-    """Learns activities, and remembers in a folder what was learnt; it need not exist yet."""
+    """Learns the intents of activities, and caches the models in a folder."""
 
     def __init__(self, folder: Path | None = None) -> None:
         """Use a folder; else one for what can be made again, in the user's own."""
@@ -37,7 +37,7 @@ class Intents:
         self._models: dict[str, IntentModel] = {}
 
     def model(self, activity: Activity) -> IntentModel:
-        """Return what was learnt of an activity, or learn it now."""
+        """Return the model of an activity, learnt now if it is not cached."""
         digest = digest_of(activity)
         model = self._models.get(digest) or self._kept(digest)
         if model is None:
@@ -61,7 +61,7 @@ class Intents:
         return None
 
     def _keep(self, digest: str, model: IntentModel) -> None:
-        """Write a file whole or not at all; a folder that cannot be written to is no fault."""
+        """Write a file atomically; ignore a folder that cannot be written to."""
         folder = self._where()
         part = folder / f"{digest}.{os.getpid()}.part"
         try:

@@ -20,7 +20,7 @@ POSSESSIVE = "'s"
 
 @dataclass(frozen=True, slots=True)
 class Mentioned:
-    """A sentence in which each mention of a person is one token, and who they are.
+    """A sentence with each mention of a person as one token, and these people.
 
     `users` are the ids of those who take part; `strangers` says whether a number or seat was
     mentioned that is nobody's.

@@ -52,7 +52,7 @@ class Paraphrases:
         self._to_people = to_people
 
     def talk(self, words: Words) -> float:
-        """Return how likely words ask for nothing at all, from 0 to 1."""
+        """Return the probability, from 0 to 1, that words request nothing."""
         mentioned = self._mentions.find(words)
         return 1.0 if forbids(mentioned.words) else self._likely(mentioned.words).get("", 0.0)
 

@@ -1,4 +1,4 @@
-"""Patterns of sentences with which people stop the robot or the game, put together from small ones.
+"""Patterns of sentences that stop the robot or the game, composed of small ones.
 
 They are for clauses of lower-case words with single spaces and without apostrophes, and with
 numbers as digits. A sentence is made of calls and askings ("please", "can you", "i want it to"), a

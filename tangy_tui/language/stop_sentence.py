@@ -62,7 +62,7 @@ _WORDS_OF_THESE_LETTERS = frozenset(("opts", "post", "pots", "spot", "tops"))
 
 
 def stops(text: str, game: Collection[str] = ()) -> bool:
-    """Say whether a sentence, typed or spoken, stops the robot, whatever else is going on.
+    """Return whether a typed or spoken sentence stops the robot.
 
     Args:
         text: what was typed or heard.
@@ -81,7 +81,7 @@ def prepare() -> None:
 
 
 def stops_whatever_follows(words: str) -> bool:
-    """Say whether what was said so far stops the robot, and no word after it can change that."""
+    """Return whether the words so far stop the robot, whatever words follow."""
     return bool(_CLEAR.search(words)) and stops(words)
 
 

@@ -1,4 +1,4 @@
-"""What is believed of a person before and after a session, as a small drawing."""
+"""A person's posteriors before and after a session, as a small drawing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cards on paper, two to a sheet, and the sheet on which staff tick what was called."""
+"""Printed cards, two to a sheet, and the tally sheet for called numbers."""
 
 from __future__ import annotations
 

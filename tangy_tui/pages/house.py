@@ -17,7 +17,7 @@ def house_page(
     people: Sequence[PersonOverTime],
     others: Sequence[GameWorld],
 ) -> str:
-    """Return the page of a house: its months, its people, what went wrong.
+    """Return the page of a house: its months, people and faults.
 
     Args:
         logs: of its robots.

@@ -67,7 +67,7 @@ def paragraph(text: str) -> str:
 
 
 def figure(svg: str, caption: str) -> str:
-    """Return a drawing with what is to be seen on it."""
+    """Return a drawing with its caption."""
     label = f'<svg aria-label="{escape(caption)}"'
     drawing = svg.replace("<svg", label, 1)
     return f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>"
@@ -87,7 +87,7 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def check_place(path: Path, option: str = "--report") -> None:
-    """See, before anything is worked at for long, that a page can be written there.
+    """Check, before long work begins, that a page can be written there.
 
     Args:
         path: where it is to be written.

@@ -1,4 +1,4 @@
-"""The timeline of a game as a drawing: stages, what was said to all, visits, responses, faults."""
+"""The timeline of a game as a drawing: stages, announcements, visits, responses, faults."""
 
 from __future__ import annotations
 
@@ -168,7 +168,7 @@ def _stages(
 
 
 def _to_all(replay: GameReplay, scale: Scale, top: float) -> Iterator[str]:
-    """Mark what was done for everybody: a tick for each call, a taller one for all else."""
+    """Mark behaviours for the group: a tick for each call, a taller one for others."""
     for done in replay.done:
         if done.target is not None or done.after.place in replay.game.people:
             continue
@@ -222,7 +222,7 @@ def _spans(replay: GameReplay, scale: Scale, holds: Callable[[Done], bool]) -> I
 
 
 def _answer(x: float, y: float, answer: AnsweredRequest) -> str:
-    """Mark what a person did: a full dot, a ring where it came late, a cross where it never did.
+    """Mark a person's response: a dot, a ring if it was late, a cross if there was none.
 
     What is not known is a broken ring.
     """

@@ -24,7 +24,7 @@ from tangy_tui.speech.lexicon import Alike, Lexicon, distinct_word
 
 @dataclass(frozen=True, slots=True)
 class CheckedFile:
-    """A file that was looked over: its mistakes, and what is worth a second look, a line each.
+    """A checked file: its mistakes and its hints, a line each.
 
     `notes` say how far it was looked over.
     """

@@ -143,7 +143,7 @@ def spare(scores: Sequence[CalibrationScore]) -> bool:
 
 
 def _worth(scores: Sequence[CalibrationScore], weight: float, shift: float) -> float:
-    """Return how good settings are: log likelihood of the utterances, less what is unusual."""
+    """Return the score of settings: log likelihood of the utterances, minus a prior penalty."""
     told = sum(
         _log_chance(s.told - shift - SURELY)
         if s.right
@@ -181,7 +181,7 @@ def microphone(source: str) -> str:
 
 
 def keep(store: Store, source: str, chosen: Chosen) -> None:
-    """Store what was found for a microphone."""
+    """Store the calibration of a microphone."""
     settings = {"garbage": chosen.settings.garbage, "shift": chosen.settings.shift}
     figures = asdict(chosen.figures)
     store.append(MicrophoneChecked(source=microphone(source), settings=settings, figures=figures))

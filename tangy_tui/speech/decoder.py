@@ -69,7 +69,7 @@ class Decoder(Protocol):
 
 
 def make_decoder(wanted: Wanted) -> Decoder:
-    """Build the decoder for what is to be heard.
+    """Build the decoder for the wanted commands and answers.
 
     Raises:
         Unspeakable: there is no phrase that can be heard.

@@ -67,7 +67,7 @@ class Endpoints:
                 yield not spoke, fresh, not self._endpointer.in_speech
 
     def finish(self) -> bytes:
-        """End the stream; return what is left of an utterance that was still going on."""
+        """End the stream; return the rest of an unfinished utterance."""
         speaking: bool = self._endpointer.in_speech
         self._endpointer.end_stream(self._rest or b"\0\0")
         rest, self._rest = self._rest, b""

@@ -1,4 +1,4 @@
-"""What is wanted of the decoder, and what it says of an utterance."""
+"""The input of the decoder, and its evidence about an utterance."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MODES = LISTENING
 
 @dataclass(frozen=True, slots=True)
 class EvidenceSettings:
-    """How it is listened, which depends on the microphone and the room.
+    """Settings of listening, which depend on the microphone and the room.
 
     `mode` is one of MODES. `garbage` is the weight of all speech that is no command, against 1 for
     the commands; `shift` is added to what is demanded of the sound: above 0 is stricter.
@@ -46,7 +46,7 @@ USUAL = EvidenceSettings()
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What is to be heard: commands, answers, and how their words are pronounced (ARPAbet).
+    """The vocabulary: commands, answers, and the pronunciation of their words (ARPAbet).
 
     Those that are `urgent` end an utterance as soon as they are heard. `stops` are many ways to
     stop the robot, common ones several times, `no_stops` sentences with such words that stop

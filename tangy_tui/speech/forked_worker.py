@@ -16,7 +16,7 @@ Answer = TypeVar("Answer")
 
 
 class ForkedWorker(Generic[Asked, Answer]):
-    """A function whose answers are worked out in a process beside this one.
+    """A function evaluated in a child process.
 
     Where there is no second processor, or that process cannot be made or has died, the answer is
     worked out here: it only takes longer. The copy ends when this process does, however that ends.
@@ -43,7 +43,7 @@ class ForkedWorker(Generic[Asked, Answer]):
                 self._there = None
 
     def answer(self) -> Answer:
-        """Wait for the answer to what was asked last."""
+        """Wait for the answer to the last request."""
         while self._there is not None:
             try:
                 number, answer = self._there.recv()

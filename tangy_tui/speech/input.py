@@ -111,7 +111,7 @@ class SpeechInput:
 
     @property
     def records(self) -> bool:
-        """Whether what is said is kept, once it is verified."""
+        """Whether verified utterances are recorded."""
         return self._recorder is not None
 
     @property
@@ -126,7 +126,7 @@ class SpeechInput:
         self._source.begin()
 
     def talk(self) -> None:
-        """Push to talk: begin to listen, or end what is being said."""
+        """Push to talk: begin to listen, or end the utterance."""
         if not self.live or self.hands_free or not self._free.is_set():
             return
         if self.utterance is not None and not self.utterance.over:
@@ -167,7 +167,7 @@ class SpeechInput:
                 self._end(dropped=True)
 
     def understand_by(self, phrasebook: Phrasebook) -> None:
-        """Listen for these phrases, and match what is heard to them, from the next utterance on."""
+        """Use these phrases from the next utterance on."""
         before, self._phrasebook = self._phrasebook, phrasebook
         if sounds_of(before) != sounds_of(phrasebook):
             self._renew = True
@@ -338,7 +338,7 @@ class SpeechInput:
                 self.utterance.end()
 
     async def _pump(self) -> None:
-        """Take the sound as it comes, and keep what is to be heard."""
+        """Read the sound as it comes, and queue the parts to decode."""
         try:
             async for chunk in self._source:
                 self.meter.feed(chunk)
@@ -355,7 +355,7 @@ class SpeechInput:
             self._talks.set()
 
     def _late(self, utterance: Utterance) -> None:
-        """End what was begun and has no end, for no more sound comes."""
+        """End an utterance without an end, because no more sound comes."""
         if self.utterance is utterance:
             self._end()
 

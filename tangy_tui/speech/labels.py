@@ -1,4 +1,4 @@
-"""What was said in a recording, by the name of its file or folder: an intent, or no command."""
+"""The label of a recording, from the name of its file or folder: an intent, or none."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _TAKE = re.compile(r"(?<!\d)(?:0\d*|\d{3,})(?!\d)")
 
 @dataclass(frozen=True, slots=True)
 class UtteranceLabel:
-    """What was said: a behaviour (or STOP), and the person it names; None: no command.
+    """A label: a behaviour (or STOP), and the person it names; None: no command.
 
     `named` is False if nobody can tell from the name; such a recording proves nothing.
     """
@@ -51,7 +51,7 @@ NOBODY_KNOWS = UtteranceLabel(None, named=False)
 
 @dataclass(frozen=True, slots=True)
 class LabelledRecordings:
-    """The recordings below a folder, each with what was said, and what was left out, and why.
+    """The labelled recordings below a folder, and those left out with the reason.
 
     `unnamed` are those whose names do not tell what was said: they are left out as well.
     """
@@ -85,7 +85,7 @@ class Labels:
         self._numbers = phrasebook.table.numbers
 
     def of(self, file: Path, folder: Path) -> UtteranceLabel:
-        """Return what was said in a recording that lies somewhere below a folder.
+        """Return the label of a recording below a folder.
 
         The folder it lies in counts first, then its own name, then the folders further up.
         """

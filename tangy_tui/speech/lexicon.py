@@ -80,7 +80,7 @@ class Lexicon:
 
     @property
     def unknown(self) -> tuple[Said, ...]:
-        """The words of phrases that have no pronunciation, with what is suggested."""
+        """The words of phrases without a pronunciation, with suggestions."""
         words = dict.fromkeys(word for phrase in self.phrases for word in phrase.said.split())
         return tuple(self.words[word] for word in words if not self.words[word].heard)
 

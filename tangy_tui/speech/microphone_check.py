@@ -1,4 +1,4 @@
-"""A microphone checked in a minute: the quiet room, a few commands, a few other sentences.
+"""A microphone check of a minute: the quiet room, some commands, some other sentences.
 
 Nothing of what is recorded here is kept; what comes of it are figures and settings.
 """
@@ -136,7 +136,7 @@ def other_talk() -> tuple[str, ...]:
 
 
 def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[CalibrationPrompt]:
-    """Return what is to be said: commands of different behaviours, then other sentences.
+    """Return the sentences to say: commands of different behaviours, then others.
 
     The commands have many different words, and none has just one, because that proves little.
     """
@@ -296,7 +296,7 @@ class MicrophoneCheck:
         return b""
 
     async def _pump(self) -> None:
-        """Take the sound as it comes, and keep what is to be heard."""
+        """Read the sound as it comes, and keep the utterances."""
         try:
             async for chunk in self._source:
                 self._meter.feed(chunk)
@@ -326,7 +326,7 @@ class MicrophoneCheck:
         self._stop()
 
     async def _watch(self) -> None:
-        """Say what is wrong with the sound, once for each thing."""
+        """Report each problem with the sound once."""
         while True:
             await asyncio.sleep(LOOK_SECONDS)
             trouble = self._meter.trouble(speaking=self._spoke)
@@ -341,7 +341,7 @@ class MicrophoneCheck:
                 self._end()
 
     async def _find(self, room: float, sounds: Sequence[bytes]) -> CheckResult:
-        """Decode what was said, with one weight or with all of them."""
+        """Decode an utterance, with one weight or with all of them."""
         self._tell(CheckStep("works out"))
         scores: dict[float, list[CalibrationScore]] = {}
         words: dict[float, list[str | None]] = {}

@@ -1,4 +1,4 @@
-"""Names that cannot be told from others, or from what is said to Tangy: as words or by sound."""
+"""Names confusable with other names or commands, as words or by sound."""
 
 from __future__ import annotations
 

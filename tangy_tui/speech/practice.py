@@ -50,7 +50,7 @@ class PracticeRecogniser(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class PracticeRow:
-    """What became of one recording.
+    """The result of one recording.
 
     `understood` is what was understood first, sure or not ("" is nothing); `outcome` is right
     (sure), offered (the right one is among the choices), wrong (another one is asked about or
@@ -125,7 +125,7 @@ class Practice:
         return (statistics.median(times), times[math.ceil(0.95 * len(times)) - 1], times[-1])
 
     def confusion(self) -> dict[str, Counter[str]]:
-        """Count what was understood first, sure or not, for each thing that was said."""
+        """Return the confusion counts of labels and first understood commands, sure or not."""
         counted: dict[str, Counter[str]] = defaultdict(Counter)
         for row in sorted(self.rows, key=lambda r: (r.said.behaviour is None, r.said.words)):
             counted[row.said.words][row.understood or NOTHING] += 1
@@ -208,7 +208,7 @@ async def practise(
 def judged(
     file: Path, label: UtteranceLabel, said: Say | StopCommand, seconds: float, latency: float
 ) -> PracticeRow:
-    """Compare what was understood with what was said; both times are in s."""
+    """Compare the understood command with the label; both times are in s."""
     tier = tier_of(said)
     commands = (said.commands or ()) if isinstance(said, Say) else ()
     choices = tuple(UtteranceLabel(c.behaviour, c.arguments.get("user")) for c in commands)
@@ -235,7 +235,7 @@ def judged(
 
 
 def _fits(said: UtteranceLabel, understood: UtteranceLabel) -> bool:
-    """Say whether it is what was said; where no person was demanded, anybody is right."""
+    """Return whether a command fits the label; without a labelled person, any person fits."""
     return said.behaviour == understood.behaviour and said.user in (None, understood.user)
 
 

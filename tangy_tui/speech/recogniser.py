@@ -43,7 +43,7 @@ class _WorkerDied(Exception):
 
 
 class Recogniser:
-    """The decoder for what is wanted of it. One utterance is heard at a time.
+    """The decoder with its vocabulary. It hears one utterance at a time.
 
     `left_out` lists the words that cannot be heard, because nobody knows how they are pronounced;
     the phrases with them are understood only when they are typed.
@@ -167,7 +167,7 @@ class Recogniser:
     async def _hear(
         self, sound: asyncio.Queue[bytes], said: list[bytes], expecting: Expecting, endpoint: bool
     ) -> AcousticEvidence:
-        """Let the worker hear what was said so far, and what comes."""
+        """Send the worker the sound so far, and what follows."""
         await self._ready()
         id, answer = self._expect()
         self._hearing = id
@@ -310,7 +310,7 @@ class Recogniser:
         return await answer
 
     def _hear_of(self, said: dict[str, Any], _: bytes) -> bool:
-        """Show what is heard meanwhile; return whether that was no answer."""
+        """Report a partial result; return whether the line was one, and no answer."""
         if "partial" not in said and "speaking" not in said:
             return False
         if said.get("id") == self._hearing:  # else nobody waits for that utterance any more

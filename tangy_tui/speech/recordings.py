@@ -1,4 +1,4 @@
-"""What was said while teaching, kept with consent: a labelled set for practice.
+"""Recordings of teaching, kept with consent: a labelled set for practice.
 
 Each utterance lies in the folder of what was verified, DATA/recordings/INTENT/TIME-N.wav, so that
 `tangy listen --bench DATA/recordings` reads it as it is. The label is what the teacher said yes to.
@@ -44,7 +44,7 @@ _OURS = re.compile(r"\d{8}T\d{6}-\d+\.wav")
 
 
 def consented(store: Store, teacher: str) -> bool:
-    """Say whether a teacher has agreed to be recorded, and nothing was forgotten since."""
+    """Return whether a teacher's consent to recording is still in force."""
     agreed = False
     for event in store.events(RecordingConsent, RecordingsForgotten):
         match event.record:
@@ -150,7 +150,7 @@ class Recorder:
             )
 
     def follow(self, events: Iterable[TeachingEvent]) -> None:
-        """Take note of what followed: what was executed was verified."""
+        """Label the last utterance with the executed behaviour."""
         for event in events:
             match event:
                 case Executed(step=step):
@@ -183,7 +183,7 @@ class Recorder:
             self.tell(f"{self.folder} ({error.strerror})")
 
     def _write(self, pcm: bytes, folder: Path) -> None:
-        """Write a file that only its owner reads, and that is there as a whole or not at all."""
+        """Write a file atomically, readable by its owner only."""
         for place in (folder.parent, folder):
             if place.is_symlink():
                 raise OSError(errno.ELOOP, "it is, or holds, a symbolic link")

@@ -1,4 +1,4 @@
-"""Recordings that are listened to: what was said in each, and what it commands."""
+"""Transcription of recordings: the words in each, and their commands."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def read_lines(file: Path, phrasebook: Phrasebook, settings: EvidenceSettings = 
 
 
 def _look_at(file: Path) -> None:
-    """Refuse what is no WAV file, before any other one has been listened to."""
+    """Refuse a file that is no WAV file, before decoding any."""
     if not file.is_file() or not os.access(file, os.R_OK):
         read_wav(file)  # which says what is wrong
     with file.open("rb") as opened:

@@ -1,4 +1,4 @@
-"""What spoken words mean, and how sure that is: a question, a choice of up to three, or nothing.
+"""The meaning of spoken words in tiers: a question, up to three choices, or nothing.
 
 Three tiers: *sure* words are asked about at once, *unsure* ones are offered as choices (each of
 which is asked about in its turn), and of others it is only said what was heard. Words that stop the
@@ -65,7 +65,7 @@ SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "e
 def wanted(
     phrasebook: Phrasebook, settings: EvidenceSettings, phrases: Sequence[str] | None = None
 ) -> Wanted:
-    """Return what is to be listened for: the phrases, what stops the robot, and answers.
+    """Return the vocabulary: phrases, stop commands, and answers.
 
     Args:
         phrasebook: has the pronunciations, and all phrases as they are said.
@@ -141,7 +141,7 @@ def _steers(
 def _nearest(
     text: str, margin: float, phrasebook: Phrasebook, settings: EvidenceSettings
 ) -> tuple[tuple[Command, ...], float]:
-    """Return the commands whose phrases words come near to, and how likely it is the first."""
+    """Return the commands with the nearest phrases, and the probability of the first."""
     found = phrasebook.choices(text)
     if not found:
         return (), 0.0
@@ -162,7 +162,7 @@ def clearly_heard(text: str) -> AcousticEvidence:
 def commanded(
     evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings, *, live: bool
 ) -> tuple[Say | StopCommand | None, HearingKind | None]:
-    """Return what an utterance commands, if it has words, and what is to be said of it, if any."""
+    """Return the command of an utterance, and a hearing note; None if there is none."""
     if evidence.words or evidence.stop:
         return understand(evidence, phrasebook, settings), None
     return None, "no words" if live and evidence.seconds else None
@@ -177,7 +177,7 @@ def replied(
     *,
     answers: bool,
 ) -> tuple[Reply | Say | StopCommand | None, HearingKind | None]:
-    """Return what an utterance answers to a question, and what is to be said of it, if any.
+    """Return the answer of an utterance to a question, and a hearing note, if any.
 
     Where no `answers` are taken, only what stops the robot counts, and what steers the program in
     one of the ways of `steering`; `choices` are the words of what can be chosen instead, and
@@ -210,7 +210,7 @@ def answered(
 
 
 def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str, float]:
-    """Return what was said, and the margin of these words (a log-likelihood a frame).
+    """Return the best words, and their margin (a log-likelihood per frame).
 
     Mostly those are the words of the n-gram model. Where they end as a number sounds, and the
     number makes a phrase of them, it was the number. Where they are no phrase, but sound like the

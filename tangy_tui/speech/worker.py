@@ -185,7 +185,7 @@ class Worker:
         return words in self.urgent or (bool(self.urgent) and stops(words))
 
     def _so_far(self) -> AcousticEvidence:
-        """Return the words so far as they are: what is urgent does not wait for a second look."""
+        """Return the partial words without a second pass, for urgent commands."""
         return AcousticEvidence(self._shown, "", 0.0, 1.0, len(self._pcm) / 2 / RATE)
 
     def _foresee(self, quiet: float, *, spoke: bool) -> None:
