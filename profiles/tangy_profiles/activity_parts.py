@@ -54,7 +54,7 @@ def read_user_states(top: Table) -> tuple[CardState, ...]:
 
 
 def read_sentence(table: Table, key: str, sentence: str) -> str:
-    """Check that nothing but {name} is to be filled into a sentence."""
+    """Check that {name} is the only slot of a sentence."""
     if "{" in sentence.replace("{name}", "") or "}" in sentence.replace("{name}", ""):
         raise table.wrong(key, "can have nothing filled in but {name}.")
     return sentence

@@ -202,7 +202,7 @@ def judge_partly(
 
 
 def is_borne_out(checker: str, deck: Deck, marked: int, unmarked: int, called: int) -> bool:
-    """Say whether cells that were looked at twice bear out what a checker says of a card.
+    """Return whether cells read twice confirm a checker's judgement of a card.
 
     What says that a person has won, or made a mistake, is to be seen more than once; that all is
     well, or that nothing can be told, needs no second look.

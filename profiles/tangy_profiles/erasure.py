@@ -195,7 +195,7 @@ class NameEraser:
     def _pattern(
         self, forms: Collection[str], written: Collection[str], but: Collection[str]
     ) -> re.Pattern[str] | None:
-        """Compile what finds the name: `forms` in any letters, and those `written` just so.
+        """Compile the pattern of a name: `forms` in any case, those `written` case-sensitive.
 
         Words to keep come before it, as far as they contain the name among others.
         """
@@ -225,7 +225,7 @@ class NameEraser:
 
 
 def _kept_in(kind: str, key: str) -> str:
-    """Say how a name may stand under a key of a body ("": not at all).
+    """Return the form in which a key of a body may hold a name ("": it holds none).
 
     "typed" is what was typed or said, "running" what people wrote, or a key that no kind of event
     of ours has, and "exact" a sentence of Tangy.

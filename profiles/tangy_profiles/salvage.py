@@ -87,7 +87,7 @@ def _newest(old: sqlite3.Connection) -> int:
 
 
 def _take_table(old: sqlite3.Connection, db: sqlite3.Connection, table: str, columns: int) -> None:
-    """Take over one of the small tables, as far as it can be read."""
+    """Copy the readable rows of one of the small tables."""
     values = ", ".join([_TEXT] * columns)
     with suppress(sqlite3.Error):
         for row in old.execute(f"SELECT * FROM {table}"):  # noqa: S608

@@ -114,7 +114,7 @@ def _is_binary(content: bytes) -> bool:
 
 
 def _replace(path: Path, content: bytes) -> None:
-    """Write a file anew, as whole as it was, for those who could read it."""
+    """Rewrite a file atomically, with its permissions."""
     begun = path.with_name(f".{path.name}.erasing")
     try:
         begun.unlink(missing_ok=True)

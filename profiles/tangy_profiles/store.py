@@ -249,7 +249,7 @@ class Store:
             self.append(Renamed(), person=person)
 
     def pronunciations(self) -> dict[str, str]:
-        """Return how the names of people are pronounced, by id, of those who have that noted."""
+        """Return the noted pronunciations of people's names, by id."""
         rows = self._rows("SELECT person, pronunciation FROM speech ORDER BY person")
         return {person: phones for person, phones in rows if are_text(person, phones)}
 
@@ -262,7 +262,7 @@ class Store:
         self._note(person, "pronunciation", None if phones is None else read_name_phones(phones))
 
     def voices(self) -> dict[str, VoicePreference]:
-        """Return how people like to be spoken to, by id, of those who have that noted."""
+        """Return the noted voice preferences of people, by id."""
         rows = self._rows("SELECT person, rate, voice FROM speech ORDER BY person")
         found = {}
         for person, rate, voice in rows:

@@ -35,7 +35,7 @@ class NavigatorProtocol(Protocol):
 
     @property
     def path(self) -> Path | None:
-        """The way it follows, as far as that is known."""
+        """The path it follows, if known."""
         ...
 
     @property

@@ -83,7 +83,7 @@ def _solved(poses: Floats, ends: Ends, told: Floats, spread: Floats) -> Floats:
 
 
 def _errors(poses: Floats, ends: Ends, told: Floats, spread: Floats) -> Floats:
-    """Return how far edges (n, 3) are from what was told of them, in standard deviations."""
+    """Return the residuals of edges (n, 3), in standard deviations."""
     start, end = poses[ends[:, 0]], poses[ends[:, 1]]
     c, s = np.cos(start[:, 2]), np.sin(start[:, 2])
     x, y, turn = (end - start).T

@@ -79,7 +79,7 @@ def _too_large(name: str) -> str:
 
 
 def _check(kind: str, size: tuple[int, int], name: str) -> None:
-    """Refuse what is of no use before its pixels are unpacked."""
+    """Refuse an unusable picture before decoding its pixels."""
     if kind not in ENDINGS:
         raise PictureError(f"{name}: is not a picture (PNG, JPEG, WebP, BMP or TIFF).")
     if min(size) < SMALLEST:

@@ -13,7 +13,7 @@ NO_IDEA = "no idea"
 
 
 class Act(NamedTuple):
-    """One thing that somebody does: a fact, whose (None: the group's), and its value."""
+    """One act of a person: the fact, the person (None: the group), and the new value."""
 
     fact: str
     who: str | None

@@ -65,7 +65,7 @@ class _Step:
 def nearest_way(
     moments: Sequence[DeclaredGame], taught: ShownMoves, most: int | None = None
 ) -> Way | None:
-    """Return a shortest way to a situation that was not shown, by what was taught.
+    """Return a shortest way, along taught steps, to a situation not shown yet.
 
     What ends a game comes last: it is tried once nothing is found without it. Players whom no
     selector names count as alike. The limits are numbers of states rather than times, so that the
@@ -105,7 +105,7 @@ class _Search:
         self.late: deque[_Step] = deque()
 
     def run(self, steps: deque[_Step]) -> Way | None:
-        """Follow steps until one leads to what was not shown; None if none does, of so many."""
+        """Follow steps until one reaches a situation not shown; None within a limit of steps."""
         looked = tried = 0
         while steps and looked < self._most and tried < MOST_TRIED * self._most:
             step = steps.popleft()

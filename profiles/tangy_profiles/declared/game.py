@@ -70,7 +70,7 @@ class DeclaredGame:
         self.executed: dict[str, int] = {}
 
     def copy(self) -> DeclaredGame:
-        """Return a game that goes on from here by itself."""
+        """Return an independent copy of the game."""
         other = object.__new__(DeclaredGame)
         other.__dict__.update(self.__dict__)
         other.values, other.counts = dict(self.values), dict(self.counts)

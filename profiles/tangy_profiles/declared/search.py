@@ -48,7 +48,7 @@ USUAL = Limit()
 
 
 def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Event]:
-    """Yield what may happen now, one thing at a time.
+    """Yield each possible event of this state.
 
     Args:
         game: the game.
@@ -169,7 +169,7 @@ def state_key(game: DeclaredGame) -> Hashable:
 
 @dataclass
 class Reach:
-    """Which situations games can come to, by what was taught or by any behaviour.
+    """The reachable situations, under the demonstrations or under any behaviour.
 
     `open` are those reached in which nothing was shown, or in which selectors disagree. `cut`
     says why the search ended early, if it did: then other situations may be reached as well.
@@ -301,7 +301,7 @@ def _until_next_band(game: DeclaredGame) -> float | None:
 def reach(
     declaration: Declaration, players: Sequence[str], taught: ShownMoves, limit: Limit = USUAL
 ) -> Reach:
-    """Search every game that can occur by what was taught.
+    """Search every game that can occur under the demonstrations.
 
     Args:
         declaration: the activity.

@@ -30,7 +30,7 @@ class ShownMoves:
         self._situations: dict[tuple[str, tuple[str, ...]], Situation] = {}
 
     def copy(self) -> ShownMoves:
-        """Return what was shown, to add to by itself."""
+        """Return an independent copy of the demonstrated moves."""
         other = ShownMoves(self._behaviours)
         other.shown, other.whom = dict(self.shown), dict(self.whom)
         return other
@@ -55,7 +55,7 @@ class ShownMoves:
         return self._situations[seen]
 
     def move(self, game: DeclaredGame) -> Move | None:
-        """Return what follows from what was shown, None if nobody has shown it.
+        """Return the demonstrated move of a situation, None if there is none.
 
         A behaviour whose selectors name different people is (UNDECIDED, None).
         """

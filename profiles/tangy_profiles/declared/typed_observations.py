@@ -34,7 +34,7 @@ def can_be_told(game: DeclaredGame) -> tuple[Fact, ...]:
 
 
 def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation | None:
-    """Return what words say of a player, or of the group (None).
+    """Parse words about a player, or about the group (None).
 
     An option of the present item goes before a value, a value before a fact, and all of them before
     a free answer, which may be any words.
@@ -77,7 +77,7 @@ def sayable(game: DeclaredGame) -> list[str]:
 
 
 def about(game: DeclaredGame) -> str | None:
-    """Return whom words that name nobody are about: as the stage is, or whose turn it is."""
+    """Return the person meant by words without a name: that of the stage, or whose turn it is."""
     person = game.stage()[1]
     return person if person is not None else game.players[game.turn]
 

@@ -77,7 +77,7 @@ def learn_whom(
 
 
 def addressee(whom: Whom, behaviour: Behaviour, state: ActivityState) -> Addressee:
-    """Return whom a behaviour is for in a state, by what was learnt."""
+    """Return the learnt addressee of a behaviour in a state."""
     selectors = whom.get((state.stage, behaviour.name), behaviour.to)
     names = dict(state.whom)
     named = {

@@ -57,7 +57,7 @@ class Film:
         await self._server.close()
 
     def silence(self, *, head_pulled: bool, head: bool, infrared: bool) -> None:
-        """Let streams stand still or go on; a camera whose cable is pulled cuts them off."""
+        """Freeze or resume streams; a camera with a pulled cable cuts them off."""
         self._server.camera[HEAD].closed = head_pulled
         self._server.camera[HEAD].hangs = head
         self._server.camera[INFRARED].hangs = infrared

@@ -67,7 +67,7 @@ class DeclaredReception:
         return Heard(person=self._people[asked["name"]], again=True) if asked else None
 
     def _rows(self, columns: tuple[str, ...], said: Mapping[str, str]) -> list[int]:
-        """Return the rows of the items that have in their columns what was said."""
+        """Return the rows of the items with a said text in their columns."""
         return [
             row
             for row in range(len(self._items.rows) if columns else 0)

@@ -335,7 +335,7 @@ class People:
             self._after(TURNS_DOWN, partial(self._closed, sitter))
 
     def _spoils(self, sitter: Sitter, cells: int, judged: str) -> bool:
-        """Let one of some cells be wrong so that the card is judged as before, if one can be.
+        """Make one of some cells wrong so that the judgement stays, if possible.
 
         Where what was asked for completes a line, not every cell can.
         """
@@ -394,7 +394,7 @@ class People:
 
 
 def _shown(seconds: float, complied: bool, patience: float) -> float:
-    """Return when it is to be seen: clearly within the window of patience, or in the next one."""
+    """Return the time of a visible response: clearly within the patience, or after it."""
     if complied:
         return seconds * (patience - CLEAR) / patience
     return patience + CLEAR + (seconds - patience) * (patience - 2 * CLEAR) / patience

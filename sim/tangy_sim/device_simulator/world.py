@@ -200,7 +200,7 @@ class BenchWorld:
                 self._is_over()
 
     def _is_over(self) -> None:
-        """Let end what ends by itself when the robot has found its way to a place."""
+        """End faults that end by themselves when the robot has reached a place."""
         for kind in ("path-detour", "carried-off"):
             fault = self.faults.present.get(kind)
             if fault is not None and fault.shown:

@@ -31,7 +31,7 @@ def encoded(message: object) -> str:
 
 
 class Client:
-    """A connection with its subscriptions and the queue of what it is to be told."""
+    """A connection with its subscriptions and its outgoing queue."""
 
     def __init__(self, connection: ServerConnection) -> None:
         """Know its connection."""

@@ -35,7 +35,7 @@ class Nets:
     nets: tuple[Net, ...]
 
     def scaled(self, rows: Real) -> Real:
-        """Return features in spreads from what is usual."""
+        """Return features standardised by their usual mean and spread."""
         import numpy as np
 
         told: Real = np.clip((rows - self.centre) / self.spread, -FAR, FAR).astype(np.float32)

@@ -53,7 +53,7 @@ there, and how unlike in colour the place in the cell that is most like a chip.
 
 @dataclass(frozen=True)
 class Measured:
-    """What is measured of a card's cells: a row for each, of `NAMES` and of spots that show `SEEN`.
+    """The features of a card's cells: a row for each, of `NAMES` and of spots that show `SEEN`.
 
     `read` has, for each cell, the correlation with the number that the card has there and the best
     correlation with any other number of its column. `beside` is how much of the paper outside of

@@ -69,7 +69,7 @@ class Counted:
 
 
 def labelled(folder: Path, deck: Deck) -> list[CardLabel]:
-    """Read what is in the pictures of a folder.
+    """Read the labels of the pictures in a folder.
 
     That stands in its labels.json, a list in the form that reading pictures prints; or, as
     `tangy capture` records it, in the `label` of a JSON file beside each picture, which is a

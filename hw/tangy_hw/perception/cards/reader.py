@@ -139,7 +139,7 @@ class CardReader:
         return self.nothing(problem, there)
 
     def nothing(self, problem: str, cards: Sequence[int] = ()) -> CardReading:
-        """Return a reading of nothing at all, with these cards in sight."""
+        """Return an empty reading, with these cards in sight."""
         cells = self.deck.rows * len(self.deck.columns)
         return CardReading(
             None,
@@ -153,7 +153,7 @@ class CardReader:
         )
 
     def several(self, cards: Sequence[int]) -> CardReading:
-        """Return the reading of several cards: of none of them is told whose it is."""
+        """Return the reading of several cards, without an owner for any."""
         return self.nothing(several_words(cards), sorted(cards))
 
     def _read_card(self, picture: Picture, seen: Sighting) -> CardReading:

@@ -41,7 +41,7 @@ LISTED = Path("/sys/class/input")
 
 
 class Events:
-    """Joins what is read of a device to whole events, and says which keys were pressed."""
+    """Assembles a device's bytes into events, and yields the pressed keys."""
 
     def __init__(self) -> None:
         self._rest = b""

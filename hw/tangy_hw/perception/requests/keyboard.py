@@ -1,4 +1,4 @@
-"""Requests by the number keys, for whoever watches the table: the simplest source."""
+"""Requests by the number keys, pressed by a person who watches the table."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ class TableView:
 
 
 class Persistence:
-    """Believes what is seen in three of five pictures, until it is in one of five at most."""
+    """Hysteresis over pictures: on at three of five, off at one of five or fewer."""
 
     def __init__(self) -> None:
         self._seen: dict[int, deque[float]] = {}
