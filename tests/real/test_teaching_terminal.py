@@ -144,7 +144,7 @@ def test_a_dumb_terminal_gets_lines(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1", environment={"TERM": "dumb"})
     terminal.until("or one of:")
     terminal.type("greet everyone\n")
-    terminal.until("Type Y to execute")
+    terminal.until("Type Y to do it")
     terminal.type("y\n")
     terminal.until("-> greet everyone")
     terminal.type("quit\n")
