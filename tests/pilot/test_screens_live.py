@@ -451,6 +451,7 @@ async def test_the_keys_of_a_simulated_game_are_not_there(run: Run, program: Pro
             assert live(pilot).check_action(action, ()) is False
 
 
+@pytest.mark.xfail(reason="the moment that is drawn varies with the machine", strict=False)
 @pytest.mark.slow
 async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
     run: Run, program: Program, link: HeldLink, draw: Callable[[App[None]], str]
