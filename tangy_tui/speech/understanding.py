@@ -91,7 +91,7 @@ def wanted(
 
 
 def sounds_of(phrasebook: Phrasebook) -> tuple[object, ...]:
-    """Return what is to be heard of a phrasebook: those with the same are listened for alike."""
+    """Return the spoken content of a phrasebook: phrasebooks that share it can share a decoder."""
     return phrasebook.spoken(), phrasebook.pronunciations(), tuple(phrasebook.table.answers)
 
 

@@ -98,7 +98,7 @@ def test_a_library_is_read_again_only_after_a_change(
 
     monkeypatch.setattr(Store, "events", counted)
     first = read_library(store, "bingo")
-    first.entries.clear()  # whoever asked may change it
+    first.entries.clear()  # the caller owns this copy
     assert read_demonstrations(store, "bingo") == shown and len(reads) == 1
     step = DemonstrationStepUndone(demonstration=shown[0].id, step=1)
     with pytest.raises(RuntimeError), store.transaction():
