@@ -22,7 +22,8 @@ async def first_start(
 ) -> None:
     """Ask who teaches, where nobody has said so yet, and do what comes first.
 
-    Who has just given a name is shown around; where nothing else comes first, in a guided game.
+    A new teacher is shown around; if nobody has taught the activity yet, in a guided game at once.
+    Otherwise home stays: staff may have come to run a game.
     """
     if asks and not read_profile(program.workspace.store.folder).name:
         program.new_teacher = await ask_name(program) is not None
@@ -31,8 +32,16 @@ async def first_start(
         return
     if asks:
         await ask_about_old_games(program)
-    if program.new_teacher:
+    if program.new_teacher and not _is_taught(program):
         program.teach(program.workspace.teaching(program.workspace.teacher, None, guided=True))
+
+
+def _is_taught(program: Program) -> bool:
+    """Return whether the activity has a finished demonstration."""
+    from tangy_tui.learning.library import read_library
+
+    workspace = program.workspace
+    return bool(read_library(workspace.store, workspace.activity.name).finished)
 
 
 async def ask_name(program: Program) -> str | None:

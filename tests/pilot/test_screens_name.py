@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from textual.widgets import Input
 
+from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.teacher_profile import TeacherProfile, read_profile, save_profile
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.dialogs.name import NameDialog
@@ -11,6 +14,7 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock
+from tests.shown import log_demonstration
 from tests.support.waiting import until_shown
 
 
@@ -27,6 +31,17 @@ async def test_the_name_is_asked_on_the_first_start_and_kept(
         await pilot.press("A", "d", "a", "enter")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, TeachScreen))
         assert read_profile(workspace.store.folder).name == "Ada"
+
+
+async def test_home_stays_where_the_activity_was_taught_already(
+    run: Run, workspace: Workspace, demonstrate: Callable[[str, int, int], Demonstration]
+) -> None:
+    log_demonstration(workspace.store, demonstrate("bingo", 1, 4))
+    async with run(app=program(workspace)) as pilot:
+        await pilot.press("A", "d", "a", "enter")
+        await until_shown(pilot, lambda: read_profile(workspace.store.folder).name == "Ada")
+        await until_shown(pilot, lambda: all(w.is_finished for w in pilot.app.workers))
+        assert isinstance(pilot.app.screen, HomeScreen)
 
 
 async def test_it_is_asked_once_and_changed_from_home(run: Run, workspace: Workspace) -> None:
