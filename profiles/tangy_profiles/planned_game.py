@@ -219,6 +219,7 @@ class PlannedGame:
                 self._asks_no_more(person)
             case "visit over":
                 self.visiting = ""
+                self._asks_no_more(person)  # a resumed game may have ended it between two steps
             case "all called":
                 self.all_called, self._visited, self.tracker.calls_first = True, {}, 0
             case "nobody won":

@@ -9,9 +9,6 @@ from typing import cast
 
 import pytest
 
-from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.commands import Commands
-from tangy_hw.robot_client.help_requests import HelpRequestTracker
 from tangy_profiles.cards import winning_state
 from tangy_profiles.game_records import GameChange, GameStep, StaffAction
 from tangy_profiles.game_rules import GamePlan
@@ -44,7 +41,6 @@ from tangy_tui.pages.session import session_page
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.log import replay_lines, session_lines
 from tangy_tui.text.report import changes_lines
-from tests.hw.links import FakeLink
 
 
 class Planned:
@@ -497,13 +493,3 @@ def test_after_a_pattern_was_won_nobody_else_has_won(planned: Planned) -> None:
     assert visits(planned) == list(planned.world.people[:1]) * 3  # for each pattern anew
     change = GameChanged("nobody won", "", 2, (), "")
     assert "nobody else has won" in changed_words(change, None, str)
-
-
-def test_a_resumed_robot_visits_nobody_again() -> None:
-    """Requests by word are replayed from the log; those that were answered are over."""
-    people = ("user1", "user2", "user3", "user4")
-    requests = HelpRequestTracker(people, Commands(cast(RobotLink, FakeLink(people))))
-    for person in people:
-        requests.ask_for(person)
-    requests.keep(["user3"])
-    assert list(requests.all) == ["user3"]

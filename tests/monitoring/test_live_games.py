@@ -9,8 +9,10 @@ import pytest
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.game_records import StaffAction
+from tangy_profiles.past_game import interrupted_game
 from tangy_tui.app.live_games import LiveGames, News
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.game_events import GameChanged, GameEnded
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.live_news import live_lines
@@ -54,6 +56,39 @@ def test_it_is_said_once_in_each_game_who_sits_where_somebody_else_does(
         len([line for line in lines if f"{going} (User 2): " in line]) == 6
     )  # one after the last number
     assert said == ["User 4 sits at User 2's place: Tangy speaks to User 4."] * 2
+
+
+def live_world(workspace: Workspace, link: FakeLink) -> LiveWorld:
+    return LiveWorld(
+        workspace.activity,
+        PEOPLE,
+        cast(RobotLink, link),
+        workspace.robot,
+        workspace.room,
+        seed=1,
+        names=workspace.names,
+    )
+
+
+def test_a_resumed_robot_visits_nobody_again_after_the_last_number(
+    workspace: Workspace, learnt: Policy
+) -> None:
+    game = workspace.supervision(learnt, 1, world=live_world(workspace, FakeLink(PEOPLE)))
+    told = game.begin()
+    while sum(isinstance(e, GameChanged) and e.what == "visit over" for e in told) < 2:
+        told += game.step()
+    past = interrupted_game(workspace.store, "bingo")
+    assert past is not None
+    world = live_world(workspace, FakeLink(PEOPLE))
+    again = workspace.supervision(learnt, 1, world=world)
+    again.begin(past, "Ann")
+    assert (world.requests.all, world.tracker.queue) == ({}, [])
+    told = []
+    while not again.over:
+        told += again.step()
+    visits = [e.person for e in told if isinstance(e, GameChanged) and e.what == "visit"]
+    assert visits == ["user3", "user4"]
+    assert isinstance(told[-1], GameEnded) and told[-1].stopped is None
 
 
 def test_what_is_not_judged_is_said_logged_and_counted(
