@@ -131,10 +131,11 @@ class PlannedGame:
         if tracker.finished:
             winner = tracker.place if tracker.place in tracker.queue else tracker.queue[:1]
             person = winner if isinstance(winner, str) else "".join(winner)
-            if self.game_plan.several and set(tracker.queue) - {person}:
+            others = set(tracker.queue) - {person} or self._unseen
+            if self.game_plan.several and others:
                 return Due("others first", person)
             return Due("played on", person) if self.patterns.left else None
-        if self.winner and not tracker.queue:
+        if self.winner and not tracker.queue and not self._unseen:
             return Due("played on" if self.patterns.left else "won", self.winner)
         if len(self.called_now) >= len(self.own_deck.numbers):
             return self._visit_due() if self.all_called else Due("all called")
@@ -153,6 +154,14 @@ class PlannedGame:
         here = len(self.people) - len(self.away)
         return rule.due(here, tracker.visits, self.seconds - self._row_began, self.pace)
 
+    @property
+    def _unseen(self) -> str:
+        """Whose card was not looked at since the last number, "" for nobody's."""
+        if not self.all_called:
+            return ""
+        here = (person for person in self.people if person not in self.away)
+        return next((person for person in here if person not in self._visited), "")
+
     def _visit_due(self) -> Due | None:
         """Return the visit that is due or put off; a visit delays no request.
 
@@ -167,8 +176,8 @@ class PlannedGame:
             return None
         here = [person for person in self.people if person not in self.away]
         if self.all_called:
-            unseen = next((person for person in here if person not in self._visited), "")
-            return Due("visit", unseen) if unseen else Due("nobody won", number=self.patterns.won)
+            unseen, won = self._unseen, self.patterns.won
+            return Due("visit", unseen) if unseen else Due("nobody won", number=won)
         if not self.activity.rules.unvisited:
             return None
         longest = min(here, key=lambda person: self._visited.get(person, 0), default="")

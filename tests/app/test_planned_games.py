@@ -493,3 +493,15 @@ def test_after_a_pattern_was_won_nobody_else_has_won(planned: Planned) -> None:
     assert visits(planned) == list(planned.world.people[:1]) * 3  # for each pattern anew
     change = GameChanged("nobody won", "", 2, (), "")
     assert "nobody else has won" in changed_words(change, None, str)
+
+
+def test_after_the_last_number_all_who_have_the_pattern_win_if_staff_want_that(
+    planned: Planned,
+) -> None:
+    planned.world.users = replace(planned.world.users, miss=1.0, ask=1e-9)
+    planned.begin(GamePlan(several=True))
+    planned.play()
+    assert list(dict.fromkeys(planned.celebrated())) == list(planned.world.people)
+    ended = planned.events[-1]
+    assert isinstance(ended, GameEnded) and ended.stopped is None
+    assert planned.supervision.faults == []
