@@ -17,6 +17,7 @@ RESOLUTION = 0.05
 
 
 @pytest.mark.slow
+@pytest.mark.elsewhere
 @pytest.mark.skipif(not LOG.is_file(), reason="TANGY_LASER_LOG names no folder with the log")
 def test_a_building_that_matching_alone_tears_is_closed() -> None:
     scans = sparse(Placed(one.scan, one.odometry) for one in read_log(LOG))
