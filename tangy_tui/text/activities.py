@@ -1,8 +1,8 @@
-"""Activities in words: what a search found wrong with one, and what there is in it."""
+"""Activities in words: what there is in one, and what goes on in its games."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from tangy_profiles.declared.activity import DeclaredActivity
@@ -13,34 +13,8 @@ from tangy_tui.text.numbers import counted
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
-    from tangy_profiles.declared.checking import ActivityFlaw, Findings
     from tangy_profiles.declared.model import Effect, Fact, FactCondition
-    from tangy_profiles.declared.search import Cut
-    from tangy_tui.learning.coverage_proof import CoverageProof
     from tangy_tui.learning.policy import Policy
-
-
-def finding_words(source: str, found: ActivityFlaw) -> str:
-    """Say what is wrong with an activity, in one line that names the place."""
-    name = repr(found.name)
-    match found.flaw:
-        case "stage never reached":
-            words = f"stages: no game reaches the stage {name}"
-        case "situation never reached":
-            words = f"stages: this situation never occurs: {found.name}"
-        case "fact never changes":
-            words = f"facts.{found.name}: nothing ever sets it"
-        case "fact never cleared":
-            words = f"facts.{found.name}: once it has changed, no behaviour sets it back"
-        case "fact never looked at":
-            words = f"facts.{found.name}: no stage, condition or text looks at it"
-        case "behaviour never possible":
-            words = f"behaviours.{found.name}: it can never be chosen; check 'needs' and 'to'"
-        case "text lacks a word":
-            words = f"behaviours.{found.name}: {found.text!r} lacks a word when it is said"
-        case "never ends":
-            words = f"stages: from here no game can end: {found.name}"
-    return f"{source}: {words}."
 
 
 def facts_words(state: ActivityState, name: Callable[[str], str]) -> list[str]:
@@ -135,34 +109,6 @@ def _any_of(selectors: tuple[str, ...]) -> str:
     return f"{' or '.join(words)}{more}"
 
 
-def proof_words(activity: Activity, found: CoverageProof) -> list[str]:
-    """Say for which groups a search of all games has proved that everything was shown."""
-    teams = bool(activity.teams)
-    reached = counted(len(found.reached), "situation")
-    lines = []
-    if found.proved:
-        lines.append(f"Tangy searched all games of {_sizes_words(found.proved, teams=teams)}.")
-    lines += [
-        f"Tangy could not search all games of {_sizes_words((size,), teams=teams)}: "
-        f"{_cut_words(one.cut, one.states)}"
-        for size, one in found.searches
-        if one.cut
-    ]
-    if not teams:
-        lines.append("Larger groups were not searched.")
-    if found.open:
-        lines.append(f"{reached} came about, and in these Tangy would ask you:")
-        lines += [
-            f"  {activity.in_words(one)}{': for whom?' if why else ''}"
-            for one, why in found.open.items()
-        ]
-    else:
-        lines.append(f"{reached} came about, and each was shown.")
-    if found.stuck is not None:
-        lines.append(f"From here no game ends: {activity.in_words(found.stuck)}.")
-    return lines
-
-
 def without_words(activity: DeclaredActivity) -> list[str]:
     """Say which stages of a file have no words for people."""
     stages = [stage.name for stage in activity.declaration.stages if not stage.words]
@@ -172,37 +118,6 @@ def without_words(activity: DeclaredActivity) -> list[str]:
     return [
         f"{activity.source}: stages: say in 'words' what is going on in {names}: teachers read it."
     ]
-
-
-def search_lines(found: Findings, *, teams: bool) -> list[str]:
-    """Say how far the games of an activity were searched, and what did not come up by then."""
-    tried = [one for one in found.searches if not one.as_expected]
-    whole = tuple(one.players for one in tried if not one.cut)
-    lines = [f"searched all games of {_sizes_words(whole, teams=teams)}."] if whole else []
-    lines += [
-        f"not searched to the end: games of {_sizes_words((one.players,), teams=teams)}"
-        f"{' that go as expected' if one.as_expected else ''}. "
-        f"{_cut_words(one.cut, one.states)}"
-        for one in found.searches
-        if one.cut
-    ]
-    if found.not_met:
-        names = ", ".join(one.name for one in found.not_met)
-        lines.append(f"did not come up by then, and may be impossible: {names}.")
-    return lines
-
-
-def _cut_words(cut: Cut, states: int) -> str:
-    why = "the time for it was over" if cut == "time" else "there are too many"
-    return f"The search stopped after {counted(states, 'state')}, because {why}."
-
-
-def _sizes_words(sizes: Sequence[int], *, teams: bool) -> str:
-    """Name sizes of groups: "1, 2 and 3 players"."""
-    *first, last = map(str, sizes)
-    both = f"{', '.join(first)} and {last}" if first else last
-    noun = "team" if teams else "player"
-    return f"{both} {noun if list(sizes) == [1] else noun + 's'}"
 
 
 TRIED = "The game has come to its end."

@@ -318,7 +318,8 @@ def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
     from tangy_tui.speech.activity_check import CheckedFile, check_activity
-    from tangy_tui.text.activities import finding_words, search_lines, without_words
+    from tangy_tui.text.activities import without_words
+    from tangy_tui.text.activity_search import dead_end_lines, finding_words, search_lines
 
     try:
         activity = load_activity(name)
@@ -329,7 +330,13 @@ def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
     checked = check_activity(activity, robot, load_room().placed(load_people(SHOWN)))
     if isinstance(activity, DeclaredActivity):
         found = findings(activity)
-        flaws = [plain(finding_words(activity.source, one)) for one in found.flaws]
+        flaws = [
+            "\n    ".join(
+                plain(line)
+                for line in (finding_words(activity.source, one), *dead_end_lines(activity, one))
+            )
+            for one in found.flaws
+        ]
         notes = map(plain, search_lines(found, teams=bool(activity.teams)))
         warnings = (*checked.warnings, *flaws, *map(plain, without_words(activity)))
         checked = replace(checked, warnings=warnings, notes=tuple(notes))

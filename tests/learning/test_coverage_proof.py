@@ -5,7 +5,7 @@ from __future__ import annotations
 from tangy_profiles.declared.checking import expected_moves
 from tangy_profiles.declared.search import Limit
 from tangy_tui.learning.coverage_proof import search_groups
-from tangy_tui.text.activities import proof_words
+from tangy_tui.text.activity_search import proof_words
 from tests.support.declared import declared
 
 

@@ -8,15 +8,17 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.activity import shipped_activities
-from tangy_profiles.declared.activity import read_declared
+from tangy_profiles.declared.activity import DeclaredActivity, read_declared
 from tangy_profiles.declared.checking import findings
 from tangy_profiles.declared.search import Limit
+from tangy_profiles.declared.state_keys import TELLING
+from tangy_tui.text.activity_search import dead_end_lines, search_lines
 from tests.support.declared import DECLARED, declared
 
 SHIPPED = shipped_activities()["trivia"]
 
 
-def flaws(folder: Path, *changes: tuple[str, str]) -> set[tuple[str, str]]:
+def changed(folder: Path, *changes: tuple[str, str]) -> DeclaredActivity:
     text = SHIPPED.read_text(encoding="utf-8")
     for old, new in changes:
         assert old in text
@@ -24,7 +26,17 @@ def flaws(folder: Path, *changes: tuple[str, str]) -> set[tuple[str, str]]:
     shutil.copy(SHIPPED.with_suffix(".csv"), folder / "trivia.csv")
     path = folder / "mine.toml"
     path.write_text(text, encoding="utf-8")
-    return {(found.flaw, found.name) for found in findings(read_declared(path)).flaws}
+    return read_declared(path)
+
+
+def flaws(folder: Path, *changes: tuple[str, str]) -> set[tuple[str, str]]:
+    return {(found.flaw, found.name) for found in findings(changed(folder, *changes)).flaws}
+
+
+def way_there(folder: Path, *changes: tuple[str, str]) -> list[str]:
+    activity = changed(folder, *changes)
+    (found,) = findings(activity).flaws
+    return list(dead_end_lines(activity, found))
 
 
 @pytest.mark.slow
@@ -45,8 +57,11 @@ def test_a_stage_that_no_game_comes_to_and_a_flag_that_nothing_sets(tmp_path: Pa
 
 @pytest.mark.slow
 def test_a_game_that_cannot_end(tmp_path: Path) -> None:
-    stuck = flaws(tmp_path, ('does = ["finish"]', 'needs = ["greeted is no"]\ndoes = ["finish"]'))
-    assert any(flaw == "never ends" for flaw, _ in stuck)
+    needs = ('does = ["finish"]', 'needs = ["greeted is no"]\ndoes = ["finish"]')
+    assert any(flaw == "never ends" for flaw, _ in flaws(tmp_path, needs))
+    lines = way_there(tmp_path, needs)
+    assert lines[1:3] == ["  1. start -> welcome everyone", "From then on only these are possible:"]
+    assert "close quiz" not in lines[3]
 
 
 @pytest.mark.slow
@@ -55,7 +70,10 @@ def test_a_game_that_does_not_end_as_it_is_expected_to_go(tmp_path: Path) -> Non
         '["over", "told is no", "tell scores"],',
         '["over", "told is no", "allow time"],',
     )
-    assert any(flaw == "never ends" for flaw, _ in flaws(tmp_path, round_and_round))
+    assert ("never ends", "over · told is no") in flaws(tmp_path, round_and_round)
+    lines = way_there(tmp_path, round_and_round)
+    assert "     then player 1: answer is right" in lines
+    assert lines[-1] == "  over · told is no -> allow time"
 
 
 @pytest.mark.slow
@@ -81,6 +99,18 @@ def test_a_search_that_is_cut_says_so_and_what_it_had_not_met() -> None:
     assert all(0 < one.states <= 40 for one in found.searches)
     assert "over" in {one.name for one in found.not_met}
     assert found.flaws == ()
+
+
+@pytest.mark.slow
+def test_a_search_that_is_cut_says_which_facts_make_the_most_states() -> None:
+    found = findings(declared("exercises"), Limit(states=2_000, seconds=30.0))
+    named = {share.name: share.times for one in found.searches for share in one.shares}
+    assert "asking" in named
+    assert all(times >= TELLING for times in named.values())
+    (line,) = (one for one in search_lines(found, teams=False) if "the most states" in one)
+    assert "the requests for help" in line
+    whole = search_lines(findings(declared("trivia")), teams=False)
+    assert not any("the most states" in one for one in whole)
 
 
 @pytest.mark.slow

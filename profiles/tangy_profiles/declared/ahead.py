@@ -7,16 +7,10 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.search import (
-    Event,
-    done_move,
-    ends_game,
-    events,
-    happen,
-    rough_key,
-    state_key,
-)
+from tangy_profiles.declared.search import done_move, ends_game, events, happen
+from tangy_profiles.declared.search_way import Event
 from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
+from tangy_profiles.declared.state_keys import rough_key, state_key
 from tangy_profiles.state import Situation
 
 MOST_AHEAD = 1_200

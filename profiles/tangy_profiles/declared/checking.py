@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from time import thread_time
 from typing import Literal
 
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.search import Cut, Limit, Reach, explore
+from tangy_profiles.declared.search_way import Trap
 from tangy_profiles.declared.shown_moves import UNDECIDED, Move, ShownMoves
 from tangy_profiles.declared.speech import empty_slots
+from tangy_profiles.declared.state_keys import Share
 from tangy_profiles.state import EVERYBODY
 
 Flaw = Literal[
@@ -32,12 +35,22 @@ SHARE = 0.6
 
 
 @dataclass(frozen=True, slots=True)
+class DeadEnd:
+    """Where no game of a number of players can end, and how one comes there."""
+
+    players: int
+    as_expected: bool
+    trap: Trap
+
+
+@dataclass(frozen=True, slots=True)
 class ActivityFlaw:
     """One flaw of an activity: of what, and (where it is a text) of which."""
 
     flaw: Flaw
     name: str
     text: str = ""
+    dead_end: DeadEnd | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +58,14 @@ class SearchedGames:
     """How far games of a number of players were searched.
 
     `as_expected` are games that go as the file expects, others have every possible behaviour.
-    `cut` says why the search ended early.
+    `cut` says why the search ended early, and `shares` what made the most of its states.
     """
 
     players: int
     states: int
     cut: Cut
     as_expected: bool = False
+    shares: tuple[Share, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +95,8 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
     found: list[tuple[SearchedGames, Reach]] = []
 
     def note(group: Sequence[str], one: Reach, *, as_expected: bool = False) -> None:
-        found.append((SearchedGames(len(group), one.states, one.cut, as_expected), one))
+        searched = SearchedGames(len(group), one.states, one.cut, as_expected, one.shares)
+        found.append((searched, one))
 
     for group in sizes:
         left = Limit(limit.states, SHARE * (until - thread_time()))
@@ -91,8 +106,7 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
         left = Limit(limit.states, until - thread_time())
         slots, one = _played_as_expected(activity, players, left)
         note(players, one, as_expected=True)
-    stuck = next((one.stuck for _, one in found if one.stuck is not None), None)
-    flaws = [ActivityFlaw("never ends", activity.in_names(stuck))] if stuck is not None else []
+    flaws = list(islice(_dead_ends(activity, found), 1))
     missing = tuple(_missing(activity, tried))
     whole = all(one.whole for one in tried)
     played = {name for one in tried for name in one.played}
@@ -104,6 +118,22 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
     ]
     flaws += _unused_facts(activity)
     return Findings(tuple(flaws), tuple(one for one, _ in found), () if whole else missing)
+
+
+def _dead_ends(
+    activity: DeclaredActivity, found: Sequence[tuple[SearchedGames, Reach]]
+) -> Iterator[ActivityFlaw]:
+    """Yield for each search where no game can end.
+
+    If every behaviour is possible, that is where the end is lost: there a condition is wrong. If
+    games go as expected, it is where they stay: there a line is wrong.
+    """
+    for games, one in found:
+        if one.lost is None or one.loop is None:
+            continue
+        trap = one.loop if games.as_expected or not one.lost.way else one.lost
+        end = DeadEnd(games.players, games.as_expected, trap)
+        yield ActivityFlaw("never ends", activity.in_names(trap.situation), dead_end=end)
 
 
 def _missing(activity: DeclaredActivity, found: Sequence[Reach]) -> Iterator[ActivityFlaw]:

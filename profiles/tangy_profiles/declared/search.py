@@ -1,30 +1,27 @@
 """Search through all possible games: the next situation to show, and the reachable ones.
 
 A search follows the interpreter from state to state: a behaviour, then one thing that happens.
-States that differ in nothing that any condition, selector or stage looks at count as one.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections import deque
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from time import thread_time
 from typing import Literal
 
 from tangy_profiles.declared.acts import Act, acts, take_in
+from tangy_profiles.declared.dead_ends import loop_in, without_end
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.model import Declaration, Fact
+from tangy_profiles.declared.model import Declaration
+from tangy_profiles.declared.search_way import Came, Event, Node, Trap, way_to
 from tangy_profiles.declared.shown_moves import UNDECIDED, Move, ShownMoves
+from tangy_profiles.declared.state_keys import Share, shares, state_key
 from tangy_profiles.declared.vocabulary import ASKING
-from tangy_profiles.state import FRONT, Situation
+from tangy_profiles.state import Situation
 
-Event = tuple[Act, ...] | float
-"""An event after a behaviour: an act of a person, or a number of s without one."""
 FEW = 2
-_Node = tuple[bool, Hashable]
-"""Whether it is the robot's move, and the state."""
 SOON = 1.0
 """So many s pass where nothing in particular is to happen."""
 MOST_ASKING = 2
@@ -90,103 +87,34 @@ def happen(game: DeclaredGame, event: Event) -> None:
         take_in(game, act)
 
 
-def rough_key(game: DeclaredGame) -> Hashable:
-    """Return a game's state as if all players were alike whom no selector names, and their order.
-
-    Two states with the same key may differ in who comes when. A search that skips one of them can
-    miss a way, and still every way that it finds is one.
-    """
-    group: list[object] = []
-    own: list[list[object]] = [[] for _ in game.players]
-    for fact, bounds in game.declaration.looked_at:
-        if not fact.per_player:
-            group.append(_kept(game, fact, bounds, ""))
-            continue
-        for player, facts in zip(game.players, own, strict=True):
-            facts.append(_kept(game, fact, bounds, player))
-    after = game.players[(game.turn + 1) % len(game.players)]
-    least = min(game.acts.values()) if "quietest" in game.declaration.selectors else 0
-    remembers = game.declaration.remembers_addressed
-    named = (
-        game.players[game.turn],
-        game.place,
-        game.addressed if remembers else None,
-        game.actor if "last to act" in game.declaration.selectors else None,
-        after,
-    )
-    several = len(game.players) > 1
-    for player, facts in zip(game.players, own, strict=True):
-        roles = sum(2**place for place, one in enumerate(named) if one == player)
-        asks = game.queue.index(player) + 1 if player in game.queue else 0
-        quiet = least and min(game.acts[player] - least, 2)
-        facts += [roles if several else 0, asks, quiet]
-    order = sorted(map(repr, own))
-    return tuple(group), tuple(order), game.round, game.place == FRONT, game.over
-
-
-def _kept(
-    game: DeclaredGame, fact: Fact, bounds: tuple[int, ...], player: str
-) -> str | int | float | None:
-    """Return as much of a fact as conditions can tell apart."""
-    if fact.kind in ("flag", "choice"):
-        value = game.values.get((fact.name, player))
-        return None if value == fact.values[0] else value
-    kept = game.counts.get((fact.name, player))
-    timer = fact.kind == "timer"
-    if kept is None:
-        return None if timer else 0
-    if timer:
-        return bisect_right(bounds, game.now - kept)
-    return min(kept, bounds[-1]) if bounds else 0
-
-
-def state_key(game: DeclaredGame) -> Hashable:
-    """Return all of a game's state that can matter to how it goes on."""
-    declaration, turn, order = game.declaration, game.turn, game.players
-    if not declaration.selectors & {"quietest", "next in circle"}:
-        order, turn = (*order[turn:], *order[:turn]), 0
-    place = {player: number for number, player in enumerate(order)}
-    facts = list[object]()
-    for fact, bounds in declaration.looked_at:
-        for player in order if fact.per_player else ("",):
-            facts.append(_kept(game, fact, bounds, player))
-    acts_of: tuple[int, ...] = ()
-    if "quietest" in declaration.selectors:
-        least = min(game.acts.values())
-        acts_of = tuple(min(game.acts[one] - least, 2) for one in order)
-    return (
-        tuple(facts),
-        game.round,
-        turn,
-        tuple(place[one] for one in game.queue),
-        game.place if game.place == FRONT else place[game.place],
-        place.get(game.addressed or "", -1) if declaration.remembers_addressed else -1,
-        place.get(game.actor or "", -1) if "last to act" in declaration.selectors else -1,
-        acts_of,
-        game.over,
-    )
-
-
 @dataclass
 class Reach:
     """The reachable situations, under the demonstrations or under any behaviour.
 
     `open` are those reached in which nothing was shown, or in which selectors disagree. `cut`
     says why the search ended early, if it did: then other situations may be reached as well.
-    `stuck` is a situation from which no game ends, if there is one.
+    If a game can come to where none ends, `lost` is where the end is lost first, and `loop` where
+    games then stay. `shares` says what makes the most states of a search that was cut.
     """
 
     reached: dict[Situation, int] = field(default_factory=dict)
     open: dict[Situation, str] = field(default_factory=dict)
     states: int = 0
     cut: Cut = ""
-    stuck: Situation | None = None
+    lost: Trap | None = None
+    loop: Trap | None = None
+    shares: tuple[Share, ...] = ()
     played: dict[str, int] = field(default_factory=dict)
 
     @property
     def whole(self) -> bool:
         """Whether the search came to its end, so that nothing else can be reached."""
         return not self.cut
+
+    @property
+    def stuck(self) -> Situation | None:
+        """A situation from which no game ends, if there is one."""
+        return None if self.lost is None else self.lost.situation
 
 
 def done_move(game: DeclaredGame, move: Move) -> DeclaredGame:
@@ -217,12 +145,19 @@ def explore(
     found = Reach()
     until, looked = thread_time() + limit.seconds, 0
     begin = (True, state_key(game))
-    waiting: deque[tuple[DeclaredGame, _Node]] = deque([(game, begin)])
-    known: dict[_Node, DeclaredGame] = {begin: game}
-    before: dict[_Node, list[_Node]] = {}
-    ends: list[_Node] = []
+    waiting: deque[tuple[DeclaredGame, Node]] = deque([(game, begin)])
+    known: dict[Node, DeclaredGame] = {begin: game}
+    before: dict[Node, list[Node]] = {}
+    came: dict[Node, Came] = {}
+    ends: list[Node] = []
 
-    def reach_node(other: DeclaredGame, robot: bool, node: _Node) -> None:
+    def reach_node(
+        other: DeclaredGame,
+        robot: bool,
+        node: Node,
+        move: Move | None = None,
+        event: Event | None = None,
+    ) -> None:
         new = (robot, state_key(other))
         before.setdefault(new, []).append(node)
         if other.over:
@@ -232,6 +167,7 @@ def explore(
                 found.cut = "states"
                 return
             known[new] = other
+            came[new] = Came(node, move, event)
             waiting.append((other, new))
 
     while waiting:
@@ -245,7 +181,7 @@ def explore(
             for event in events(one, last=True):
                 other = one.copy()
                 happen(other, event)
-                reach_node(other, False, node)
+                reach_node(other, False, node, event=event)
             continue
         here = situation(one)
         found.reached[here] = found.reached.get(here, 0) + 1
@@ -256,27 +192,27 @@ def explore(
             continue
         for move in able:
             found.played[move[0]] = found.played.get(move[0], 0) + 1
-            reach_node(done_move(one, move), False, node)
-    found.states = sum(robot for robot, _ in known)
-    if found.whole:
-        stuck = _stuck(known, before, ends)
-        found.stuck = situation(stuck) if stuck is not None else None
+            reach_node(done_move(one, move), False, node, move)
+
+    def possible(one: DeclaredGame) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(name for name, _ in moves(one)))
+
+    keys = [key for robot, key in known if robot]
+    found.states = len(keys)
+    if found.cut:
+        found.shares = shares(game.declaration, keys, len(game.players))
+        return found
+    stuck = without_end(known, before, ends)
+    lost = next((node for node in stuck if node[0]), None)
+    if lost is not None:
+        found.lost, found.loop = (
+            Trap(
+                way_to(nodes[0], came, lambda node: situation(known[node])),
+                {situation(known[node]): possible(known[node]) for node in nodes},
+            )
+            for nodes in ([lost], [node for node in loop_in(stuck, before) if node[0]])
+        )
     return found
-
-
-def _stuck(
-    known: dict[_Node, DeclaredGame],
-    before: dict[_Node, list[_Node]],
-    ends: list[_Node],
-) -> DeclaredGame | None:
-    """Return a state from which no end can be reached, None if there is none."""
-    can, waiting = set(ends), deque(ends)
-    while waiting:
-        for earlier in before.get(waiting.popleft(), ()):
-            if earlier not in can:
-                can.add(earlier)
-                waiting.append(earlier)
-    return next((game for node, game in known.items() if node not in can), None)
 
 
 def search_game(game: DeclaredGame) -> DeclaredGame:

@@ -14,7 +14,7 @@ from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.ahead import Leg, moment_key, nearest_way
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.search import Event
+from tangy_profiles.declared.search_way import Event
 from tangy_profiles.declared.shown_moves import ShownMoves
 from tangy_profiles.scene import ArrangedSituation
 from tangy_profiles.state import EVERYBODY, ActivityState, Outcome

@@ -1,0 +1,167 @@
+"""In words: what a search of an activity's games found wrong, and how far it came."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from tangy_profiles.declared.vocabulary import ADDRESSED, ASKING, ITEMS, PLACE, TURN
+from tangy_tui.text.numbers import counted
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.declared.activity import DeclaredActivity
+    from tangy_profiles.declared.checking import ActivityFlaw, Findings
+    from tangy_profiles.declared.search import Cut
+    from tangy_profiles.declared.search_way import Event
+    from tangy_profiles.declared.state_keys import Share
+    from tangy_tui.learning.coverage_proof import CoverageProof
+
+MOST_SHARES = 3
+"""So many of the facts that make the most states are named."""
+MOST_SITUATIONS = 6
+"""So many situations from which no game ends are listed."""
+BUILT_IN = {
+    ITEMS: "the rounds",
+    TURN: "the turns",
+    ASKING: "the requests for help",
+    PLACE: "the robot's place",
+    ADDRESSED: "the person spoken to last",
+    "last to act": "'last to act'",
+    "quietest": "'quietest'",
+}
+"""What makes states beside the facts of the file."""
+
+
+def finding_words(source: str, found: ActivityFlaw) -> str:
+    """Say what is wrong with an activity, in one line that names the place."""
+    name = repr(found.name)
+    match found.flaw:
+        case "stage never reached":
+            words = f"stages: no game reaches the stage {name}"
+        case "situation never reached":
+            words = f"stages: this situation never occurs: {found.name}"
+        case "fact never changes":
+            words = f"facts.{found.name}: nothing ever sets it"
+        case "fact never cleared":
+            words = f"facts.{found.name}: once it has changed, no behaviour sets it back"
+        case "fact never looked at":
+            words = f"facts.{found.name}: no stage, condition or text looks at it"
+        case "behaviour never possible":
+            words = f"behaviours.{found.name}: it can never be chosen; check 'needs' and 'to'"
+        case "text lacks a word":
+            words = f"behaviours.{found.name}: {found.text!r} lacks a word when it is said"
+        case "never ends":
+            words = f"stages: from here no game can end: {found.name}"
+    return f"{source}: {words}."
+
+
+def dead_end_lines(activity: DeclaredActivity, found: ActivityFlaw) -> Iterator[str]:
+    """Tell the shortest way to where no game can end, and what can be done there."""
+    end = found.dead_end
+    if end is None:
+        return
+    teams = bool(activity.teams)
+    games = f"games of {_sizes_words((end.players,), teams=teams)}"
+    yield f"The shortest way there, in {games}{' that go as expected' if end.as_expected else ''}:"
+    if not end.trap.way:
+        yield "  It is where each game begins."
+    for number, step in enumerate(end.trap.way, 1):
+        whom = f" ({_player(step.whom)})" if step.whom is not None else ""
+        yield f"  {number}. {activity.in_names(step.situation)} -> {step.behaviour}{whom}"
+        yield from (f"     then {_event_words(event)}" for event in step.then)
+    yield "From then on only these are possible:"
+    for situation, behaviours in islice(end.trap.possible.items(), MOST_SITUATIONS):
+        yield f"  {activity.in_names(situation)} -> {', '.join(behaviours)}"
+    more = len(end.trap.possible) - MOST_SITUATIONS
+    if more > 0:
+        yield f"  and {counted(more, 'more situation')}"
+
+
+def _event_words(event: Event) -> str:
+    """Say what happens after a behaviour: time in s, or acts of people."""
+    if isinstance(event, float):
+        return f"{event:.0f} s pass"
+    return "; ".join(
+        f"{f'{_player(act.who)}: ' if act.who else ''}{act.fact} is {act.value}" for act in event
+    )
+
+
+def _player(id: str) -> str:
+    """Name a player of a search: the people in it have no names, and teams have their own."""
+    return {"one": "player 1", "other": "player 2"}.get(id, id)
+
+
+def shares_words(shares: Sequence[Share]) -> str:
+    """Say what makes the most states, and how an author can have fewer."""
+    named = [
+        f"{BUILT_IN.get(one.name, repr(one.name))} ({one.times:.1f} times as many)"
+        for one in shares[:MOST_SHARES]
+    ]
+    return (
+        f"What makes the most states: {', '.join(named)}. For fewer, give these facts fewer values"
+        " or bands, clear them when they no longer matter, or name them in fewer conditions."
+    )
+
+
+def proof_words(activity: Activity, found: CoverageProof) -> list[str]:
+    """Say for which groups a search of all games has proved that everything was shown."""
+    teams = bool(activity.teams)
+    reached = counted(len(found.reached), "situation")
+    lines = []
+    if found.proved:
+        lines.append(f"Tangy searched all games of {_sizes_words(found.proved, teams=teams)}.")
+    lines += [
+        f"Tangy could not search all games of {_sizes_words((size,), teams=teams)}: "
+        f"{_cut_words(one.cut, one.states)}"
+        for size, one in found.searches
+        if one.cut
+    ]
+    if not teams:
+        lines.append("Larger groups were not searched.")
+    if found.open:
+        lines.append(f"{reached} came about, and in these Tangy would ask you:")
+        lines += [
+            f"  {activity.in_words(one)}{': for whom?' if why else ''}"
+            for one, why in found.open.items()
+        ]
+    else:
+        lines.append(f"{reached} came about, and each was shown.")
+    if found.stuck is not None:
+        lines.append(f"From here no game ends: {activity.in_words(found.stuck)}.")
+    return lines
+
+
+def search_lines(found: Findings, *, teams: bool) -> list[str]:
+    """Say how far the games of an activity were searched, and what did not come up by then."""
+    tried = [one for one in found.searches if not one.as_expected]
+    whole = tuple(one.players for one in tried if not one.cut)
+    lines = [f"searched all games of {_sizes_words(whole, teams=teams)}."] if whole else []
+    lines += [
+        f"not searched to the end: games of {_sizes_words((one.players,), teams=teams)}"
+        f"{' that go as expected' if one.as_expected else ''}. "
+        f"{_cut_words(one.cut, one.states)}"
+        for one in found.searches
+        if one.cut
+    ]
+    shares = next((one.shares for one in found.searches if one.shares), ())
+    if shares:
+        lines.append(shares_words(shares))
+    if found.not_met:
+        names = ", ".join(one.name for one in found.not_met)
+        lines.append(f"did not come up by then, and may be impossible: {names}.")
+    return lines
+
+
+def _cut_words(cut: Cut, states: int) -> str:
+    why = "the time for it was over" if cut == "time" else "there are too many"
+    return f"The search stopped after {counted(states, 'state')}, because {why}."
+
+
+def _sizes_words(sizes: Sequence[int], *, teams: bool) -> str:
+    """Name sizes of groups: "1, 2 and 3 players"."""
+    *first, last = map(str, sizes)
+    both = f"{', '.join(first)} and {last}" if first else last
+    noun = "team" if teams else "player"
+    return f"{both} {noun if list(sizes) == [1] else noun + 's'}"
