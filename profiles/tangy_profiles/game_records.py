@@ -277,15 +277,15 @@ class FaultMove(EventRecord):
     move: Flat[RecoveryEvent]
 
 
-CallStage = Literal["tried", "sent", "answered", "failed"]
-"""Outcome of a call; a person is reached only when they have answered."""
+CallStage = Literal["tried", "sent", "answered", "failed", "reached"]
+"""Outcome of a call: a person `answered`, or staff say that they have `reached` them."""
 
 
 @kind("call")
 class CallMade(EventRecord):
     """Somebody was called about a fault: in which role, by which way, and what came of it.
 
-    `said` is the answer, or why the call failed.
+    `said` is the answer, why the call failed, or who says that the person was reached.
     """
 
     game: str

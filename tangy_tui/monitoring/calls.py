@@ -29,12 +29,20 @@ Way = Callable[[Contact, Mapping[str, Any], float, Callable[[CallNews], None]], 
 
 @dataclass(frozen=True, slots=True)
 class CallState:
-    """How a call stands: whom it is for, and what they said, or why it failed."""
+    """How a call stands: whom it is for, and what they said, or why it failed.
+
+    If the person was reached by other means, `said` is who says so.
+    """
 
     role: Role
     contact: Contact
     stage: CallStage
     said: str = ""
+
+    @property
+    def over(self) -> bool:
+        """Whether the person knows of the fault."""
+        return self.stage in ("answered", "reached")
 
 
 class Calls:
@@ -59,6 +67,13 @@ class Calls:
     def state(self, role: Role) -> CallState | None:
         """Return how the call to somebody about the present fault stands, None if none was made."""
         return self._states.get(role)
+
+    def to_call(self, role: Role) -> Contact | None:
+        """Return who would be called now: nobody if it is under way, was answered, or cannot be."""
+        contact, there = self._contacts[role], self._states.get(role)
+        if contact is None or not contact.reachable:
+            return None
+        return contact if there is None or there.stage == "failed" else None
 
     def begin(self, fault: Fault) -> None:
         """Take it that another fault halts the robot: staff are called, if that can be done."""
@@ -104,7 +119,7 @@ class Calls:
         contact = self._contacts[role]
         if contact is None:
             return False
-        self._take(fault, CallState(role, contact, "answered", by))
+        self._take(fault, CallState(role, contact, "reached", by))
         return True
 
     def _message(self, role: Role, fault: Fault) -> dict[str, Any]:
@@ -120,7 +135,7 @@ class Calls:
         with self._lock:
             before = self._states.get(state.role)
             current = self._fault == fault.id
-            if current and before is not None and before.stage == "answered":
+            if current and before is not None and before.over:
                 return
             if current:
                 self._states[state.role] = state
@@ -131,7 +146,7 @@ class Calls:
             game=fault.game,
             fault=fault.id,
             role=state.role,
-            way=_way_of(state.contact),
+            way="key" if state.stage == "reached" else _way_of(state.contact),
             stage=state.stage,
             said=state.said,
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact
 from tangy_profiles.reading import plain
@@ -31,6 +31,11 @@ def _named(contact: Contact) -> str:
     return f"{contact.name}: {contact.telephone}" if contact.telephone else contact.name
 
 
+def calling_words(contact: Contact) -> str:
+    """Say that somebody is being called, and how to call them where nobody answers."""
+    return plain(f"Tangy calls {_named(contact)} ...")
+
+
 def call_words(state: CallState) -> str:
     """Say how a call stands: somebody is reached only when they have answered."""
     contact = state.contact
@@ -45,11 +50,17 @@ def call_words(state: CallState) -> str:
         case "answered":
             said = f": {state.said.rstrip('.')}" if state.said else ""
             words = f"{contact.name} has answered{said}."
+        case "reached":
+            words = f"{contact.name} was reached, by {state.said}."
+        case forgotten:
+            assert_never(forgotten)
     return plain(words)
 
 
 def logged_words(role: str, way: str, stage: str, said: str) -> str:
     """Say what became of a call, as the log has it."""
+    if stage == "reached":
+        return plain(f"The {role} was reached, by {said}.")
     stages = {
         "tried": "a message is being sent",
         "sent": "a message was sent, and not answered yet",
@@ -65,6 +76,8 @@ def expert_words(game: Supervision) -> str:
     state = None if game.calls is None else game.calls.state(EXPERT)
     if state is not None:
         return call_words(state)
+    if (contact := None if game.calls is None else game.calls.to_call(EXPERT)) is not None:
+        return calling_words(contact)
     return f"{whom_to_call(game.robot)} {CALLS_NOBODY}"
 
 

@@ -60,11 +60,18 @@ def failed_words(error: Exception) -> str:
     return f"{error} Nothing was changed: try again."
 
 
+def to_be_reached(game: Supervision) -> bool:
+    """Return whether staff may say that they have reached the expert."""
+    if game.calls is None or game.robot.expert is None:
+        return False
+    state = game.calls.state(EXPERT)
+    return state is None or not state.over
+
+
 def called_words(game: Supervision, *, restarted: bool) -> str:
     """Say who was called and has answered, or whom to call, and how recovery stands."""
     begun = f"{RESTARTED} " if restarted else ""
-    state = None if game.calls is None else game.calls.state(EXPERT)
-    waits = "" if state is None or state.stage == "answered" else f"{REACHED_TOO} "
+    waits = f"{REACHED_TOO} " if to_be_reached(game) else ""
     return f"{begun}{expert_words(game)} {waits}{WHEN_WELL}"
 
 

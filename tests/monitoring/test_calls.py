@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -19,33 +17,8 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.calls import Calls
 from tangy_tui.text.calls import call_words, expert_words
 from tests.monitoring.conftest import Supervise
+from tests.support.telephone import ANNA, STATION, Line
 from tests.support.waiting import wait_until
-
-ANNA = Contact("Anna Berg", "030 901820", url="http://127.0.0.1:9/tangy")
-STATION = Contact("Station 2", command=("ring",))
-
-
-class Line:
-    """A line on which people are called; what becomes of a call is said by the test."""
-
-    def __init__(self) -> None:
-        self.told: dict[str, Callable[[CallNews], None]] = {}
-        self.messages: list[Mapping[str, Any]] = []
-        self._come = threading.Event()
-
-    def __call__(
-        self,
-        contact: Contact,
-        message: Mapping[str, Any],
-        seconds: float,
-        told: Callable[[CallNews], None],
-    ) -> None:
-        self.messages.append(message)
-        self.told[contact.name] = told
-
-    def says(self, name: str, stage: Any, said: str = "") -> None:
-        wait_until(lambda: name in self.told, "somebody is called")
-        self.told[name](CallNews(stage, said))
 
 
 @pytest.fixture
@@ -99,7 +72,7 @@ def test_a_call_that_fails_one_that_is_answered_late_and_by_a_key_are_told_apart
     assert "030 901820" not in expert_words(game) and "I am on my way" in expert_words(game)
     line.says("Anna Berg", "failed", "too late")
     assert "I am on my way" in expert_words(game)  # what was answered stays so
-    assert game.reached("Ada")
+    assert game.reached("Ada") and "I am on my way" in expert_words(game)
     stages = [stage for role, stage, _ in logged(workspace.store) if role == EXPERT]
     assert stages == ["tried", "failed", "tried", "sent", "answered"]
 
@@ -138,7 +111,10 @@ def test_where_nobody_can_be_called_it_is_never_said_that_somebody_was(
     assert not line.messages and "calls nobody" in expert_words(game)
     assert logged(workspace.store) == []
     assert game.reached("Ada")  # by their own telephone
-    assert logged(workspace.store) == [(EXPERT, "answered", "Ada")]
+    assert logged(workspace.store) == [(EXPERT, "reached", "Ada")]
+    assert "Anna Berg was reached, by Ada." in expert_words(
+        game
+    )  # it is not said that she answered
 
 
 def test_simulated_games_call_nobody(supervise: Supervise) -> None:
@@ -148,9 +124,9 @@ def test_simulated_games_call_nobody(supervise: Supervise) -> None:
 def test_each_stage_of_a_call_has_words_of_its_own(calls: Calls) -> None:
     from tangy_tui.monitoring.calls import CallState
 
-    stages = ("tried", "sent", "failed", "answered")
+    stages = ("tried", "sent", "failed", "answered", "reached")
     words = [call_words(CallState(STAFF_ROLE, STATION, stage)) for stage in stages]  # type: ignore[arg-type]
-    assert len(set(words)) == 4 and all("Station 2" in one for one in words)
+    assert len(set(words)) == 5 and all("Station 2" in one for one in words)
 
 
 @pytest.mark.parametrize(

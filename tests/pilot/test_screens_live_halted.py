@@ -9,15 +9,19 @@ import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import FAULT, STAFF
+from tangy_profiles.contacts import EXPERT
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_records import CallMade
 from tangy_profiles.health import ERROR, STALE, DeviceState
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.calls import Calls
 from tangy_tui.text import halts
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
 from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.support.telephone import ANNA, Line
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
@@ -167,3 +171,72 @@ async def test_a_lost_link_that_was_a_freeze_is_called_what_it_is_as_soon_as_tha
         link.ail("link", frozen=4.0)
         await until_shown(pilot, lambda: "stands still: The robot's own program" in seen(pilot))
         assert "network" not in seen(pilot), "nobody is sent to the cables"
+
+
+async def halted_with_an_expert(
+    pilot: TangyPilot, link: HeldLink, workspace: Workspace, line: Line
+) -> None:
+    """Let the stop button halt a game in which Tangy itself can call the expert."""
+    await paused_after(pilot, link, 2)
+    supervision = live(pilot).control.supervision
+    supervision.robot = replace(workspace.robot, expert=ANNA)
+    supervision.call_by(Calls(supervision.robot, workspace.store.append, line))
+    await halting(pilot, link, "stop_button")
+
+
+async def test_the_dialog_says_what_came_of_each_call_and_calls_again_after_one_that_failed(
+    run: Run,
+    program: Program,
+    link: HeldLink,
+    workspace: Workspace,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("tangy_tui.monitoring.supervision.FIRST_SECONDS", 0.0)
+    line = Line()
+    async with run(app=program, size=(120, 40)) as pilot:
+        await halted_with_an_expert(pilot, link, workspace, line)
+        await pilot.press("e")
+        await until_shown(pilot, lambda: "sending a message to Anna Berg" in seen(pilot))
+        line.says("Anna Berg", "failed", "no line")
+        await until_shown(pilot, lambda: "Tangy cannot reach Anna Berg (no line)" in seen(pilot))
+        assert "R reached" in seen(pilot)
+        await pilot.press("e")
+        await until_shown(pilot, lambda: len(line.messages) == 2)
+        line.says("Anna Berg", "sent")
+        await until_shown(pilot, lambda: "has sent a message to Anna Berg" in seen(pilot))
+        await pilot.press("e")  # that call still waits for an answer
+        assert len(line.messages) == 2
+        line.says("Anna Berg", "answered", "I am on my way")
+        await until_shown(pilot, lambda: "Anna Berg has answered: I am on my way." in seen(pilot))
+        await until_shown(pilot, lambda: "R reached" not in seen(pilot))
+    calls = [e.record for e in workspace.store.events(CallMade) if e.record.role == EXPERT]
+    assert [(call.stage, call.said) for call in calls] == [
+        ("tried", ""),
+        ("failed", "no line"),
+        ("tried", ""),
+        ("sent", ""),
+        ("answered", "I am on my way"),
+    ]
+
+
+@pytest.mark.slow
+async def test_the_screen_lives_while_the_first_news_of_a_call_is_waited_for(
+    run: Run,
+    program: Program,
+    link: HeldLink,
+    workspace: Workspace,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("tangy_tui.monitoring.supervision.FIRST_SECONDS", 60.0)
+    line = Line()
+    async with run(app=program, size=(120, 40)) as pilot:
+        await halted_with_an_expert(pilot, link, workspace, line)
+        try:
+            await pilot.press("e")
+            await until_shown(pilot, lambda: "! Tangy calls Anna Berg" in seen(pilot))
+            await lives(pilot, link)
+            await pilot.press("ctrl+x")
+            await until_shown(pilot, lambda: "stop: staff stopped it" in link.told)
+        finally:
+            line.says("Anna Berg", "answered")
+        await until_shown(pilot, lambda: "Anna Berg has answered." in seen(pilot))

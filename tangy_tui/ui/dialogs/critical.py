@@ -18,7 +18,7 @@ from tangy_tui.monitoring.calls import CallState
 from tangy_tui.monitoring.fault import OVER, Fault
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text import halts
-from tangy_tui.text.calls import staff_words, whom_to_call
+from tangy_tui.text.calls import calling_words, staff_words, whom_to_call
 from tangy_tui.text.fault_views import ALSO_WRONG, HOW_KNOWN
 from tangy_tui.text.faults import (
     ages_of,
@@ -170,6 +170,7 @@ class CriticalDialog(Dialog[None]):
             return
         if self._call != self._call_state() is not None:
             self.say(self._whom_to_call(False))
+            self._show_keys()
         before = self._now
         words = self._is_there()
         if words != before:
@@ -223,7 +224,11 @@ class CriticalDialog(Dialog[None]):
         if key == "expert" and not self._called:
             if self._desk.restarts:
                 return halts.RESTARTING
-            return halts.CALLING if self._desk.simulated else ""
+            if self._desk.simulated:
+                return halts.CALLING
+            calls = self._desk.supervision.calls
+            contact = None if calls is None else calls.to_call(EXPERT)
+            return "" if contact is None else calling_words(contact)
         return halts.LOOKING if key == "accept" and self._fault.acknowledged else ""
 
     async def _tried(self, key: str) -> None:
@@ -274,7 +279,9 @@ class CriticalDialog(Dialog[None]):
 
     @property
     def _called(self) -> bool:
-        """Whether staff asked whom to call, and it was not found to be still there since then."""
+        """Whether `e` has done what it can: no call failed, and `r` did not find it still there."""
+        if (state := self._call_state()) is not None and state.stage == "failed":
+            return False
         kinds = [m.kind for m in self._fault.moves if m.kind in ("expert called", "still there")]
         return kinds[-1:] == ["expert called"]
 
@@ -302,8 +309,8 @@ class CriticalDialog(Dialog[None]):
         if self._doing:
             return ("stop", "help")
         seen = () if self._fault.acknowledged else ("acknowledge",)
-        state = self._call_state()
-        waits = state is not None and state.stage != "answered"
+        game = self._desk.supervision
+        waits = halts.to_be_reached(game) and (self._called or self._call_state() is not None)
         reached = ("reached",) if waits else ()
         return (*seen, "expert", *reached, "accept", "back:give up", "help")
 
