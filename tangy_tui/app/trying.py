@@ -10,6 +10,7 @@ from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
+from tangy_profiles.state import EVERYBODY
 
 MOST_STEPS = 500
 
@@ -54,7 +55,7 @@ def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]
         action = activity.action(behaviour, whom, None)
         outcome = world.execute(action)
         said, _ = activity.words_of(action, outcome, lambda id: names.get(id, id))
-        did = {names[id]: what for id, what in world.scene().doing.items() if what != "watches"}
+        did = {names.get(id, EVERYBODY): ", ".join(acts) for id, acts in world.happened.items()}
         yield TriedStep(number, situation, expected, names.get(whom or "", ""), said, did)
         if world.over:
             return

@@ -124,6 +124,7 @@ class TeachingLines:
         self.plays = False
         """Whether the teacher has left to see Tangy run a game."""
         self._tour = Tour() if tour else None
+        self._scripted = scripted
         self._kept = False  # something of the present demonstration is in the log
         self._complete = False  # a demonstration was completed in this session
         self._spoken: asyncio.Future[Heard | None] | None = None
@@ -237,7 +238,7 @@ class TeachingLines:
         text = line.strip()
         if self._tour is not None and self._tours(text):
             return None
-        if not text and self._yes.by_person and self._teaching.question is None:
+        if not text and not self._scripted and self._teaching.question is None:
             can = sayable_now(self._teaching.sayable)
             self._write(f"{SAYABLE}: {can}." if can else GAME_OVER)
         if not text or text.startswith("#"):

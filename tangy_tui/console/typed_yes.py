@@ -42,11 +42,6 @@ class TypedYes:
         self._random = random.SystemRandom()
         self.key = "Y"
 
-    @property
-    def by_person(self) -> bool:
-        """Whether a person types the lines now."""
-        return self._terminal
-
     def ask(self, typed: SimpleQueue[str | None] | None = None) -> str:
         """Drop the answers that were typed ahead, and return what says yes to a new question.
 

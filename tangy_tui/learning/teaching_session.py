@@ -148,7 +148,7 @@ class TeachingSession:
         if self.demonstration.finished:
             return ()
         situation = self.world.observe().situation
-        return self._verifier.sayable(self._remarks.usual(situation))
+        return self._verifier.sayable(self._remarks.usual(situation), self.world)
 
     @property
     def remark(self) -> Remark | None:

@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from tangy_profiles.declared.fitting import fitting
+from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import EVERYBODY, FRONT, ActivityState
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
@@ -180,16 +182,19 @@ class Verifier:
             return self._offer(said, commands)
         return self._ask(commands[0], commands[1:])
 
-    def sayable(self, usual: Sequence[str] = ()) -> tuple[str, ...]:
+    def sayable(self, usual: Sequence[str] = (), world: object = None) -> tuple[str, ...]:
         """Return a phrase for each behaviour that can be done now, best first.
 
-        First come the `usual` ones, then what the activity expects here. Beside a person follows
-        the behaviours for a person, elsewhere the behaviours for the group.
+        First come the `usual` ones, then what the activity expects here. In a `world` with a game
+        declared by facts those follow that fit it best; in others the behaviours for a person
+        beside one, and elsewhere the behaviours for the group.
         """
         state, activity = self._observe(), self._activity
         expected = activity.expected.get(state.situation)
         beside = state.place != FRONT
         rest = sorted(activity.behaviours, key=lambda name: self._attends(name) is not beside)
+        if isinstance(game := getattr(world, "game", None), DeclaredGame):
+            rest = fitting(game)
         order = dict.fromkeys((*usual, *([expected] if expected else ()), *rest))
         phrases: list[str] = []
         for name in order:

@@ -25,6 +25,7 @@ from tangy_tui.interaction.game_events import BeliefUpdated
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.text.coach import SAYABLE
 from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.teaching_commands import command_line
 from tests.support.staff_lines import play_by_turns
@@ -254,13 +255,22 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(workspace: Worksp
     assert not any(line.startswith("You left after") for line in after)
 
 
-def test_enter_alone_lists_what_can_be_said_now(workspace: Workspace) -> None:
+@pytest.mark.parametrize("terminal", [True, False], ids=["terminal", "pipe"])
+def test_enter_alone_lists_what_can_be_said_now(workspace: Workspace, terminal: bool) -> None:
     typed, said = iter(["\n", "quit"]), list[str]()
     teaching = workspace.teaching("Ada", 1)
-    yes = TypedYes(terminal=True, setting="y", flush=lambda: None)
+    yes = TypedYes(terminal=terminal, setting="y", flush=lambda: None)
     session = TeachingLines(teaching, lambda: next(typed, None), said.append, yes=yes)
     asyncio.run(session.run())
     assert teaching.sayable and all(phrase in said[-1] for phrase in teaching.sayable)
+
+
+def test_an_empty_line_of_a_script_says_nothing(workspace: Workspace) -> None:
+    typed, said = iter(["\n", "\n", "quit"]), list[str]()
+    teaching = workspace.teaching("Ada", 1)
+    session = TeachingLines(teaching, lambda: next(typed, None), said.append, scripted=True)
+    asyncio.run(session.run())
+    assert not any(SAYABLE in line for line in said)
 
 
 def test_after_a_game_by_lines_tangy_learns_and_plays_by_their_words(tangy: Tangy) -> None:

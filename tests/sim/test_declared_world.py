@@ -63,3 +63,20 @@ def test_with_clear_answers_the_games_are_as_without_the_chance() -> None:
         assert move is not None
         action = activity.action(activity.behaviours[move[0]], move[1], None)
         assert usual.execute(action) == outcome
+
+
+def test_everything_that_a_person_did_after_a_behaviour_is_told() -> None:
+    activity, several = declared("exercises"), 0
+    taught = expected_moves(activity)
+    for seed in range(12):
+        world = DeclaredWorld(activity, PEOPLE, seed=seed)
+        while not world.over:
+            move = taught.move(world.game)
+            assert move is not None
+            before = world.game.copy()
+            world.execute(activity.action(activity.behaviours[move[0]], move[1], None))
+            for person, did in world.happened.items():
+                several += len(did) > 1
+                assert world.game.acts[person] - before.acts[person] <= len(did)
+                assert all(one in world.scene().doing[person] for one in did)
+    assert several > 0

@@ -73,7 +73,7 @@ class DeclaredLiveWorld(LiveWorld):
         self.game = DeclaredGame(declaration, self.people, order)
         self.tracker = DeclaredTracker(self.activity, self.game)
         self._started = self.link.time
-        self._did: dict[str, str] = {}
+        self._did: dict[str, list[str]] = {}
         self._told.clear()
         self.unsure = None
         self._asked_again: dict[str, int] = {}
@@ -174,7 +174,7 @@ class DeclaredLiveWorld(LiveWorld):
             if fact == ASKING and who is not None:
                 self.requests.ask_for(who)
             if self.game.observe(fact, who, raw, observed.certainty) and who is not None:
-                self._did[who] = f"{fact}: {raw}"
+                self._did.setdefault(who, []).append(f"{fact}: {raw}")
 
     # ------------------------------------------------------------------------ behaviours
 
@@ -332,4 +332,5 @@ class DeclaredLiveWorld(LiveWorld):
     def scene(self) -> Scene:
         """Return what there is to see, for a screen to draw."""
         scene = super().scene()  # its tracker is a view of the game
-        return replace(scene, doing={**scene.doing, **self._did})
+        did = {who: ", ".join(acts) for who, acts in self._did.items()}
+        return replace(scene, doing={**scene.doing, **did})

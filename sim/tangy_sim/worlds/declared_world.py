@@ -89,7 +89,8 @@ class DeclaredWorld:
         order = order_of(self._declaration.items, self._items)
         self.game = DeclaredGame(self._declaration, self.people, order)
         self.over = False
-        self._did: dict[str, str] = {}
+        self.happened: dict[str, list[str]] = {}
+        """What people did after the last behaviour, in order; "" is the whole group."""
         self._not_clear: list[UnclearAnswer] = []
         return self.observe()
 
@@ -121,7 +122,7 @@ class DeclaredWorld:
             else ("", "")
         )
         seconds = 1.0 + SECONDS_A_WORD * len(speech.split())
-        self._did.clear()
+        self.happened.clear()
         self._not_clear.clear()
         response = self._respond(done, action)
         self._pass(seconds)
@@ -139,7 +140,8 @@ class DeclaredWorld:
         """Return the scene for a screen to draw."""
         game = self.game
         doing = {
-            one: self._did.get(one, "asks for help" if one in game.queue else "watches")
+            one: ", ".join(self.happened.get(one, ()))
+            or ("asks for help" if one in game.queue else "watches")
             for one in self.people
         }
         return Scene(game.place, tuple(game.queue), doing, (), None)
@@ -195,6 +197,6 @@ class DeclaredWorld:
         return False
 
     def _take_in(self, act: Act) -> None:
-        if take_in(self.game, act) and act.who is not None:
-            asks = act.fact == ASKING
-            self._did[act.who] = "asks for help" if asks else f"{act.fact}: {act.value}"
+        if take_in(self.game, act):
+            did = "asks for help" if act.fact == ASKING else f"{act.fact}: {act.value}"
+            self.happened.setdefault(act.who or "", []).append(did)
