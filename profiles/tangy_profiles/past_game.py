@@ -85,6 +85,9 @@ class PastGame:
     changes: tuple[GameChange, ...] = ()
     """Changes in this game and the earlier ones beside their steps."""
 
+    acted: float = 0.0
+    """The time that was played when staff last did something that the log has, in s."""
+
     @property
     def world(self) -> GameWorld:
         """Where it was played."""
@@ -101,8 +104,8 @@ class PastGame:
 
     @property
     def seconds(self) -> float:
-        """The time that was played until the last step was over, in s."""
-        return self.clock[-1] if self.steps else 0.0
+        """The time that was played until the last step was over or staff last acted, in s."""
+        return max(self.acted, self.clock[-1] if self.steps else 0.0)
 
     def replay(self, world: Replayed) -> ActivityState:
         """Replay the logged games of the run; return the last state.
@@ -220,11 +223,13 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
     if not steps[game]:
         return None
     *earlier, own = (tuple(steps[event.record.game]) for event in run)
-    taken = tuple(
-        note.record.taken_back
+    notes = [
+        note.record
         for note in store.events(StaffAction, after=newest.seq)
-        if note.record.game == game and note.record.taken_back
-    )
+        if note.record.game == game
+    ]
+    taken = tuple(note.taken_back for note in notes if note.taken_back)
+    acted = max((note.seconds or 0.0 for note in notes), default=0.0)
     changes = tuple(
         event.record
         for event in store.events(GameChange, after=run[0].seq)
@@ -232,7 +237,7 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
     )
     began = tuple(event.record for event in run[:-1])
     return PastGame(
-        newest.record, datetime.fromisoformat(at), own, tuple(earlier), taken, began, changes
+        newest.record, datetime.fromisoformat(at), own, tuple(earlier), taken, began, changes, acted
     )
 
 

@@ -93,6 +93,11 @@ class PlannedGame:
     # ---------------------------------------------------------------- what a game shows of it
 
     @property
+    def arrived(self) -> bool:
+        """Whether the robot stands at its place in the game; a simulated one always does."""
+        return True
+
+    @property
     def seconds(self) -> float:
         """The time of the world, in s."""
         raise NotImplementedError

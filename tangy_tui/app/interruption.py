@@ -18,6 +18,11 @@ def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
     return past if past is not None and past.world == world else None
 
 
+def take_up(workspace: Workspace, past: PastGame) -> None:
+    """Let people sit as they sat in a game that is to go on; the same people take part."""
+    workspace.seat(past.beginning.people)
+
+
 def end_interrupted(workspace: Workspace, past: PastGame, reason: str) -> None:
     """Log the end of a game that was interrupted, with the reason that people read."""
     game = past.beginning.game

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
+from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.health import OK
 from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.reading import nearest, plain
@@ -72,8 +74,8 @@ class SetUp:
 
     @classmethod
     def of(cls, workspace: Workspace, pace: float = USUAL_PACE) -> SetUp:
-        """Begin with everybody here, each at their seat; `pace` is in s from call to call."""
-        return cls(workspace, [person.id for person in workspace.people], pace=pace)
+        """Begin with everybody here, as they sat last; `pace` is in s from call to call."""
+        return cls(workspace, seats_as_before(workspace), pace=pace)
 
     # ----------------------------------------------------------------------------- the choices
 
@@ -151,7 +153,7 @@ class SetUp:
             workspace.change_activity(before)
             raise
         self.patterns, self.strength = [], ""
-        self.seats = [person.id for person in workspace.people]
+        self.seats = seats_as_before(workspace)
         self.away &= set(self.seats)
 
     def choose_strength(self, name: str) -> None:
@@ -307,6 +309,21 @@ class SetUp:
             return False
         self.said = True
         return True
+
+
+def seats_as_before(workspace: Workspace) -> list[str]:
+    """Let people sit as in the last game among people, or on the bench; return their ids.
+
+    People who were not in it sit behind the others.
+    """
+    there = [person.id for person in workspace.people]
+    games = [event.record for event in workspace.store.events(GameBeginning)]
+    last = next((game.people for game in reversed(games) if game.world in (BENCH, LIVE)), ())
+    before = {person: place for place, person in enumerate(last)}
+    seats = sorted(there, key=lambda person: before.get(person, len(before)))
+    if seats != there:
+        workspace.seat(seats)
+    return seats
 
 
 def battery_of(world: World | None) -> float | None:

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from tangy_profiles.scene import Scene
     from tangy_tui.learning.policy import Decision, Policy
 
-PersonState = Literal["visited", "asks", "away", "plays"]
+PersonState = Literal["visited", "comes", "asks", "away", "plays"]
+"""`comes`: the robot is on its way to the person."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,14 +50,18 @@ class StaffWatch:
     """Keeps since when people ask and when they were visited, from one look to the next."""
 
     def __init__(self) -> None:
-        self.begin(0.0)
+        self._clear()
 
-    def begin(self, now: float) -> None:
-        """Begin a game at a time in s."""
-        self._began = now
+    def _clear(self) -> None:
+        self._began: float | None = None
         self._ended: float | None = None
         self._asks: dict[str, float] = {}
         self._visited: dict[str, float] = {}
+
+    def begin(self, now: float) -> None:
+        """Begin a game at a time in s."""
+        self._clear()
+        self._began = now
 
     def end(self, now: float) -> None:
         """Let the clock stand from a time in s on: the game is over."""
@@ -68,8 +73,9 @@ class StaffWatch:
         for step, over in zip(past.steps, past.clock, strict=True):
             if step.target in past.beginning.people and step.completed:
                 ends[step.target] = over
-        self.begin(now - past.seconds)
-        self._visited = {person: self._began + end for person, end in ends.items()}
+        began = now - past.seconds
+        self.begin(began)
+        self._visited = {person: began + end for person, end in ends.items()}
 
     def look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
         """Take a look at a time in s, and return what there is to see."""
@@ -78,24 +84,27 @@ class StaffWatch:
             del self._asks[person]
         for person in scene.requests:
             self._asks.setdefault(person, now)
-        if scene.place != FRONT:
-            self._visited[scene.place] = now
         planned = world if isinstance(world, PlannedGame) else None
+        there = planned is None or planned.arrived
+        if scene.place != FRONT and there:
+            self._visited[scene.place] = now
         away = frozenset[str]() if planned is None else planned.away
         return StaffView(
-            max(0.0, now - self._began),
+            0.0 if self._began is None else max(0.0, now - self._began),
             scene.called,
-            tuple(self._person(person, scene, now, away) for person in people),
+            tuple(self._person(person, scene, now, away, there) for person in people),
             0.0 if planned is None else planned.pace,
         )
 
-    def _person(self, person: str, scene: Scene, now: float, away: frozenset[str]) -> PersonNow:
+    def _person(
+        self, person: str, scene: Scene, now: float, away: frozenset[str], there: bool
+    ) -> PersonNow:
         asks, visited = self._asks.get(person), self._visited.get(person)
         state: PersonState = "asks" if person in scene.requests else "plays"
         if person in away:
             state = "away"
         elif scene.place == person:
-            state = "visited"
+            state = "visited" if there else "comes"
         turn = scene.requests.index(person) + 1 if person in scene.requests else 0
         return PersonNow(
             person,

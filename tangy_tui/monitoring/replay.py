@@ -235,7 +235,7 @@ def _replay(
     replay = GameReplay(game, faults=fold_faults(told, names))
     faults = {fault.id: fault for fault in replay.faults}
     moved: dict[str, int] = {}  # of the faults that were told of so far
-    step = 0
+    step, acted = 0, 0.0
     for event in events:
         what: What
         match event.record:
@@ -255,7 +255,8 @@ def _replay(
                     replay.unasked.add((step + 1, what.person))
             case GameResumed(by=by):
                 what = Noted(RESUMED, by)
-            case StaffAction(what=words, by=by, taken_back=taken):
+            case StaffAction(what=words, by=by, taken_back=taken, seconds=at):
+                acted = max(acted, at or 0.0)  # while a step was carried out that comes later
                 what = Noted(words, by, taken)
             case CallMade() as what:
                 pass
@@ -271,7 +272,7 @@ def _replay(
                 moved[id] += 1
             case _:  # an end; or told of before, or done about a fault that is left out
                 continue
-        replay.moments.append(Moment(replay.seconds, step, event.at, what))
+        replay.moments.append(Moment(max(acted, replay.seconds), step, event.at, what))
     return replay
 
 

@@ -292,8 +292,9 @@ class Supervision:
     def note(self, what: str, by: str, taken_back: int = 0) -> None:
         """Log what people did in a game beside all this: a STOP, a fault brought about."""
         if not self.over:
+            now = max(self.seconds, self.game.log.seconds)  # of a later moment than the last step
             done = StaffAction(
-                game=self.game.game, what=what, by=by, seconds=self.seconds, taken_back=taken_back
+                game=self.game.game, what=what, by=by, seconds=now, taken_back=taken_back
             )
             self._store.append(done)
 

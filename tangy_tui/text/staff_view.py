@@ -89,7 +89,9 @@ def person_words(person: PersonNow) -> str:
         case "away":
             return "not here"
         case "visited":
-            return "visit now"  # Tangy is there, or on its way
+            return "visit now"
+        case "comes":
+            return "Tangy comes"
         case "asks":
             waits = "" if person.waits is None else f" {clock_words(person.waits)}"
             return f"asks{waits}" + (f", {seen}" if seen else "")

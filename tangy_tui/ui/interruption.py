@@ -25,7 +25,7 @@ class GameToPlay:
 
 async def ask_about_interrupted(program: Program, world: GameWorld) -> GameToPlay | None:
     """Ask about a game that was interrupted in a world; None: nothing is played now."""
-    from tangy_tui.app.interruption import end_interrupted, find_interrupted
+    from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
     from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 
     workspace = program.workspace
@@ -39,6 +39,7 @@ async def ask_about_interrupted(program: Program, world: GameWorld) -> GameToPla
     answer = await program.push_screen_wait(ChooseDialog(words, [Option(*way) for way in ways]))
     match answer:
         case "resume":
+            take_up(workspace, past)
             return GameToPlay(past)
         case "discard":
             end_interrupted(workspace, past, text.ENDED)

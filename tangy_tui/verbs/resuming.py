@@ -38,7 +38,7 @@ def past_game(
     Raises:
         TangyError: nothing was interrupted, or other people took part in it.
     """
-    from tangy_tui.app.interruption import end_interrupted, find_interrupted
+    from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
 
     if resume and discard:
         raise TangyError(text.BOTH)
@@ -54,6 +54,7 @@ def past_game(
         people = past.beginning.people
         if set(people) != set(workspace.names):
             raise TangyError(text.people_words(len(people)))
+        take_up(workspace, past)
         return past
     if not asks:
         calls = len(past.called(workspace.activity))

@@ -19,10 +19,11 @@ from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import ActivityState
 from tangy_profiles.tracker import Tracker
-from tangy_tui.app.game_commands import GoesAway, GoOn, TakeBackCall
+from tangy_tui.app.game_commands import AskFor, GoesAway, GoOn, StopRobot, TakeBackCall
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.interruption import end_interrupted, find_interrupted
+from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policies import load_policy
@@ -262,6 +263,63 @@ def test_the_clock_of_a_live_game_is_the_time_played_and_not_the_time_it_was_dea
     (game,) = read_session(workspace.store, read_games(workspace.store), {}, {}).replays
     assert game.seconds == pytest.approx(played)
     workspace.close()
+
+
+def test_a_request_that_staff_made_is_open_when_the_game_goes_on(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.next(3)
+    before.control.apply(AskFor("user3"))
+    before.next(1)
+    assert before.world.scene().requests == ("user3",)
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    after = Robot(workspace, past)
+    for _ in range(3):  # far longer than a sign may be hidden
+        after.link.time += 60.0
+        after.control.next()
+    assert after.world.scene().requests == ("user3",)
+    workspace.close()
+
+
+def test_the_clock_counts_on_from_what_staff_did_last(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.next(3)
+    before.link.time += 90.0  # nothing is called meanwhile
+    before.control.apply(StopRobot())
+    played = before.control.supervision.game.log.seconds
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None and played > 90 and past.seconds == pytest.approx(played)
+    (game,) = read_session(workspace.store, read_games(workspace.store), {}, {}).replays
+    assert game.moments[-1].seconds == pytest.approx(played)
+    workspace.close()
+
+
+def test_people_sit_as_they_sat_when_the_game_goes_on(room: Interrupted) -> None:
+    moved = ["user3", "user1", "user4", "user2"]
+    room.workspace.seat(moved)
+    room.supervision = room.new()
+    room.play(8)
+    stood = room.standing
+    room.interrupt()
+    assert list(room.workspace.names) != moved
+    take_up(room.workspace, room.past())
+    room.supervision = room.new()
+    room.resume()
+    assert list(room.workspace.names) == moved and room.standing == stood
+
+
+def test_people_are_seated_for_the_next_game_as_they_sat_in_the_last_one(taught: Path) -> None:
+    workspace = Workspace(taught)
+    moved = ["user3", "user1", "user4", "user2"]
+    workspace.seat(moved)
+    Robot(workspace)
+    workspace.close()
+    again = Workspace(taught)
+    assert list(again.names) == ["user1", "user2", "user3", "user4"]
+    assert SetUp.of(again).seats == moved == list(again.names)
+    again.close()
 
 
 def test_a_log_without_a_clock_has_the_sum_of_its_steps(room: Interrupted) -> None:

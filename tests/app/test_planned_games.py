@@ -13,6 +13,7 @@ from tangy_profiles.cards import winning_state
 from tangy_profiles.game_records import GameChange, GameStep, StaffAction
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import interrupted_game
+from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.state import FRONT
 from tangy_profiles.tracker import Tracker
 from tangy_sim.worlds.world import SimulatedWorld
@@ -378,6 +379,24 @@ def test_staff_see_the_time_and_the_visits_from_before_an_interruption(taught: P
     ago = {one.id: one.unvisited for one in view.people if one.unvisited is not None}
     assert set(ago) == visited and all(0 <= one < view.seconds for one in ago.values())
     planned.workspace.close()
+
+
+def test_a_person_is_visited_once_the_robot_stands_there(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    person = planned.world.people[1]
+    scene = replace(planned.world.scene(), place=person)
+    watch = StaffWatch()
+    assert watch.look(scene, (), 7.0, planned.world).seconds == 0  # before a game
+    watch.begin(5.0)
+
+    class OnItsWay(PlannedGame):
+        arrived = False
+        pace = 0.0
+
+    (now,) = watch.look(scene, (person,), 6.0, OnItsWay()).people
+    assert (now.state, now.unvisited) == ("comes", None)
+    (now,) = watch.look(scene, (person,), 8.0, planned.world).people
+    assert (now.state, now.unvisited) == ("visited", 0)
 
 
 def test_where_nothing_is_chosen_nothing_changes_beside_the_behaviours(planned: Planned) -> None:

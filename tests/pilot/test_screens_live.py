@@ -476,7 +476,7 @@ async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
         live(pilot).picture.show_scene(0, drive=False, pace=0)
         live(pilot).track()
         live(pilot).show_status()
-        await until_shown(pilot, lambda: "visit now" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "Tangy comes" in screen_text(pilot.app))
         await settled(pilot, lambda: screen_text(pilot.app))
         drawn = draw(pilot.app)
         link.free = True

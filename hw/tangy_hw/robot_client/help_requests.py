@@ -64,9 +64,13 @@ class HelpRequestTracker:
         """What somebody asked for by word is over."""
         self._by_word.pop(person, None)
 
-    def keep(self, asking: Collection[str]) -> None:
-        """Keep requests by word of these people alone; a resumed game has answered the others."""
-        self._by_word = {one: since for one, since in self._by_word.items() if one in asking}
+    def resume(self, asking: Collection[str]) -> None:
+        """Take the requests that an interrupted game left open for requests by word.
+
+        Their signs may not be seen again: staff may have asked for them.
+        """
+        now = self._link.time
+        self._by_word = {one: self._by_word.get(one, now) for one in asking}
 
     def set_aside(self, person: str) -> None:
         """Close a person's request, also while the sign stays up."""

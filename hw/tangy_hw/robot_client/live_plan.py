@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from math import hypot
 from typing import TypeAlias
 
 from tangy_hw.device_protocols import DeviceError, Picture
@@ -17,6 +18,9 @@ from tangy_profiles.health import OK
 from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import SEAT, Room
+
+BESIDE = 0.6
+"""Within so many m of its place the robot stands there, to those who look on."""
 
 SET_ASIDE: tuple[ChangeKind, ...] = ("others first", "played on", "left")
 """Changes by which somebody's request is over, also while the sign stays up."""
@@ -70,6 +74,15 @@ class LivePlan(PlannedGame):
         if person in self.activity.teams:
             return person
         return f"{self._room.seat_word or SEAT} {self.people.index(person) + 1}".capitalize()
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it stands at its place in the game: it may be on its way, or have been moved."""
+        state = self.link.state
+        if not state.number or state.going:
+            return not state.going
+        to = self._room.stand(self.tracker.place, self.people)
+        return hypot(to.x - state.pose.x, to.y - state.pose.y) <= BESIDE
 
     @property
     def called_now(self) -> tuple[int, ...]:

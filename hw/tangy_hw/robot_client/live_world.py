@@ -125,7 +125,7 @@ class LiveWorld(LivePlan):
         for _ in range(past.beginning.number):
             self._begin()  # each game of the run has an order of its own
         past.follow(self.tracker, self.change)
-        self.requests.keep(self.tracker.queue)
+        self.requests.resume(self.tracker.queue)
         self.calls.resume(past, self.activity)
         self._visited = past.visited(self.activity)
         self._row_began = self.seconds - past.since_call(self.activity)

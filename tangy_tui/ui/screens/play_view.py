@@ -14,7 +14,7 @@ from tangy_tui.ui.widgets.call_board import CallBoard, column_row
 from tangy_tui.ui.widgets.staff_panel import BOARD, PersonLine, StaffPanel
 from tangy_tui.world import World
 
-INKS = {"asks": "warn", "visited": "robot", "away": "dim", "plays": "text"}
+INKS = {"asks": "warn", "visited": "robot", "comes": "robot", "away": "dim", "plays": "text"}
 BEFORE = 4
 """Calls before the last one that stand beside it."""
 
