@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.codec import written
+from tangy_profiles.declared.silence import SILENCE
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import (
     AnswerNotClear,
@@ -92,6 +93,7 @@ class Unclear:
 
     person: str
     asked_again: bool
+    silent: bool = False
 
 
 OF_ITS_OWN: tuple[ChangeKind, ...] = (
@@ -260,8 +262,8 @@ def _replay(
                 what = Noted(words, by, taken)
             case CallMade() as what:
                 pass
-            case AnswerNotClear(asked_again=asked_again):
-                what = Unclear(event.person or "", asked_again)
+            case AnswerNotClear(asked_again=asked_again, source=source):
+                what = Unclear(event.person or "", asked_again, silent=source == SILENCE)
             case FaultDiagnosed(fault=id, seconds=at) if id in faults and id not in moved:
                 replay.seconds = max(replay.seconds, at)
                 moved[id] = 0

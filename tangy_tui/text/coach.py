@@ -20,8 +20,8 @@ Name = Callable[[str], str]
 NOBODY = "Nobody asks for help."
 ALL_SHOWN = "Everything that can happen has been shown."
 GUIDED = (
-    "A guided game: everything that can happen comes about once, so that you can show it. Each "
-    "is announced."
+    "A guided game: everything that can happen comes about once, so that you can show it. Tangy "
+    "announces what people do for that."
 )
 
 

@@ -81,9 +81,10 @@ def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list
             ]
         case Noted(what, by):
             return [f"*  {what}{f', by {by}' if by else ''}."]
-        case Unclear(person, asked_again):
+        case Unclear(person, asked_again, silent):
             again = ": Tangy asks again" if asked_again else ", and Tangy has asked often enough"
-            return [f"*  {name(person)} did not answer clearly{again}."]
+            did = "said nothing" if silent else "did not answer clearly"
+            return [f"*  {name(person)} {did}{again}."]
         case CallMade(role=role, way=way, stage=stage, said=said_then):
             return [f"*  {logged_words(role, way, stage, said_then)}"]
         case GameChange() as change:

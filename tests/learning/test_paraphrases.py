@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.activity import Activity, load_activity, shipped_activities
+from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.room import load_room
 from tangy_tui.language.commands import Phrasebook
@@ -19,6 +20,7 @@ from tangy_tui.language.mentions import Mentions
 from tangy_tui.language.words import words_of
 from tangy_tui.speech.evidence import USUAL
 from tangy_tui.speech.understanding import clearly_heard, understand
+from tests.support.changed import changed_trivia
 from tests.support.understood import behaviour_of
 
 BINGO = load_activity("bingo")
@@ -171,3 +173,18 @@ def test_other_wordings_are_learnt_but_not_listened_for() -> None:
         for text in behaviour.wordings:
             assert examples[words_of(text)] == behaviour.name
             assert words_of(text) not in {phrase.words for phrase in BOOK.table.all()}
+
+
+def test_wordings_of_a_declared_activity_are_learnt_as_well(tmp_path: Path) -> None:
+    phrases = 'phrases = ["give a hint", "help with the question"]\n'
+    worded = f'{phrases}wordings = ["make it a little easier"]\n'
+    activity = changed_trivia(tmp_path, (phrases, worded))
+    examples = {example.words: example.behaviour for example in examples_of(activity)}
+    assert examples[words_of("make it a little easier")] == "give hint"
+
+
+def test_a_wording_belongs_to_one_behaviour_and_is_small_letters(tmp_path: Path) -> None:
+    phrases = 'phrases = ["that is right"]\n'
+    for wording, problem in (("give a hint", "belongs to"), ("Well Done!", "small letters")):
+        with pytest.raises(ProfileError, match=problem):
+            changed_trivia(tmp_path, (phrases, f'{phrases}wordings = ["{wording}"]\n'))

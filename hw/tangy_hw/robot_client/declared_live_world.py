@@ -20,7 +20,8 @@ from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
-from tangy_profiles.declared.speech import with_names, words
+from tangy_profiles.declared.silence import silence
+from tangy_profiles.declared.speech import again, with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.defaults import ASK_AGAIN
@@ -201,7 +202,7 @@ class DeclaredLiveWorld(LiveWorld):
         self.over = game.over
         self.commands.settle()
         if not self.broken and not self.over:
-            self._let_people_act()
+            self._let_people_act(name if done.completed else "", whom)
         seconds = max(0.0, self.link.time - began)
         unclear, self._not_clear = tuple(self._not_clear), []
         return Outcome(done.completed, seconds, (), response, speech, image, unclear)
@@ -274,14 +275,23 @@ class DeclaredLiveWorld(LiveWorld):
                 return missed if self.sees_all else None
             before = now
 
-    def _let_people_act(self) -> None:
-        """Wait until people have changed what the policy sees, but no longer than the pause."""
+    def _let_people_act(self, behaviour: str, whom: str | None) -> None:
+        """Wait until people have changed what the policy sees, but no longer than the pause.
+
+        A person for whom the behaviour was, and who does nothing in the pause, is asked again in
+        the words of the file, and given another pause.
+        """
         seen, until = self.game.seen(), self.link.time + PAUSE_SECONDS
+        words = again(self.game, behaviour, whom) if behaviour and whom is not None else []
+        silent = not self._did.get(whom or "")
         try:
             while self.link.time < until and self.game.seen() == seen:
                 self.commands.wait(LOOK_SECONDS, asks=True)
                 self._hear()
+                silent = silent and self.unsure is None and not self._did.get(whom or "")
                 until += self._ask_again()
+                if whom and words and silent and self.link.time >= until:
+                    until = self._ask_silent(words, whom)
         except DeviceError:  # what keeps it from waiting is seen by what devices report
             return
 
@@ -318,6 +328,23 @@ class DeclaredLiveWorld(LiveWorld):
         text = ASK_AGAIN[times % len(ASK_AGAIN)].replace("{name}", name)
         self.say(text, Picture(text, asks=name))
         return self.link.time - began
+
+    def _ask_silent(self, words: list[str], who: str) -> float:
+        """Ask a person again who said nothing, if they may be; return until when to wait, in s.
+
+        Raises:
+            DeviceError: it could not be said or shown.
+        """
+        asks = self.may_ask_again(who) and who not in self.game.queue
+        self._not_clear.append(silence(self.game, who, asked_again=asks))
+        text = words.pop(0)
+        if not asks:
+            words.clear()
+            return self.link.time
+        self._asked_again[who] = self._asked_again.get(who, 0) + 1
+        shown = Picture(with_names(text, self.seat_of), asks=self.seat_of(who))
+        self.say(with_names(text, self.name_of), shown)
+        return self.link.time + PAUSE_SECONDS
 
     def _hear(self) -> None:
         """See what people do now, where the robot's time stands still meanwhile as well."""

@@ -193,5 +193,6 @@ def _behaviour(declaration: Declaration, one: DeclaredBehaviour) -> Behaviour:
         needs=(),
         phrases=one.phrases,
         keywords=(),
+        wordings=one.wordings,
         to=tuple(EVERYBODY if selector == "group" else selector for selector in one.to),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import cast
 
@@ -14,7 +15,18 @@ from tangy_profiles.declared.section import Section
 from tangy_profiles.declared.vocabulary import SELECTORS, Selector
 from tangy_profiles.reading import nearest
 
-KEYS = ("does", "needs", "to", "says", "phrases", "question", "posture", "image")
+KEYS = (
+    "does",
+    "needs",
+    "to",
+    "says",
+    "phrases",
+    "wordings",
+    "question",
+    "posture",
+    "image",
+    "again",
+)
 POSTURE = "rest"
 SLOT = re.compile(r"\{([^{}]*)\}")
 PHRASE = re.compile(r"[a-z']+( [a-z']+)*")
@@ -64,7 +76,15 @@ def read_behaviours(
             one.text("question", name),
             one.text("posture", POSTURE),
             _text(one, "image", one.text("image", title), slots),
+            _read_wordings(one, name, said),
+            tuple(_text(one, "again", text, slots) for text in one.texts("again", single=True)),
         )
+        if behaviour.again and not any(who != "group" for who in behaviour.to):
+            one.wrong("again", "needs a person in 'to': it is a person who is asked again")
+        for text in set(behaviour.again).intersection(chain.from_iterable(texts.values())):
+            one.wrong("again", f"{text!r} stands in 'says' already: use other words", text)
+        if behaviour.again and behaviour.invites:
+            one.wrong("again", "cannot stand with 'invite': teach when to invite a person again")
         if behaviour.invites and set(texts) != set(strategies) and texts:
             missing = next(s for s in strategies if s not in texts)
             one.wrong("says", f"says nothing by the strategy {missing!r}")
@@ -137,6 +157,17 @@ def _read_phrases(section: Section, name: str, said: dict[str, str]) -> tuple[st
         if said.setdefault(phrase, name) != name:
             section.wrong("phrases", f"{phrase!r} belongs to {said[phrase]!r} already", phrase)
     return phrases
+
+
+def _read_wordings(section: Section, name: str, said: dict[str, str]) -> tuple[str, ...]:
+    """Read other ways to ask for a behaviour: none may mean two of them."""
+    wordings = section.texts("wordings", single=True)
+    for wording in wordings:
+        if not PHRASE.fullmatch(wording):
+            section.wrong("wordings", f"{wording!r} must be small letters, as it is said", wording)
+        elif said.setdefault(wording, name) != name:
+            section.wrong("wordings", f"{wording!r} belongs to {said[wording]!r} already", wording)
+    return wordings
 
 
 def _read_speech(

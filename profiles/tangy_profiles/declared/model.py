@@ -96,6 +96,10 @@ class DeclaredBehaviour:
     question: str
     posture: str
     image: str
+    wordings: tuple[str, ...] = ()
+    """Other ways to ask for it: the understanding learns from them, nothing listens for them."""
+    again: tuple[str, ...] = ()
+    """What a person is told, one text after another, who says nothing to it."""
 
     @property
     def invites(self) -> bool:

@@ -57,6 +57,12 @@ def words(
     return next((text for text in spoken if text), ""), filled(game, declared.image, whom)
 
 
+def again(game: DeclaredGame, behaviour: str, whom: str) -> list[str]:
+    """Return what a person is told, one text after another, who says nothing to a behaviour."""
+    texts = game.declaration.behaviours[behaviour].again
+    return [text for one in texts if (text := filled(game, one, whom))]
+
+
 def empty_slots(game: DeclaredGame, template: str, whom: str | None) -> list[str]:
     """Return the slots of a text that would be empty now."""
     return [slot for slot in SLOT.findall(template) if not _value(game, slot, whom)]

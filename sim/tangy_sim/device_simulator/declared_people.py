@@ -76,9 +76,7 @@ class DeclaredPeople(People):
             self._asked_to_help(heard)
             return
         if heard.again:
-            act = self._unheard.pop(heard.person, None)
-            if act is not None and not self.game.over:
-                self._after(ACTS, partial(self._acts, act))
+            self._asked_again(heard.person or self.known.addressed or "")
             return
         behaviour, game = heard.behaviour, self.known
         if behaviour is None or self.game.over:
@@ -103,6 +101,16 @@ class DeclaredPeople(People):
         if not game.over:
             for act in acts(game, drawn=self._draw):
                 self._after(ACTS, partial(self._acts, act))
+
+    def _asked_again(self, person: str) -> None:
+        """Let a person repeat an unclear answer, or perhaps answer after saying nothing."""
+        act = self._unheard.pop(person, None)
+        if self.game.over:
+            return
+        drawn = [act] if act is not None else list(acts(self.known, drawn=self._draw))
+        for one in drawn:
+            if one.who == person:
+                self._after(ACTS, partial(self._acts, one))
 
     def ask(self, person: str) -> None:
         """Let a person raise their sign now."""

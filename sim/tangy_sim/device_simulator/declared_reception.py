@@ -49,6 +49,11 @@ class DeclaredReception:
             re.compile(re.escape(_plain(text)).replace(re.escape("{name}"), f"(?P<name>{names})"))
             for text in ASK_AGAIN
         ]
+        self._hints = [
+            _sentence(text, names, cells, activity.behaviours[name], "")
+            for name, one in activity.declaration.behaviours.items()
+            for text in one.again
+        ]
         self._sentences = sorted(sentences, key=lambda one: -one.letters)
 
     def hear(self, text: str) -> Heard | None:
@@ -64,7 +69,12 @@ class DeclaredReception:
             person = self._people.get(found.groupdict().get("name") or "", "")
             return Heard(one.behaviour, one.strategy, person, rows=tuple(rows))
         asked = next((found for one in self._again if (found := one.fullmatch(plain))), None)
-        return Heard(person=self._people[asked["name"]], again=True) if asked else None
+        asked = asked or next(
+            (found for one in self._hints if (found := one.pattern.fullmatch(plain))), None
+        )
+        if asked is None:
+            return None
+        return Heard(person=self._people.get(asked.groupdict().get("name") or "", ""), again=True)
 
     def _rows(self, columns: tuple[str, ...], said: Mapping[str, str]) -> list[int]:
         """Return the rows of the items with a said text in their columns."""

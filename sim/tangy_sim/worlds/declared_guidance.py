@@ -73,6 +73,9 @@ class GuidedDeclaredWorld(DeclaredWorld):
             self.covered = True
             super()._let_people_act()
 
+    def _ask_silent(self, behaviour: str, who: str) -> None:
+        """Ask nobody again: whoever says nothing to a `behaviour` is to say nothing."""
+
     def _next(self) -> Event | None:
         """Return what has to happen now: the next leg of the way, or the first of a new one."""
         key = moment_key(self.game)

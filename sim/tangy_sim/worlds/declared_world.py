@@ -17,7 +17,8 @@ from tangy_profiles.declared.game import DeclaredGame, Execution
 from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
-from tangy_profiles.declared.speech import words
+from tangy_profiles.declared.silence import silence
+from tangy_profiles.declared.speech import again, words
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
@@ -92,6 +93,7 @@ class DeclaredWorld:
         self.happened: dict[str, list[str]] = {}
         """What people did after the last behaviour, in order; "" is the whole group."""
         self._not_clear: list[UnclearAnswer] = []
+        self._silent: dict[str, int] = {}
         return self.observe()
 
     def resume(self, past: PastGame) -> ActivityState:
@@ -129,6 +131,8 @@ class DeclaredWorld:
         self.over = game.over
         if not game.over:
             self._let_people_act()
+            if done.completed and whom is not None:
+                self._ask_silent(behaviour, whom)
         seconds += PAUSE + ASKING_AGAIN * sum(one.asked_again for one in self._not_clear)
         return Outcome(done.completed, seconds, (), response, speech, image, tuple(self._not_clear))
 
@@ -176,6 +180,23 @@ class DeclaredWorld:
             if self._understood(act):
                 self._take_in(act)
 
+    def _ask_silent(self, behaviour: str, who: str) -> None:
+        """Ask a person again who says nothing, in the file's words, as often as the caps allow."""
+        game, most, seen = self.game, self.activity.asking.visit, self.game.seen()
+        for _ in again(game, behaviour, who):
+            answers = any(one.person == who and one.said for one in self._not_clear)
+            if answers or who in self.happened or game.seen() != seen:
+                return
+            times = self._silent.get(who, 0)
+            self._not_clear.append(silence(game, who, asked_again=times < most))
+            if times >= most:
+                return
+            self._silent[who] = times + 1
+            game.now += ASKING_AGAIN
+            for act in acts(game, drawn=self._people_draw):
+                if act.who == who and self._understood(act):
+                    self._take_in(act)
+
     def _understood(self, act: Act) -> bool:
         """Say whether an act can be understood; a person is asked again who answers unclearly.
 
@@ -200,3 +221,4 @@ class DeclaredWorld:
         if take_in(self.game, act):
             did = "asks for help" if act.fact == ASKING else f"{act.fact}: {act.value}"
             self.happened.setdefault(act.who or "", []).append(did)
+            self._silent.pop(act.who or "", None)
