@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision
 
 
+SET_PACE = "staff set the pace"
+"""Begins what the log has of a new pace."""
+
+
 class GamePlanControls:
     """The plan of the games that a supervision runs; where nothing can be planned, each says so."""
 
@@ -84,7 +88,7 @@ class GamePlanControls:
             world.set_pace(pace)
         else:
             self._supervision.game.change("pace", seconds=pace, by=self._by)
-        self._note(f"staff set the pace: {pace:g} s")
+        self._note(f"{SET_PACE}: {pace:g} s")
         return StaffNote("pace", f"{pace:g}")
 
     def _take_back(self, world: PlannedGame, label: str) -> list[Result]:

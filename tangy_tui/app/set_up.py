@@ -107,6 +107,11 @@ class SetUp:
         return bool(self.workspace.activity.deck.columns)
 
     @property
+    def on_bench(self) -> bool:
+        """Whether the robot and the people are simulated."""
+        return self.world is not None and self.world.played_in == BENCH
+
+    @property
     def teams_play(self) -> bool:
         """Whether teams take part, and not people one by one."""
         return bool(self.workspace.activity.teams)

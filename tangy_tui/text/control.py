@@ -225,10 +225,15 @@ def stands_words(why: str) -> str:
 
 NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it."
 BUSY = "Not now: Tangy is busy."
-ONE_MOMENT = "One moment: Tangy finishes this first."
 VOID_DETAIL = "It will count as not called, and come again later."
 WHO_NEEDS_HELP = "Who needs help?"
 BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
+
+
+def waits_words(card: int = 0) -> str:
+    """Say that a command waits until Tangy has finished; a claim names its card."""
+    then = f"checks card {card}" if card else "does what you said"
+    return f"One moment: Tangy finishes this, then {then}."
 
 
 def void_call_words(label: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
 
 MOST_TOLD = 30
 """Games that a report tells one by one; of more, only those in which something was the matter."""
+
+
+PERSON_ID = re.compile(r"\b[a-z]+\d+\b")
+"""As ids of people are made; a team's id is its name."""
 
 
 def game_words(game: Game, activity: Activity | None = None) -> str:
@@ -80,6 +85,7 @@ def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list
                 f"   Why: {fault.why}.",
             ]
         case Noted(what, by):
+            what = PERSON_ID.sub(lambda found: name(found[0]), what)
             return [f"*  {what}{f', by {by}' if by else ''}."]
         case Unclear(person, asked_again, silent):
             again = ": Tangy asks again" if asked_again else ", and Tangy has asked often enough"

@@ -10,6 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.card_news import BY as TANGY
+from tangy_tui.app.plan_controls import SET_PACE
 from tangy_tui.monitoring.attention import Attention, Call
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
@@ -133,13 +134,19 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
 
 def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str, str]]:
     """Return the actions of staff: the time on the clock, who, and what."""
-    rows = []
+    rows: list[tuple[str, str, str]] = []
     for replay in replays:
         for moment in replay.moments:
             if (told := _staff_words(moment)) is not None:
                 who, words = told
+                if rows and who == rows[-1][1] and _of_pace(words) and _of_pace(rows[-1][2]):
+                    rows.pop()  # keys change it step by step: the last one counts
                 rows.append((time_of_day(moment.at), who, with_names(words, replay, name)))
     return rows
+
+
+def _of_pace(words: str) -> bool:
+    return words.startswith(SET_PACE)
 
 
 def with_names(words: str, replay: GameReplay, name: Name) -> str:

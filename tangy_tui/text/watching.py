@@ -43,8 +43,10 @@ HELP = (
 )
 
 
-def stopped_by_guest(guest: str) -> str:
-    """Say that a guest has stopped the robot."""
+def stopped_by_guest(guest: str, driver: str) -> str:
+    """Say that a guest has stopped the robot, who may have the name of the person who drives."""
+    if guest == driver:
+        return "The robot was stopped from another console."
     return f"{guest} stopped the robot from another console."
 
 

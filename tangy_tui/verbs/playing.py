@@ -203,7 +203,7 @@ def _lines(
         return [] if live is None else [*news_lines(live.take(events), workspace.name)]
 
     control = GameController(supervision, teacher, robot=robot, void=void, past=past)
-    workspace.door.attach(control, lambda who: print_line(stopped_by_guest(who)))
+    workspace.door.attach(control, lambda who: print_line(stopped_by_guest(who, control.by)))
     FreezeGuard(control, lambda seconds: print_line(told_words(seconds))).keep_looking()
     return StaffLines(
         control,

@@ -40,8 +40,8 @@ from tangy_tui.monitoring.session import read_session
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.changes import changed_words
-from tangy_tui.text.log import replay_lines, session_lines
-from tangy_tui.text.report import changes_lines
+from tangy_tui.text.log import moment_lines, replay_lines, session_lines
+from tangy_tui.text.report import changes_lines, staff_rows
 
 
 class Planned:
@@ -129,6 +129,26 @@ def test_a_claim_is_told_by_the_numbers_that_were_called(planned: Planned) -> No
     assert planned.do(ClaimCard(3)) == ["claim right", "claimed"]
     planned.play()
     assert planned.celebrated()[-1] == "user3"
+
+
+def test_what_staff_did_is_told_with_names_and_the_pace_they_came_to(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    planned.play(calls=2)
+    for _ in range(3):
+        planned.do(ChangePace(-1))
+    planned.control.note("staff asked for help for user3")
+    store = planned.workspace.store
+    (replay,) = read_session(store, read_games(store), {}, {}).replays
+
+    def name(person: str) -> str:
+        return "Rosa" if person == "user3" else person
+
+    pace = f"staff set the pace: {planned.world.pace:g} s"
+    assert [what for _, _, what in staff_rows([replay], name)] == [
+        pace, "staff asked for help for Rosa"
+    ]  # fmt: skip
+    (told,) = moment_lines(replay.moments[-1], True, None, name)
+    assert "help for Rosa" in told
 
 
 def test_a_call_that_is_taken_back_comes_again_and_is_told_to_the_group(planned: Planned) -> None:

@@ -116,10 +116,23 @@ async def test_staff_are_told_at_once_that_a_command_has_to_wait_and_then_what_c
         try:
             await until_shown(pilot, lambda: live(pilot).working > 0)
             await pilot.press("colon", *"bingo 2", "enter")
-            await until_shown(pilot, lambda: "One moment" in screen_text(pilot.app))
+            await until_shown(pilot, lambda: "then checks card 2." in screen_text(pilot.app))
         finally:
             link.free = True
         await until_shown(pilot, lambda: "Card 2 does not win" in screen_text(pilot.app))
+
+
+async def test_the_pace_is_told_once_however_often_a_key_changes_it(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(120, 40)) as pilot:
+        await paused_after(pilot, link, 2)
+        await pilot.press(*["less_than_sign"] * 4)
+        log = live(pilot).query_one(LogView)
+        await until_shown(pilot, lambda: any("calls every" in one for one in log.sentences))
+        assert live(pilot).world.pace > 10
+        (told,) = [one for one in log.sentences if "calls every" in one]
+        assert f"{live(pilot).world.pace:g} seconds" in told
 
 
 async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(

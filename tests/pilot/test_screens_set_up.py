@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
@@ -75,6 +76,16 @@ async def test_people_patterns_and_seats_are_chosen_by_keys_and_nothing_moves(
         assert setup.plan == GamePlan(("line", "full card"), absent=("user1",), pace=setup.pace)
         await pilot.press("1")
         assert setup.patterns == ["full card"] and setting.link.done == []
+
+
+async def test_how_a_person_is_carried_is_said_while_they_are(run: Run, setting: Setting) -> None:
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        await pilot.press("space", "down")
+        await until_shown(pilot, lambda: "User 1: the arrows" in pilot.lines()[1])
+        await pilot.press("space")
+        await until_shown(pilot, lambda: "the arrows" not in pilot.lines()[1])
+        assert setting.setup.seats[:2] == ["user2", "user1"]
 
 
 async def test_the_line_of_the_cursor_is_marked_and_says_which_keys_change_it(
@@ -263,6 +274,26 @@ async def test_who_is_seen_by_the_robot_is_here(run: Run, setting: Setting) -> N
         await pilot.press("end", "up", "enter")
         await until_shown(pilot, lambda: not setting.setup.away)
         assert setting.setup.face == "user3"
+
+
+async def test_a_key_pressed_while_tangy_looks_is_answered(run: Run, setting: Setting) -> None:
+    world = setting.setup.world = live_world(setting.workspace, setting.link)
+    world.knows_faces = True
+    looks = Event()
+
+    def look() -> str:
+        looks.wait(10)
+        return ""
+
+    setting.setup.look_at_face = look  # type: ignore[method-assign]
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        await pilot.press("end", "up", "enter")
+        await until_shown(pilot, lambda: text.LOOKS in pilot.lines()[1])
+        await pilot.press("down", "enter")
+        await until_shown(pilot, lambda: text.STILL_BUSY in pilot.lines()[1])
+        looks.set()
+        await until_shown(pilot, lambda: text.NO_FACE in pilot.lines()[1])
 
 
 async def test_nothing_is_asked_about_calls_where_nothing_is_called(

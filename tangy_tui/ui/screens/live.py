@@ -21,6 +21,7 @@ from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.declared.typed_observations import about, sayable
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import BENCH, GameWorld
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import FRONT
 from tangy_tui.app.command_grammar import read_telling
@@ -48,11 +49,11 @@ from tangy_tui.text.control import (
     BUSY,
     MOVE_AGAIN,
     NOT_WHILE_WORKING,
-    ONE_MOMENT,
     VOID_DETAIL,
     WAITS_SHORT,
     WHO_NEEDS_HELP,
     void_call_words,
+    waits_words,
 )
 from tangy_tui.text.live_games import LOOKS_ROUND, MAY_MOVE, frozen_words
 from tangy_tui.text.live_news import seated_words
@@ -81,13 +82,16 @@ STAFF_SECONDS = 1.0
 ANSWERS_SECONDS = 0.7  # to a command, before staff are told that it has to wait
 REST_SECONDS = 5.0  # in which what it does is broken off
 
+MODES: dict[GameWorld, str] = {BENCH: "bench"}
+"""The worlds that the status names otherwise."""
+
 T = TypeVar("T")
 
 
 class LiveScreen(PlayScreen):
     """Games among people. Dismissed with what they added up to."""
 
-    MODE = "live"
+    mode = "live"
     FIRST = STAFF
     HELP = live_keys.HELP
     BINDINGS: ClassVar[list[BindingType]] = live_keys.BINDINGS
@@ -113,6 +117,7 @@ class LiveScreen(PlayScreen):
             past=past,
         )
         self.world = world
+        self.mode = MODES.get(world.played_in, self.mode)
         self._faults.beside = self._attend_beside
         self.working = 0  # how many things are being done, or wait for their turn
         self._seen_doing = ""
@@ -189,7 +194,7 @@ class LiveScreen(PlayScreen):
     async def _do_beside(self, command: GameCommand) -> None:
         done = asyncio.create_task(self._beside(lambda: self.control.apply(command)))
         if not (await asyncio.wait({done}, timeout=ANSWERS_SECONDS))[0]:
-            self._tell_now(ONE_MOMENT, "dim")
+            self._tell_now(waits_words(getattr(command, "card", 0)), "dim")
         self._take(await done)
 
     def action_pause(self) -> None:

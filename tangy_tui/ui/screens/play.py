@@ -376,7 +376,7 @@ class PlayScreen(PlayStaff):
             robot = "ASKS"
         if self.control.stopped:
             robot = "STOPPED" if self._supervision.halted is None else f"STOPPED, {robot}"
-        self.picture.show_status(robot, self._note(), self.MODE)
+        self.picture.show_status(robot, self._note(), self.mode)
         going = self.control.going
         self.query_one(KeyLine).show(*keys(going=going, over=self.at_rest))
         if asking is not None:

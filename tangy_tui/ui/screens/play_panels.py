@@ -50,7 +50,7 @@ ON_THE_LEFT = ("log", "faults")
 class PlayPanels(TangyScreen[Tally]):
     """Room, steps, policy, posteriors, log and faults of the games that are supervised."""
 
-    MODE = "play"
+    mode = "play"
     """What the status line calls it."""
     FIRST = CHOOSABLE[0]
     """The panel that is shown first."""

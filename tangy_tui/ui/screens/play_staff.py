@@ -6,6 +6,8 @@ import asyncio
 from collections.abc import Sequence
 from contextlib import suppress
 
+from textual.timer import Timer
+
 from tangy_tui.app.command_grammar import Perform, command_reader, read_command, read_screen
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.freeze_watch import LOOK_SECONDS, FreezeGuard
@@ -43,6 +45,8 @@ from tangy_tui.ui.performing import perform
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, wanted
 
+PACE_SECONDS = 1.0
+"""After the last change of the pace, before it is said."""
 SEEN_ANYWAY = ("paused", "goes on", "one step", "no game")
 """What the keys' line and the status say."""
 
@@ -55,6 +59,7 @@ class PlayStaff(PlayPanels):
         super().__init__(workspace, control)
         self._voice = GameVoice(workspace)
         self._learning = False
+        self._pace_told: Timer | None = None
         self._guard: FreezeGuard | None = None
         self.nudge = asyncio.Event()
         """Is set when something is done that the game's time is not to be waited for."""
@@ -73,7 +78,7 @@ class PlayStaff(PlayPanels):
 
         def stopped(guest: str) -> None:
             self._show_stopped()
-            self._tell_now(stopped_by_guest(guest), "bad")
+            self._tell_now(stopped_by_guest(guest, self.control.by), "bad")
 
         self._workspace.door.attach(
             self.control, lambda who: loop.call_soon_threadsafe(stopped, who)
@@ -112,8 +117,17 @@ class PlayStaff(PlayPanels):
         for result in results:
             if isinstance(result, StaffNote) and result.kind not in SEEN_ANYWAY:
                 said = noted_words(result, self._workspace.name, by_keys=True)
+                if result.kind == "pace":
+                    self._tell_pace(said)
+                    continue
                 self._tell_now(said, "warn" if result.kind in REFUSALS else "dim")
         self._tell([result for result in results if not isinstance(result, StaffNote)])
+
+    def _tell_pace(self, said: str) -> None:
+        """Say the pace once it stays: the keys change it step by step."""
+        if self._pace_told is not None:
+            self._pace_told.stop()
+        self._pace_told = self.set_timer(PACE_SECONDS, lambda: self._tell_now(said, "dim"))
 
     def steer(self, text: str, sure: float) -> None:
         """Pause, go on or call again, or take an answer, as somebody said.

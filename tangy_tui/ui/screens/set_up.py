@@ -226,11 +226,17 @@ class SetUpScreen(TangyScreen[bool]):
     def on_set_up_list_carried(self, event: SetUpList.Carried) -> None:
         """Let a person sit where another sits."""
         event.stop()
-        self._say("")
         if self.setup.world is not None:
             self._say(text.SEATED)
         self.setup.change_seats(event.line.id, event.to.id)
         self._show()
+
+    def on_set_up_list_held(self, event: SetUpList.Held) -> None:
+        """Say how the person who is held is carried."""
+        event.stop()
+        self._say(
+            text.CARRIED.format(self.setup.workspace.name(event.person)) if event.person else ""
+        )
 
     def on_set_up_list_entered(self, event: SetUpList.Entered) -> None:
         """Change a line by Enter."""
@@ -243,6 +249,8 @@ class SetUpScreen(TangyScreen[bool]):
             self._turn(line.id, 1)
         elif not self._busy:
             self.run_worker(self._check(line.id), name="check", group="check")
+        else:
+            self._say(text.STILL_BUSY)
         self._show()
 
     def _turn(self, id: str, by: int) -> None:
@@ -331,9 +339,10 @@ class SetUpScreen(TangyScreen[bool]):
         elif name == "faces":
             seen = ""
             if setup.world.knows_faces:
+                self._say(text.LOOKS)
                 seen = await asyncio.to_thread(setup.look_at_face)
-            known = text.face_seen_words(setup.workspace.name(seen)) if seen else text.NO_FACE
-            self._say(known)
+            nobody = text.BENCH_FACE if setup.on_bench else text.NO_FACE
+            self._say(text.face_seen_words(setup.workspace.name(seen)) if seen else nobody)
         elif name == "sound" and setup.said:
             setup.heard = True
         elif name == "sound":
@@ -343,10 +352,10 @@ class SetUpScreen(TangyScreen[bool]):
     async def _look_at_card(self) -> None:
         """Read a card, and mark its owner as present."""
         setup = self.setup
-        self._say(text.CARD_HOW)
+        self._say(text.LOOKS)
         card = await asyncio.to_thread(setup.look_at_card)
         if not card:
-            self._say(text.NO_CARD)
+            self._say(text.BENCH_CARD if setup.on_bench else text.NO_CARD)
             return
         name = setup.workspace.name
         options = [Option(person, name(person)) for person in setup.seats]

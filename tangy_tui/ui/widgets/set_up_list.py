@@ -76,6 +76,13 @@ class SetUpList(Choosable):
             self.line, self.to = line, to
             super().__init__()
 
+    class Held(Message):
+        """A person was taken hold of (their id), or let go ("")."""
+
+        def __init__(self, person: str) -> None:
+            self.person = person
+            super().__init__()
+
     def __init__(self) -> None:
         super().__init__(id="setup")
         self._lines: list[SetUpLine] = []
@@ -128,6 +135,7 @@ class SetUpList(Choosable):
         if self.chosen is not None and self.chosen.kind == "person":
             self._carries = not self._carries
             self._mark()
+            self.post_message(self.Held(self.chosen.id if self._carries else ""))
         else:
             self.action_tell()
 
