@@ -203,6 +203,7 @@ def activity_new(
 ) -> None:
     """Ask about a new activity, and write a file for it that can be played at once."""
     from tangy_tui.text import activity_template as template
+    from tangy_tui.text.game_template import ASK_POINTS, game_file
 
     title = _asked(template.ASK_TITLE)
     while not template.NewActivity(title, "", turns=False).name:
@@ -210,6 +211,9 @@ def activity_new(
     item = _asked(template.ASK_ITEMS).strip()
     turns = _asked(template.ASK_TURNS).strip().lower().startswith("y")
     new = template.NewActivity(title, item, turns)
+    if turns and not item and _asked(ASK_POINTS).strip().lower().startswith("y"):
+        _write_new(folder, new.name, game_file(new.name, new.title), "")
+        return
     table = template.items_table(new) if item else ""
     _write_new(folder, new.name, template.activity_file(new), table)
 

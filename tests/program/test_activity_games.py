@@ -39,7 +39,14 @@ def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "answers", ["Poem circle\npoem\ny\n", "Finger rhymes\n\nn\n", "!\nJoke hour\njoke\nn\n"]
+    "answers",
+    [
+        "Poem circle\npoem\ny\n",
+        "Finger rhymes\n\nn\n",
+        "!\nJoke hour\njoke\nn\n",
+        "Skittles\n\ny\ny\n",
+        "Good news\n\ny\nn\n",
+    ],
 )
 def test_a_new_activity_is_sound_and_can_be_played_as_it_is_written(
     answers: str, tangy: Tangy, tmp_path: Path
