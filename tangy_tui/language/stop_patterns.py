@@ -56,7 +56,10 @@ SOMEBODY = "him|her|them"
 # ------------------------------------------------------------------------------ how, and what else
 
 SAKE = r"for (?:\w+ )?\w+ sake|in (?:gods|heavens) name|in the name of (?:god|heaven)"
-NAMED = "tangy|robot|dear|love|mister|sir|buddy|mate|pal|darling|sweetheart|everybody|everyone|you"
+NAMED = (
+    "tangy|robot|(?:my )?dear|love|young (?:man|lady)|mister|sir|buddy|mate|pal|darling"
+    "|sweetheart|everybody|everyone|you"
+)
 _MOMENT = "moment|second|sec|minute|instant|while|bit"
 HOW = _any(
     "now|please|immediately|instantly|here|there|already|altogether|completely|dead|quick|quickly",
@@ -65,15 +68,16 @@ HOW = _any(
     "(?:right |exactly |just )?where(?:ver)? (?:you are|youre|it is|it stands)",
     f"(?:right )?this (?:very )?(?:{_MOMENT})|for (?:just )?(?:a|1|this) (?:{_MOMENT})",
     f"a (?:{_MOMENT})|for (?:now|today|everyone|everybody|me|us)|(?:will|would|can|could|wont) you",
+    "if you(?:d| would) be so kind|as quick as you can",
     "do you hear(?: me)?|i (?:said|say|tell you|beg you|mean it)|this is an emergency",
     "its an emergency|nothing else|at all costs|or else|if you can|as (?:fast|soon) as you can",
     "with immediate effect|without delay|on the spot|absolutely|right in front of (?:me|us|her)",
-    f"(?:dead )?in (?:your|its) tracks|{NAMED}|{SAKE}",
+    f"(?:dead )?in (?:your|its) tracks|somebody|someone|{NAMED}|{SAKE}",
 )
 _FINITE = "is|are|has|have|had|was|fell|hit|cant|cannot|wont|will|needs?|hurts?|does|do|did"
 _OTHERS = (
     r"(?!\w+ing\b|who|what|which|where|when|that\b|to\b|from\b|at\b|in\b|by\b|me\b|us\b"
-    r"|services?\b|room\b|ward\b|exits?\b|doctors?\b)"
+    r"|services?\b|room\b|ward\b|exits?\b|doctors?\b|signs?\b|lights?\b)"
 )
 NEXT = _any(
     "(?:before|or|because|cause|cos|until|till|and|but|there|theres|i|im|youre|hes|shes|theyre) .*",
@@ -146,7 +150,7 @@ CALL = _any(
     "no|nope|oh|ah|aah|ow|ouch|ooh|hey|hi|hello|okay|ok|alright|all right|right|well|so|and|but",
     "just|now|wait|whoa|woah|please|quick|quickly|fast|hurry(?: up)?|help(?: me| us| her| him)?",
     "hold on|hang on|listen|look(?: out)?|watch(?: out| it)?|mind out|careful|be careful|sorry",
-    "excuse me|danger",
+    "excuse me|danger|(?:im |i am )?(?:so |very |terribly |really )?sorry",
     "(?:my |oh )?(?:god|gosh|goodness|lord|dear)|jesus|christ|damn|damn it|dammit|hell|come on",
     f"enough|that(?: i)?s (?:enough|it)|(?:i|we) (?:said|say|repeat|mean)|{NAMED}|{SAKE}|nurse",
     "somebody|someone|anybody|anyone|guys|immediately|at once|first|really|not another \\w+|ha",
@@ -170,7 +174,7 @@ ASK = _any(
     f"(?:{_YOU}|youd|wed|id|it|this|that|everything|{GAME}) (?:just |really |all )*(?:{_MUST})",
     "you (?:can|could|will|would|may|might)",
     f"(?:can|could|will|would|shall|should|may|might|cant|couldnt|wont|wouldnt|shouldnt)"
-    f" (?:{_YOU}|it)(?: (?:please|kindly|just|now))*",
+    f" (?:{_YOU}|it)(?: (?:please|kindly|just|now|possibly|perhaps))*",
     f"(?:im|i am|were|we are) (?:just |really |now )*(?:{_ASKING}) (?:{ITSELF}|you) to",
     f"why (?:dont|cant|wont|wouldnt|couldnt) (?:{_YOU})",
     rf"(?!{_NOBODY})\w+ (?:just |really |now )*(?:{_WISH}) (?:{ITSELF}|you) to",
@@ -180,7 +184,8 @@ ASK = _any(
     "(?:i|we) (?:just |really )*(?:want|need|wish) to|im going to|lets|let us",
     f"(?:{_CAUSE}) (?:{ROBOT}|{GAME}|it|this|that|everything|yourself)(?: to)?",
     "(?:(?:it is|its) (?:high )?)?time to|(?:how|where|a way) (?:do|can|could|would) \\w+",
-    "(?:do|does) \\w+ know how to|how to|try to|(?:go|be) and|(?:tell|show) me how to",
+    "(?:do|does) (?!it\\b|he\\b|she\\b)\\w+ know how to|how to|try to|(?:go|be) and",
+    "(?:tell|show) me how to",
     "how does 1|(?:press|push|pull|do) to|is there a way to|i (?:do not|dont) know how to",
 )
 
@@ -194,6 +199,14 @@ _AIM = _any(
     f"{ROBOT} .*",
 )
 _WHAT = f"(?:(?: {HOW}){{0,3}} {_AIM}|{AFTER})"
+_HURTS = (
+    "(?:(?:(?:going|about) to|gonna) (?:hit|hurt|crush|squash|run over|run into|knock|trap"
+    "|bump into)"
+    "|running (?:over|into)|driving (?:over|into)|rolling over|standing on|crushing|squashing"
+    f"|trapping|hurting|hitting|pinning|ramming) (?:{_WHOM}|(?:{_MINE}|the) \\w+)"
+)
+_OWN = r"(?:me|us|him|her|them|(?:my|our|his|her|their|your) \w+)"
+_FROM = f"from {_OWN}"
 _STILL = _any(
     "(?:stand|hold|keep|stay|remain) (?:absolutely |perfectly |completely |very )?(?:still|put)",
     "stay (?:right |exactly )?(?:where (?:you are|youre)|there|put)|hold it|stand down",
@@ -209,6 +222,20 @@ _STILL = _any(
     "come to a (?:complete |full )?(?:stop|halt|standstill)|hit the brakes?|brakes?",
     f"(?:do not|dont) let {ROBOT} (?:move|drive|go|come|turn|run)(?: \\w+){{0,3}}",
     f"(?:keep|hold) {ROBOT} (?:still|there|back|where it is)",
+    "(?:whoa|woah)(?: there)?(?: (?:boy|girl|nelly))?|(?:easy|steady) (?:there|now|boy|on)",
+    f"(?:stay|keep|get|stand|move) (?:back|away|off)(?: {_FROM})?|back (?:off|away)(?: {_FROM})?",
+    f"(?:get|take|move|keep) (?:it|this|that|{ROBOT}) (?:away|off)(?: {_FROM}| {_OWN})?",
+    "(?:that|this)(?: i)?s (?:quite |more than )?(?:far|close|near|quite) enough",
+    "(?:far|close|near) enough|(?:everything|everybody|everyone) stops",
+    "(?:no more|enough) (?:numbers?|calling|driving|moving|playing|of (?:this|it))",
+    f"(?:were|we are) (?:all )?(?:done|finished|through) (?:playing|with (?:{GAME}))|game over",
+    f"pause (?:it |this )?for (?:just )?(?:a|1) (?:{_MOMENT})|pause (?:it|there)",
+    f"(?:wait|hold on|hang on) (?:there|right there|a (?:{_MOMENT})|tangy|robot)",
+    "(?:tangy|robot) wait",
+    "call it a day|leave it (?:there|at that) for (?:today|now)|pack it in|pack (?:it|this) up",
+    "(?:do not|dont) (?:you )?dare move(?: another (?:inch|step|metre|centimetre))?",
+    "park yourself (?:right )?(?:there|here)",
+    f"(?:youre|you are|its|it is|{ROBOT} is) (?:just )?{_HURTS}",
 )
 _OFF = "turn|switch|shut|power"
 _CANCEL = "cancel|interrupt|suspend|pause|abandon|break off|call off|quit|terminate|discontinue"
@@ -223,6 +250,7 @@ _SWITCHED = _any(
     f"call (?:{GAME}|it) off",
     f"(?:{_PRESS}) (?:(?:the|that|its) )?(?:red |big |emergency )*(?:e ?)?"
     "(?:stop|brake|emergency button)(?: button| switch)?",
+    "(?:hit|press|push) (?:the|that) (?:big )?red button",
     "(?:safety|emergency) (?:stop|halt|brakes?|off|shutdown)",
     "(?:do|make|(?:(?:i|we) )?need) (?:an|the) emergency (?:stop|halt|shutdown)",
 )
@@ -236,7 +264,7 @@ _STOPPED = _any(
     f"(?:{_CAUSE}) (?:{SOMEBODY})(?: to)? (?:please )?(?:{STOP})",
     f"(?:(?:i|we) )?(?:want|need|have|get) (?:{ITSELF}|you) stopped",
     f"(?:{ROBOT}|{GAME}|it|this|that) (?:{_MUST}) be stopped",
-    f"(?:can|could) (?:{ROBOT}|{GAME}|it|this|that) be stopped",
+    f"(?:can|could) (?:{ROBOT}|{GAME}|it|this|that) be (?:stopped|halted|paused|switched off)",
     f"(?:i|we|she|he|they) (?:cant|cannot|can not|couldnt) (?:{STOP}) (?:{ROBOT})",
 )
 _SENTENCE = _any(
@@ -253,6 +281,13 @@ def sentence() -> re.Pattern[str]:
     It takes a tenth of a second to compile, which no program has to wait for that only starts.
     """
     return re.compile(_SENTENCE)
+
+
+@cache
+def command() -> re.Pattern[str]:
+    """Return what stops the robot also where other words come before it in the same breath."""
+    told = f"(?:{STOP}|quit) (?:(?:{ROBOT}|{GAME}|it)|{_MOVING})"
+    return re.compile(f"{_any(told, _STILL, _SWITCHED)}(?: {HOW}){{0,6}}")
 
 
 @cache
@@ -304,6 +339,11 @@ ENDS_A_THOUGHT = frozenset(("this", "that", "and"))
 FORBIDS = re.compile(
     r"\b(?:not|never|nobody|(?:do|does|did|wo|would|could|should|need|must)nt)\b|.* to \w+ and$"
 )
+NEEDLESS = re.compile(
+    r"\b(?:no|any|little|hardly a|hardly any) (?:need|reason|point|cause|use|hurry|time|wish) to\b"
+    r"|\b(?:too (?:early|soon|late)|silly|a pity|a shame|nothing|no one) (?:\w+ )?to\b"
+)
+"""Words that say that there is no cause to stop, or no wish."""
 NO_CRY_AFTER = frozenset(
     (
         *("to", "dont", "not", "never", "cant", "cannot", "couldnt", "wont", "wouldnt", "shouldnt"),
@@ -319,6 +359,8 @@ NO_CRY_AFTER = frozenset(
     )
 )
 """Words after which stopping is a noun, or what somebody does, may do or must not do."""
+NO_COMMAND_AFTER = NO_CRY_AFTER | set(f"{_FINITE}|be|been|were|get|got|let|just".split("|"))
+"""Words after which the rest is a part of what they tell."""
 MAY_BE_MISHEARD = frozenset(("to", "you", "i", "the", "at", "and", "a"))
 """Those of them that are short and weak, so that other words are often heard as them."""
 REPORTS_OR_ASKS = re.compile(

@@ -19,11 +19,14 @@ from tangy_tui.language.stop_patterns import (
     ENDS_A_THOUGHT,
     FORBIDS,
     MAY_BE_MISHEARD,
+    NEEDLESS,
+    NO_COMMAND_AFTER,
     NO_CRY_AFTER,
     NO_CRY_BEFORE,
     REPORTS_OR_ASKS,
     alarm,
     before,
+    command,
     cry,
     own_words,
     sentence,
@@ -89,7 +92,10 @@ def ends_in_stop(words: str) -> bool:
     """Say whether words that may have been misheard end in a cry to stop, whatever came before."""
     *before, last = words.split(" ")
     cried = last in CRIES and bool(before) and before[-1] not in NO_CRY_AFTER - MAY_BE_MISHEARD
-    return cried and REPORTS_OR_ASKS.match(words) is None
+    if not cried or REPORTS_OR_ASKS.match(words):
+        return False
+    needless = before[-1] == "to" and (FORBIDS.search(words) or NEEDLESS.search(words))
+    return not needless
 
 
 def _is_aimed(clause: str) -> bool:
@@ -100,9 +106,11 @@ def _is_aimed(clause: str) -> bool:
         if sentence().fullmatch(clause, at):
             return True
         ends = {found.end() for found in (p.match(clause, at) for p in before()) if found}
+        if (said := command().match(clause, at)) and clause[said.end() :].startswith(" "):
+            ends.add(said.end() + 1)  # it is said twice
         reached += ends - seen
         seen |= ends
-    return _is_two_words(clause) or _ends_in_a_cry(clause)
+    return _is_two_words(clause) or _ends_in_a_cry(clause) or _ends_in_a_command(clause)
 
 
 def _is_two_words(clause: str) -> bool:
@@ -128,6 +136,20 @@ def _ends_in_a_cry(clause: str) -> bool:
         return False
     asks = len(words) > 2 and words[-1] == "please" and words[-2] not in NO_CRY_AFTER
     return asks or bool(found["what"]) or alarm().fullmatch(found["before"]) is not None
+
+
+def _ends_in_a_command(clause: str) -> bool:
+    """Say whether an alarmed person ends in a command to stop, as in "my foot hold it"."""
+    if ASKS_FIRST.match(clause) or REPORTS_OR_ASKS.match(clause):
+        return False
+    words = clause.split(" ")
+    for at in range(1, len(words)):
+        first = " ".join(words[:at])
+        told = words[at - 1] in NO_COMMAND_AFTER or FORBIDS.search(first)
+        alarmed = not told and alarm().fullmatch(first)
+        if alarmed and command().fullmatch(" ".join(words[at:])):
+            return True
+    return False
 
 
 def _joined(words: Iterable[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,7 @@ from tests.learning.stop_sentences import (
 )
 
 ROOT = Path(__file__).parents[1]
+EVERYDAY = ROOT / "bench" / "stop_everyday.toml"
 WORD = st.sampled_from(sorted({w for s in (*STOPPING, *MENTIONING) for w in s.lower().split()}))
 DOORS = (
     *("help", "?", "undo", "redo", "again 5", "again", "where", "seen", "why", "next", "quit"),
@@ -53,6 +55,13 @@ def test_the_sentences_that_were_written_apart_from_the_rules_are_told_apart_too
     missed = [s for s in (*STOPPING[1::2], *STOPPING_TOO) if not stops(s, {"bingo"})]
     wrongly = [s for s in (*MENTIONING[1::2], *MENTIONING_TOO) if stops(s, {"bingo"})]
     assert (missed, wrongly) == ([], [])
+
+
+def test_most_everyday_commands_stop_and_other_talk_does_not() -> None:
+    said = tomllib.loads(EVERYDAY.read_text(encoding="utf-8"))
+    stopped = {kind: [s for s in texts if stops(s, {"bingo"})] for kind, texts in said.items()}
+    assert len(stopped["stops"]) >= 0.85 * len(said["stops"])
+    assert len(stopped["others"]) <= 1 and stopped["talk"] == []
 
 
 def test_no_word_that_somebody_calls_the_robot_keeps_it_from_stopping() -> None:
@@ -142,7 +151,7 @@ def test_who_says_not_to_stop_is_never_taken_for_who_says_stop(words: str) -> No
 
 @pytest.mark.parametrize(
     "once",
-    ["please ", "you must ", "stop now the ", "stop going over ", "i want it to ", "the robot "],
+    ["please ", "you must ", "stop now the ", "stop going over to ", "i want it to ", "the robot "],
 )
 def test_a_long_line_is_judged_at_once(once: str) -> None:
     assert not stops(once * 60 + "teasing")
@@ -175,6 +184,11 @@ def test_what_names_the_robot_stops_it_whatever_follows(words: str, clear: bool)
         ("she wants to stop", False),
         ("we will never stop", False),
         ("stop the kettle", False),
+        ("there is no reason to stop", False),
+        ("no need to stop", False),
+        ("you do not have to stop", False),
+        ("it is too early to stop", False),
+        ("no no to stop", True),
     ],
 )
 def test_words_that_may_be_misheard_end_in_a_cry_unless_they_tell_or_ask(
