@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.codec import written
+from tangy_profiles.declared.memory import GameMemory
 from tangy_profiles.declared.silence import SILENCE
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import (
@@ -63,6 +64,8 @@ class Done:
     """The number called, or the numbers a person should mark or clear."""
     wins: bool = False
     """Whether it celebrates somebody who has won, where the activity is known."""
+    memory: GameMemory | None = None
+    """What a live game of an activity by facts stood at after it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -310,6 +313,7 @@ def _done(
         draws=behaviour is not None and behaviour.effect == "draw",
         numbers=step.numbers,
         wins=behaviour is not None and bool(behaviour.needs) and step.completed,
+        memory=step.memory,
     )
 
 

@@ -20,6 +20,7 @@ from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import BORNE, OPEN, Diagnosed, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
+from tangy_tui.monitoring.player_facts import PlayerFacts, player_facts
 from tangy_tui.monitoring.replay import GameReplay, Noted, read_replays
 
 RESULTS = (
@@ -138,6 +139,11 @@ class Session:
         return self.names.get(person, person)
 
     @property
+    def player_facts(self) -> list[PlayerFacts]:
+        """People's answers and counts, game by game, in an activity by facts."""
+        return player_facts(self.replays, self.activity)
+
+    @property
     def timed_faults(self) -> tuple[tuple[str, Fault], ...]:
         """The faults in order, each with when it was diagnosed (ISO 8601)."""
         return tuple(
@@ -215,6 +221,7 @@ class Session:
                 }
                 for person in self.people
             ],
+            "player_facts": [one.to_json() for one in self.player_facts],
             "look_after": [
                 {"fault": f.id, "name": f.name, "status": f.status, "advice": list(f.advice)}
                 for f in self.look_after

@@ -13,7 +13,13 @@ from tangy_tui.monitoring.session import RESULTS, Progress, Session
 from tangy_tui.pages.beliefs import belief_drawing, interval
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
 from tangy_tui.pages.staff_parts import STYLE as PARTS_STYLE
-from tangy_tui.pages.staff_parts import calls_part, faults_part, people_part, staff_part
+from tangy_tui.pages.staff_parts import (
+    calls_part,
+    faults_part,
+    people_part,
+    player_facts_part,
+    staff_part,
+)
 from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 from tangy_tui.text import session_page as say
 from tangy_tui.text.activities import stage_words
@@ -97,7 +103,8 @@ def session_page(session: Session, *, full: bool = True) -> str:
     """Return the page of a session: what staff need, and in `full` what researchers ask as well."""
     games = session.games
     title = f"{session.title}: session of {day_and_time(games[0].at)}"
-    parts = [*_head(session), *_care(session), *people_part(session), *calls_part(session)]
+    parts = [*_head(session), *_care(session), *people_part(session)]
+    parts += [*player_facts_part(session), *calls_part(session)]
     parts += [*staff_part(session), *([] if full else faults_part(session))]
     parts += _timelines(session, MOST_DRAWN if full else FEW_DRAWN)
     if full:

@@ -8,6 +8,7 @@ from html import escape
 from tangy_tui.monitoring.attention import attention, calls_in
 from tangy_tui.monitoring.session import Session
 from tangy_tui.pages.page import heading, paragraph, table
+from tangy_tui.text import player_facts as players
 from tangy_tui.text import report as say
 from tangy_tui.text.sessions import status_words
 from tangy_tui.text.times import day_and_time, time_of_day
@@ -67,6 +68,22 @@ def calls_part(session: Session) -> Iterator[str]:
         yield f'<p class="called">{cells}</p>'
         if any(taken for _, taken in labels):
             yield f'<p class="dim">{escape(say.TAKEN_BACK)}</p>'
+
+
+def player_facts_part(session: Session) -> Iterator[str]:
+    """Tell what people answered and what was counted for each, game by game."""
+    found = session.player_facts
+    if not found:
+        return
+    yield heading(players.HEADING)
+    games = {game.id: game for game in session.games}
+    for one in found:
+        if len(found) > 1:
+            game = games[one.game]
+            yield f"<h3>Game {game.number}, {escape(day_and_time(game.at))}</h3>"
+        yield table(players.player_columns(one), players.player_rows(one, session.name))
+        if one.acts:
+            yield table(players.act_columns(one), players.act_rows(one, session.name))
 
 
 def staff_part(session: Session) -> Iterator[str]:

@@ -16,6 +16,7 @@ from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.player_facts import HEADING, player_lines
 from tangy_tui.text.report import changes_lines
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
@@ -134,6 +135,9 @@ def session_lines(session: Session) -> Iterator[str]:
         yield f"Time in the room: {length(session.seconds)}."
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
     yield from changes_lines(session.replays, session.name)
+    for facts in session.player_facts:
+        yield f"{HEADING}:"
+        yield from player_lines(facts, session.name)
     yield ""
     yield counted(len(session.faults), "fault") + ("." if not session.faults else ":")
     numbers = {game.id: game.number for game in session.games}

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import statistics
 import subprocess
 import tempfile
@@ -15,12 +16,15 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from tangy_profiles.game_records import StaffAction
+from tangy_profiles.game_records import GameBeginning, GameStep, StaffAction
 from tangy_profiles.store import Store
 from tangy_tui.app.watching import Guest
 from tests.bench.kills import TANGY, lines_of, share, taught_folder
+from tests.support.terminal import Terminal
 
 WATCHED_SECONDS = 60.0
+STEP_DRAWN = re.compile(r"\d\d:\d\d:\d\d +(\d+)\. ")
+"""A line of the screen that tells a step, with its number."""
 
 
 def watched(folder: Path, seconds: float) -> list[float]:
@@ -40,6 +44,40 @@ def watched(folder: Path, seconds: float) -> list[float]:
     watching.terminate()
     watching.wait()
     return late
+
+
+def seen(folder: Path, seconds: float, columns: int, lines: int) -> tuple[list[float], float, int]:
+    """Look on by a screen in a terminal of its own, and leave.
+
+    Returns how late each step was drawn (s after it was logged), the share of a processor that the
+    screen took once it was drawn, and the bytes that it wrote meanwhile.
+    """
+    terminal = Terminal((*TANGY, "watch", "--data", str(folder)), columns=columns, lines=lines)
+    drawn: dict[int, datetime] = {}
+    try:
+        terminal.until(lambda text: bool(STEP_DRAWN.search(text)))
+        busy, since, bytes_before = computed(terminal.process), time.monotonic(), len(terminal.raw)
+        for number in STEP_DRAWN.findall(terminal.text):
+            drawn.setdefault(int(number), datetime.min.replace(tzinfo=UTC))
+        while time.monotonic() < since + seconds:
+            if terminal.read(0.2):
+                now = datetime.now(UTC)
+                for number in STEP_DRAWN.findall(terminal.text):
+                    drawn.setdefault(int(number), now)
+        share_taken = (computed(terminal.process) - busy) / (time.monotonic() - since)
+        written = len(terminal.raw) - bytes_before
+    finally:
+        terminal.end()
+    with Store.open(folder, write=False) as store:
+        begun = store.last(GameBeginning)
+        assert begun is not None
+        steps = [event.at for event in store.events(GameStep, after=begun.seq)]
+    late = [
+        (at - datetime.fromisoformat(steps[number - 1])).total_seconds()
+        for number, at in drawn.items()
+        if at.year > 1 and number <= len(steps)
+    ]
+    return late, share_taken, written
 
 
 def stopped(folder: Path, stops: int) -> list[float]:
@@ -78,11 +116,14 @@ def main() -> None:
     options = argparse.ArgumentParser()
     options.add_argument("--stops", type=int, default=20)
     options.add_argument("--seconds", type=float, default=WATCHED_SECONDS)
+    options.add_argument("--people", type=int, default=4)
+    options.add_argument("--size", type=int, nargs=2, default=(160, 45), help="columns and lines")
     given = options.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         folder = taught_folder(Path(scratch) / "data")
         game = subprocess.Popen(  # noqa: S603
-            [*TANGY, "play", "--plain", "--speed", "30", "--games", "9", "--data", str(folder)],
+            [*TANGY, "play", "--plain", "--speed", "30", "--games", "9",
+             "--users", str(given.people), "--data", str(folder)],
             stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
         )  # fmt: skip
         guest = Guest(folder)
@@ -95,6 +136,7 @@ def main() -> None:
         beside, since = computed(game), time.monotonic()
         late = watched(folder, given.seconds)
         beside = (computed(game) - beside) / (time.monotonic() - since)
+        drawn, taken, written = seen(folder, given.seconds, *given.size)
         took = stopped(folder, given.stops)
         game.kill()
         game.wait()
@@ -102,6 +144,9 @@ def main() -> None:
         json.dumps(
             {
                 "events_late_s": figures(late),
+                "steps_drawn_late_s": figures(drawn),
+                "screen_computing_share": round(taken, 3),
+                "screen_bytes_per_s": round(written / given.seconds),
                 "stop_s": figures(took),
                 "computing_share": {"alone": round(alone, 3), "beside": round(beside, 3)},
                 "mean_late_s": round(statistics.mean(late), 3) if late else None,

@@ -1,0 +1,77 @@
+"""Answers and what was counted for each person, in words: for reports on activities by facts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tangy_profiles.declared.situation_words import value_words
+from tangy_tui.monitoring.player_facts import PlayerFacts
+from tangy_tui.text.numbers import listed
+from tangy_tui.text.situations import Name
+from tangy_tui.text.times import time_of_day
+
+HEADING = "Answers and scores"
+PERSON, WHEN, ITEM = "person", "when", "what it was about"
+UNCLEAR = "not clear"
+
+
+def player_columns(facts: PlayerFacts) -> tuple[str, ...]:
+    """Name the columns of the table of people."""
+    unclear = (UNCLEAR,) if facts.unclear else ()
+    return (PERSON, *facts.counts, *(fact.name for fact in facts.facts), *unclear)
+
+
+def player_rows(facts: PlayerFacts, name: Name) -> list[tuple[str, ...]]:
+    """Return a row for each person: what was counted, their answers, and how many were unclear."""
+    return [
+        (
+            name(person),
+            *(str(numbers[person]) for numbers in facts.counts.values()),
+            *(_values(facts, person, at) for at in range(len(facts.facts))),
+            *((str(facts.unclear.get(person, "")),) if facts.unclear else ()),
+        )
+        for person in facts.people
+    ]
+
+
+def act_columns(facts: PlayerFacts) -> tuple[str, ...]:
+    """Name the columns of the table of answers."""
+    item = (ITEM,) if any(act.item for act in facts.acts) else ()
+    return (WHEN, *item, PERSON, listed([fact.name for fact in facts.facts]))
+
+
+def act_rows(facts: PlayerFacts, name: Name) -> list[tuple[str, ...]]:
+    """Return a row for each answer, in their order."""
+    words = {fact.name: fact for fact in facts.facts}
+    items = any(act.item for act in facts.acts)
+    return [
+        (
+            time_of_day(act.at),
+            *((f"{act.round}. {act.item}" if act.item else "",) if items else ()),
+            name(act.person),
+            value_words(words[act.fact], act.value),
+        )
+        for act in facts.acts
+    ]
+
+
+def player_lines(facts: PlayerFacts, name: Name) -> Iterator[str]:
+    """Tell each person's counts and answers in a line."""
+    for person in facts.people:
+        told = [f"{fact} {numbers[person]}" for fact, numbers in facts.counts.items()]
+        told += [
+            f"{fact.name}: {values}"
+            for at, fact in enumerate(facts.facts)
+            if (values := _values(facts, person, at))
+        ]
+        if unclear := facts.unclear.get(person):
+            told.append(f"{unclear} {UNCLEAR}")
+        if told:
+            yield f"  {name(person)}: {'; '.join(told)}"
+
+
+def _values(facts: PlayerFacts, person: str, at: int) -> str:
+    fact = facts.facts[at]
+    return ", ".join(
+        f"{value_words(fact, value)} ({count})" for value, count in facts.of(person, fact).items()
+    )

@@ -1,0 +1,109 @@
+"""Reports on activities by facts tell people's answers, and what was counted for each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
+from tangy_profiles.declared.acts import raw
+from tangy_profiles.declared.typed_observations import TypedObservation
+from tangy_profiles.game_records import AnswerNotClear, GameBeginning, GameStep
+from tangy_profiles.game_world import LIVE
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_profiles.store import Store
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.session import Session, read_session
+from tangy_tui.pages.session import session_page
+from tangy_tui.text.log import session_lines
+from tests.hw.links import FakeLink
+from tests.support.declared import declared
+
+PEOPLE = ("user1", "user2", "user3")
+
+
+class Quiz:
+    """A live quiz over a fake link, step by step, in a log."""
+
+    def __init__(self, store: Store) -> None:
+        self.store, self.activity = store, declared("trivia")
+        self.world = DeclaredLiveWorld(
+            self.activity, PEOPLE, cast(RobotLink, FakeLink(PEOPLE)), load_robot(), load_room(),
+            seed=4,
+        )  # fmt: skip
+        self.world.begin()
+        store.append(
+            GameBeginning(game="g", number=1, activity="trivia", people=PEOPLE, world=LIVE)
+        )
+
+    def do(self, name: str, whom: str | None = None, answer: str = "") -> None:
+        """Carry out a behaviour; the person it was for then answers."""
+        world, state = self.world, self.world.observe()
+        world.execute(self.activity.action(self.activity.behaviours[name], whom, None))
+        if answer:
+            said = raw(world.game, world.game.declaration.facts["answer"], answer)
+            world.take(Observed(TypedObservation("answer", whom, said), 1.0, "staff"))
+        self.store.append(
+            GameStep(
+                game="g", behaviour=name, target=whom, state=state, after=world.observe(),
+                memory=world.memory,
+            )
+        )  # fmt: skip
+
+    def session(self) -> Session:
+        games, names = read_games(self.store), {"user1": "Rosa", "user2": "Fritz"}
+        return read_session(self.store, games, {"trivia": self.activity}, names)
+
+
+@pytest.fixture
+def quiz(tmp_path: Path) -> Iterator[Quiz]:
+    with Store.open(tmp_path / "data") as store:
+        yield Quiz(store)
+
+
+def played(quiz: Quiz) -> None:
+    quiz.do("welcome everyone")
+    quiz.do("ask question", "user1", answer="right")
+    quiz.do("allow time")
+    quiz.do("confirm answer", "user1")
+    quiz.do("ask question", "user2", answer="wrong")
+    quiz.do("give hint", "user2", answer="wrong")  # wrong again: another answer
+    quiz.do("tell answer", "user2")
+
+
+def test_each_answer_counts_once_and_belongs_to_its_question(quiz: Quiz) -> None:
+    played(quiz)
+    (facts,) = quiz.session().player_facts
+    assert [(act.person, act.value, act.round) for act in facts.acts] == [
+        ("user1", "right", 1), ("user2", "wrong", 2), ("user2", "wrong", 2)
+    ]  # fmt: skip
+    first, second, _ = facts.acts
+    assert first.item and second.item and first.item != second.item
+    assert facts.counts == {"score": {"user1": 1, "user2": 0, "user3": 0}}
+
+
+def test_page_and_lines_tell_answers_scores_and_what_was_not_clear(quiz: Quiz) -> None:
+    played(quiz)
+    unclear = AnswerNotClear(
+        game="g", fact="answer", said="b?", certainty=0.4, source="staff", asked_again=True
+    )
+    quiz.store.append(unclear, person="user3")
+    session = quiz.session()
+    page = session_page(session, full=False)
+    assert "Answers and scores" in page
+    row = page[page.index("Answers and scores") :]
+    assert row.index("Rosa") < row.index("it is right (1)") < row.index("it is wrong (2)")
+    lines = list(session_lines(session))
+    assert "  Rosa: score 1; answer: it is right (1)" in lines
+    assert "  user3: score 0; 1 not clear" in lines
+    assert session.to_json()["player_facts"][0]["counts"]["score"]["user1"] == 1
+
+
+def test_a_report_on_a_game_without_such_facts_has_no_part_for_them(quiz: Quiz) -> None:
+    session = quiz.session()
+    assert session.player_facts == [] and "Answers and scores" not in session_page(session)
