@@ -181,6 +181,11 @@ class FaultRule:
         named = {c.key for conditions in self.when for c in conditions if c.key not in CONTEXT}
         return frozenset(named.union(self.also))
 
+    @cached_property
+    def devices(self) -> frozenset[str]:
+        """The first parts of the keys that it is recognised by: devices, person, behaviour."""
+        return frozenset(c.key.partition(".")[0] for conditions in self.when for c in conditions)
+
     def matched(self, evidence: Evidence) -> tuple[Condition, ...] | None:
         """Return the conditions by which the fault is recognised, or None."""
         for conditions in self.when:

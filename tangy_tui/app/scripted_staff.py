@@ -68,7 +68,8 @@ def _answer(control: GameController) -> list[Result]:
 
 def _clear(control: GameController) -> list[Result]:
     """Acknowledge what halts the robot, call the expert, and clear it, or give the game up."""
-    game, told = control.supervision, list[Result]()
+    game = control.supervision
+    told = list[Result](game.look())  # as screens do all the time
     fault = game.halted
     for _ in range(TIMES_CALLED):
         told += control.carry_out(CallExpert()) + control.carry_out(Clear())

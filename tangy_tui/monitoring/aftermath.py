@@ -78,11 +78,11 @@ class Aftermath:
     def take(self, found: Iterable[Diagnosis], evidence: Evidence) -> None:
         """Keep which devices the faults that were found have taken along."""
         for diagnosis in found:
-            own = {key.partition(".")[0] for c in diagnosis.rule.when for key, *_ in c}
+            rule = diagnosis.rule
             missed = {
                 name
                 for name in self._devices
-                if name not in own and _is_gone(name, evidence, diagnosis.rule.symptoms)
+                if name not in rule.devices and _is_gone(name, evidence, rule.symptoms)
             }
             if missed:
                 cause = self._causes.setdefault(diagnosis.rule.code, _Cause(diagnosis.rule, set()))

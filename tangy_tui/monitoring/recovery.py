@@ -16,7 +16,8 @@ from uuid import uuid4
 
 from tangy_profiles.faults import LEAVE_TO_STAFF, URGENCY, FaultRule, Remedy
 from tangy_profiles.game_records import FaultMove, MoveKind, named
-from tangy_profiles.robot import Robot
+from tangy_profiles.health import STALE
+from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import Facilitation
@@ -71,6 +72,8 @@ class Recovery:
         """The time in the present game, in s."""
         self.on_halt: Callable[[Fault], None] = lambda fault: None
         """Called with the fault that halts the robot."""
+        self.hides_cards: Callable[[], bool] = lambda: False
+        """Returns whether a fault of a device hides the cards now."""
         self._game = game
         self._detector = detector
         self._robot = robot
@@ -100,9 +103,12 @@ class Recovery:
 
     @property
     def waiting(self) -> list[Fault]:
-        """The faults that are still to be dealt with, the most urgent first."""
+        """The faults that are still to be dealt with, the most urgent first.
+
+        What is wrong with the robot comes before what seems to be wrong with a person.
+        """
         there = [fault for fault in self._there if fault.status == OPEN]
-        return sorted(there, key=lambda fault: URGENCY.index(self._rung_of(fault)))
+        return sorted(there, key=lambda f: (URGENCY.index(self._rung_of(f)), f.person is not None))
 
     @property
     def ended(self) -> bool:
@@ -186,9 +192,10 @@ class Recovery:
         move = RecoveryEvent("asked", self.seconds, attempt=attempt, speech=speech, image=image)
         told = self.move(fault, move)
         self.remedy(fault, "ask", move.called(fault.called))
-        if fault.person is not None and not self.solved(fault):
-            self._game.refused(fault.person)
-            self._detector.refused(fault.person)
+        person = None if self.hides_cards() else fault.person
+        if person is not None and not self.solved(fault):
+            self._game.refused(person)
+            self._detector.refused(person)
         return told + self._judge(fault, rule, attempt)
 
     def _go_on(self, fault: Fault, rule: FaultRule) -> list[Event]:
@@ -263,6 +270,8 @@ class Recovery:
         """Say whether a fault is gone, by what can be observed now."""
         rule = self._rules[fault.id]
         devices = self._detector.watch(self._game.world.health())
+        if devices.get(f"{LINK}.state") == STALE and LINK not in rule.devices:
+            return False  # what cannot be observed is not known to be gone
         if rule.fallback:
             return not symptoms({key: devices[key] for key in fault.evidence if key in devices})
         if rule.solved == "evidence gone" or fault.person is None:

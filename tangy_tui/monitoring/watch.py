@@ -40,6 +40,7 @@ class FaultWatch:
         self._recovery = recovery
         self._seen: Evidence | None = None
         self._aftermath = Aftermath(book, detector.devices)
+        recovery.hides_cards = self._hides_cards
 
     def begin(self) -> None:
         """Reset for a new game."""
@@ -138,13 +139,16 @@ class FaultWatch:
     def _compare(self, acted: Acted) -> list[Event]:
         self._recovery.pass_time(acted.outcome.seconds)
         known, self._seen = self._seen, self.devices
-        faults = diagnose(self.book, self._seen)
-        explained = any(not HIDING.isdisjoint(one.rule.also) for one in faults)
-        execution, mismatches = self._detector.compare(acted, explained=explained)
+        execution, mismatches = self._detector.compare(acted, explained=self._hides_cards())
         if not execution and self._seen is known:
             return []
         evidence = together(self._seen, execution)
         return self._take(self._diagnose(evidence, mismatches), acted)
+
+    def _hides_cards(self) -> bool:
+        """Return whether the devices show a fault that explains why a card cannot be seen."""
+        faults = diagnose(self.book, self.devices)
+        return any(not HIDING.isdisjoint(one.rule.also) for one in faults)
 
     def _diagnose(self, evidence: Evidence, mismatches: Sequence[Mismatch] = ()) -> list[Diagnosis]:
         """Explain what no fault explains that was there before."""

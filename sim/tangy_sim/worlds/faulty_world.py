@@ -32,6 +32,7 @@ FINDS_ITSELF = 0.9
 STARTS_AGAIN = 0.5
 """P(a device comes back when it is started again)."""
 
+OUT_OF_SIGHT = "card-out-of-sight"
 SECONDS = {"ask": 25.0, "call expert": 300.0, "spin": 10.0, "restart": 5.0, "other requests": 5.0}
 """How long remedies take; others take no time."""
 
@@ -256,7 +257,7 @@ class FaultyWorld(SimulatedWorld):
 
     def read_card(self) -> None:
         """Take one look at the card beside the robot, which a fault may hide."""
-        hidden = self.present.get("card-out-of-sight")
+        hidden = self.present.get(OUT_OF_SIGHT)
         if hidden is not None and hidden.person is None:
             hidden.person = self.tracker.place
         mine = hidden is not None and hidden.person == self.tracker.place
@@ -341,6 +342,7 @@ class FaultyWorld(SimulatedWorld):
         seconds = SECONDS.get(remedy.kind, 0.0)
         if seconds and not self.over:
             self._pass(seconds / self.users.call_seconds)
+        lost = "link-lost" in self.present
         for kind in self._to_come.due_in_recovery():
             if kind.name not in self.present:
                 self._set_in(kind, self.seconds - NOTICED)
@@ -350,7 +352,11 @@ class FaultyWorld(SimulatedWorld):
                 for name in found:
                     if KINDS[name].helped and self._chance() < HELPS:
                         self._is_helped(name, remedy.person)
+                if remedy.fault == OUT_OF_SIGHT and self.tracker.place in self.tracker.queue:
+                    self.read_card()  # it may lie there since Tangy could not see for a while
             case "call expert":
+                if lost:
+                    self.lift("link-lost")  # before anything else, as with a live robot
                 for name in found or _MUTE if remedy.fault == "mute" else found:
                     self._is_helped(name, remedy.person)
             case "spin":
@@ -372,7 +378,7 @@ class FaultyWorld(SimulatedWorld):
     def _is_helped(self, kind: str, person: str | None) -> None:
         self.lift(kind)
         tracker = self.tracker
-        if kind == "card-out-of-sight" and tracker.place in tracker.queue:
+        if kind == OUT_OF_SIGHT and tracker.place in tracker.queue:
             self.read_card()
         elif kind == "request-stuck" and person in tracker.queue:
             self._set_aside(person)
