@@ -25,6 +25,8 @@ class TriedStep:
     whom: str
     said: str
     doing: dict[str, str]
+    silent: tuple[str, ...] = ()
+    """Who said nothing and was asked again, each time."""
 
 
 def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]:
@@ -56,7 +58,8 @@ def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]
         outcome = world.execute(action)
         said, _ = activity.words_of(action, outcome, lambda id: names.get(id, id))
         did = {names.get(id, EVERYBODY): ", ".join(acts) for id, acts in world.happened.items()}
-        yield TriedStep(number, situation, expected, names.get(whom or "", ""), said, did)
+        silent = tuple(names.get(one.person, "") for one in outcome.unclear if one.asked_again)
+        yield TriedStep(number, situation, expected, names.get(whom or "", ""), said, did, silent)
         if world.over:
             return
     raise TangyError(f"{activity.title}: the game did not end within {MOST_STEPS} steps.")

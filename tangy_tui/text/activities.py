@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.declared.activity import DeclaredActivity
@@ -120,6 +120,7 @@ def without_words(activity: DeclaredActivity) -> list[str]:
     ]
 
 
+SAYS_NOTHING = "says nothing and is asked again"
 TRIED = "The game has come to its end."
 
 
@@ -129,9 +130,10 @@ def tried_lines(number: int, situation: str, behaviour: str, whom: str, said: st
     return [*lines, f"   Tangy says: {said}"] if said else lines
 
 
-def people_did(doing: dict[str, str]) -> str:
-    """Tell what people did after a step ("": nothing)."""
-    did = "; ".join(f"{person}: {what}" for person, what in doing.items())
+def people_did(doing: dict[str, str], silent: Sequence[str] = ()) -> str:
+    """Tell what people did after a step, and who was asked again first ("": nothing)."""
+    told = [f"{person} {SAYS_NOTHING}" for person in silent]
+    did = "; ".join([*told, *(f"{person}: {what}" for person, what in doing.items())])
     return f"   {did}" if did else ""
 
 
