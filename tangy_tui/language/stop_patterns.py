@@ -224,7 +224,8 @@ _STILL = _any(
     f"(?:keep|hold) {ROBOT} (?:still|there|back|where it is)",
     "(?:whoa|woah)(?: there)?(?: (?:boy|girl|nelly))?|(?:easy|steady) (?:there|now|boy|on)",
     f"(?:stay|keep|get|stand|move) (?:back|away|off)(?: {_FROM})?|back (?:off|away)(?: {_FROM})?",
-    f"(?:get|take|move|keep) (?:it|this|that|{ROBOT}) (?:away|off)(?: {_FROM}| {_OWN})?",
+    f"(?:get|take|move|keep) (?:{ROBOT} (?:away|off)(?: {_FROM}| {_OWN})?"
+    f"|(?:it|this|that) (?:away|off) (?:{_FROM}|{_OWN}))",
     "(?:that|this)(?: i)?s (?:quite |more than )?(?:far|close|near|quite) enough",
     "(?:far|close|near) enough|(?:everything|everybody|everyone) stops",
     "(?:no more|enough) (?:numbers?|calling|driving|moving|playing|of (?:this|it))",

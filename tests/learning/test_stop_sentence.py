@@ -64,6 +64,11 @@ def test_most_everyday_commands_stop_and_other_talk_does_not() -> None:
     assert len(stopped["others"]) <= 1 and stopped["talk"] == []
 
 
+def test_what_is_taken_away_from_nobody_may_be_the_tea() -> None:
+    assert not stops("could somebody please take it away")
+    assert stops("take it away from me") and stops("take that robot away")
+
+
 def test_no_word_that_somebody_calls_the_robot_keeps_it_from_stopping() -> None:
     missed = [s for s in STOPPING_WITH_ADJECTIVES if not stops(s, {"bingo"})]
     wrongly = [s for s in MENTIONING_WITH_ADJECTIVES if stops(s, {"bingo"})]
