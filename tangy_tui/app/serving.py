@@ -6,6 +6,7 @@ for once and then kept by the browser in a cookie that no other site's page is s
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 import secrets
 import shlex
@@ -26,6 +27,8 @@ HTTP = 80  # the port that browsers do not say
 RUN = "from tangy_tui.cli import main; main()"
 EVERYWHERE = ("0.0.0.0", "::", "")  # noqa: S104 - they are refused
 """Where a server would listen at all addresses: no browser can be sent there."""
+CLOSES_SECONDS = 3.0
+"""In which browsers are to say that their page is closed."""
 LONGEST_DAY = 12 * 3600  # s that a browser may stay
 
 
@@ -72,6 +75,7 @@ def make_server(command: str, host: str, port: int, token: str) -> Any:
     except ImportError as missing:
         raise NoServer(str(missing.name)) from None
 
+    pages = set[asyncio.Task[Any]]()
     allowed = known_as(host, port)
     (name,) = allowed
 
@@ -83,6 +87,23 @@ def make_server(command: str, host: str, port: int, token: str) -> Any:
             app.middlewares.append(only_known(token, allowed))
             app.on_response_prepare.append(_keep_to_itself)
             return app
+
+        async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
+            """Run a page, and take note of it until it is closed."""
+            page = asyncio.current_task()
+            assert page is not None  # noqa: S101 - this is a coroutine
+            pages.add(page)
+            try:
+                return await super().handle_websocket(request)
+            finally:
+                pages.discard(page)
+
+        async def on_shutdown(self, app: web.Application) -> None:
+            """Close the pages that are open: a browser would not until it is asked."""
+            for page in (there := list(pages)):
+                page.cancel()
+            if there:
+                await asyncio.wait(there, timeout=CLOSES_SECONDS)
 
         async def on_startup(self, app: web.Application) -> None:
             """Print nothing: the caller tells the page's address."""

@@ -10,8 +10,18 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from statistics import median
 
+from tangy_profiles.activity import Activity
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.state import ActivityState
 from tangy_tui.monitoring.replay import Done, GameReplay, Noted
+
+
+def goes_to_people(activity: Activity | None) -> bool:
+    """Say whether an activity has Tangy visit people; of an unknown one that is assumed."""
+    if not isinstance(activity, DeclaredActivity):
+        return True
+    effects = (e for b in activity.declaration.behaviours.values() for e in b.effects)
+    return any(effect.does == "go to whom" for effect in effects)
 
 
 @dataclass(slots=True)

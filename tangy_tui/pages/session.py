@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 
-from tangy_tui.monitoring.attention import attention
+from tangy_tui.monitoring.attention import attention, goes_to_people
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import GameReplay
@@ -181,7 +181,8 @@ def _sentence(words: str) -> str:
 
 def _care(session: Session) -> Iterator[str]:
     yield heading(say.CARE)
-    people = care_lines(attention(session.replays).values(), session.name)
+    found, visits = attention(session.replays).values(), goes_to_people(session.activity)
+    people = care_lines(found, session.name, visits=visits)
     if people:
         lines = "".join(f"<li>{escape(line)}</li>" for line in people)
         yield f'<div class="care"><ul>{lines}</ul></div>'

@@ -99,11 +99,14 @@ def response_words(answers: Sequence[AnsweredRequest]) -> str:
     return ", ".join(filter(None, (words, more)))
 
 
-def care_lines(found: Iterable[Attention], name: Name) -> list[str]:
-    """Name the people who need attention: without a visit, still waiting, or after a long wait."""
+def care_lines(found: Iterable[Attention], name: Name, *, visits: bool = True) -> list[str]:
+    """Name the people who need attention: still waiting, or after a long wait.
+
+    Where Tangy `visits` people in the activity, also those without a visit.
+    """
     people = list(found)
     lines = []
-    if never := [name(one.id) for one in people if not one.visits]:
+    if visits and (never := [name(one.id) for one in people if not one.visits]):
         lines.append(f"Tangy never went to {listed(never)}.")
     for one in people:
         if one.open:

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from pathlib import Path
 from subprocess import CompletedProcess
 
 import pytest
-from aiohttp import web
+from aiohttp import WSMsgType, web
 from aiohttp.test_utils import TestClient, TestServer
 
-from tangy_tui.app.serving import COOKIE, TOKEN, address, known_as, new_token, only_known
+from tangy_tui.app.serving import (
+    COOKIE,
+    LOOPBACK,
+    TOKEN,
+    address,
+    known_as,
+    make_server,
+    new_token,
+    only_known,
+)
+from tests.support.waiting import PATIENCE
 
 Tangy = Callable[..., CompletedProcess[str]]
 
@@ -76,3 +87,29 @@ async def test_the_token_is_kept_out_of_the_address_once_it_was_given() -> None:
 def test_a_browser_is_let_in_by_the_name_that_it_sends(host: str, port: int, sent: str) -> None:
     assert known_as(host, port) == {sent}
     assert address(host, port, "t").startswith(f"http://{sent}")
+
+
+class Page:
+    """A page in a browser that runs nothing."""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        self.stopped = False
+
+    async def start(self, width: int, height: int) -> None:
+        """Begin to show nothing."""
+
+    async def stop(self) -> None:
+        """End."""
+        self.stopped = True
+
+
+async def test_pages_are_closed_when_the_server_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("textual_serve.server.AppService", Page)
+    server = make_server("nothing", LOOPBACK, 80, "known")
+    app = web.Application()
+    app.add_routes([web.get("/ws", server.handle_websocket)])
+    async with TestClient(TestServer(app)) as client:
+        page = await client.ws_connect("/ws")
+        ends = asyncio.create_task(server.on_shutdown(app))
+        assert (await page.receive(PATIENCE)).type is WSMsgType.CLOSE
+        await ends
