@@ -60,7 +60,7 @@ def test_the_sentences_that_were_written_apart_from_the_rules_are_told_apart_too
 def test_most_everyday_commands_stop_and_other_talk_does_not() -> None:
     said = tomllib.loads(EVERYDAY.read_text(encoding="utf-8"))
     stopped = {kind: [s for s in texts if stops(s, {"bingo"})] for kind, texts in said.items()}
-    assert len(stopped["stops"]) >= 0.85 * len(said["stops"])
+    assert len(stopped["stops"]) >= 0.8 * len(said["stops"])
     assert len(stopped["others"]) <= 1 and stopped["talk"] == []
 
 
