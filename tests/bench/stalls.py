@@ -2,7 +2,8 @@
 
 Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]...`. Games are played on the
 bench in real time, with staff who clear what halts the robot. Its process is stopped for so many s
-at moments that are spread over a game, N times for each length. A dialog is a critical fault.
+in each stage in turn, N times for each length: while a number is due, while it drives to a person
+who asks, and beside that person. A dialog is a critical fault.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import time
 from collections import Counter
 from contextlib import closing
 from dataclasses import dataclass, field
+from itertools import product
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -31,6 +33,8 @@ from tangy_tui.monitoring.fault import Diagnosed
 from tests.bench.fault_latency import teach
 
 RESTS = (2.0, 6.0)  # s between two stalls, by chance
+STAGES = ("facilitate", "navigate", "help")
+COMES = 120.0  # s in which a stage has to come about
 SETTLES = 4.0  # s after a stall in which what comes of it is told
 
 
@@ -58,6 +62,24 @@ def play(
                     dialogs.append(event.fault.code)
             if waits:
                 time.sleep(0.05)
+
+
+def come_to(world: BenchedWorld, stage: str, chance: Random) -> None:
+    """Wait until a game is in a stage, and drives where the stage has to do with driving.
+
+    A person asks for help where that is needed. A stage that does not come about is left out: the
+    stall says in which one it came.
+    """
+    until = time.monotonic() + COMES
+    asked = stage == STAGES[0]
+    while time.monotonic() < until:
+        now = world.tracker.state().situation.stage
+        if not asked and now == STAGES[0] and not world.over:
+            world.bench.do("ask", person=chance.choice(world.people))
+            asked = True
+        if now == stage and (stage != "navigate" or world.truth()["moving"]):
+            return
+        time.sleep(0.05)
 
 
 def stall(world: BenchedWorld, seconds: float, held: threading.Event, dialogs: list[str]) -> Stall:
@@ -91,7 +113,7 @@ def stall(world: BenchedWorld, seconds: float, held: threading.Event, dialogs: l
 def main() -> None:
     """Play, stop, and print what came of it."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("--times", type=int, default=10)
+    parser.add_argument("--times", type=int, default=3)
     parser.add_argument("--seconds", type=float, action="append")
     given = parser.parse_args()
     lengths = given.seconds or [0.3, 1.0, 4.0, 10.0]
@@ -109,8 +131,9 @@ def main() -> None:
             game = threading.Thread(target=play, args=(control, over, held, dialogs))
             game.start()
             found: list[Stall] = []
-            for seconds in lengths * given.times:
+            for stage, seconds in product(STAGES, lengths * given.times):
                 time.sleep(chance.uniform(*RESTS))
+                come_to(world, stage, chance)
                 found.append(stall(world, seconds, held, dialogs))
                 print(found[-1], flush=True)
             over.set()

@@ -112,15 +112,18 @@ class FaultyWorld(SimulatedWorld):
         """Say whether a fault of a kind would show in what follows the action."""
         tracker, behaviour = self.tracker, action.behaviour
         asked = tracker.place in tracker.queue
+        there = self.present.get(kind.name)
+        theirs = there is None or there.person in (None, tracker.place)  # it concerns one person
         match kind.shows:
             case injection.DRIVING:
                 return behaviour.effect in DRIVES
             case injection.LOOKING:
                 if tracker.seen is None:
-                    return asked and behaviour.effect == "bring card closer"
-                return behaviour.effect in CORRECTS
+                    return theirs and asked and behaviour.effect == "bring card closer"
+                return theirs and behaviour.effect in CORRECTS
             case injection.ASKING:
-                return asked and behaviour.effect in ABOUT_CARD and tracker.allows(behaviour)
+                about = behaviour.effect in ABOUT_CARD and tracker.allows(behaviour)
+                return theirs and asked and about
             case injection.CLOSING:
                 return asked and tracker.seen is not None and self._closes(behaviour)
             case injection.MOVING_ON:
