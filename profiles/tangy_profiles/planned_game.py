@@ -98,6 +98,11 @@ class PlannedGame:
         return True
 
     @property
+    def bound_for(self) -> str:
+        """The place that the robot drives to, "" if it stands."""
+        return ""
+
+    @property
     def seconds(self) -> float:
         """The time of the world, in s."""
         raise NotImplementedError

@@ -89,22 +89,23 @@ class StaffWatch:
         if scene.place != FRONT and there:
             self._visited[scene.place] = now
         away = frozenset[str]() if planned is None else planned.away
+        robot = scene.place if there else "", "" if planned is None else planned.bound_for
         return StaffView(
             0.0 if self._began is None else max(0.0, now - self._began),
             scene.called,
-            tuple(self._person(person, scene, now, away, there) for person in people),
+            tuple(self._person(person, scene, now, away, robot) for person in people),
             0.0 if planned is None else planned.pace,
         )
 
     def _person(
-        self, person: str, scene: Scene, now: float, away: frozenset[str], there: bool
+        self, person: str, scene: Scene, now: float, away: frozenset[str], robot: tuple[str, str]
     ) -> PersonNow:
         asks, visited = self._asks.get(person), self._visited.get(person)
         state: PersonState = "asks" if person in scene.requests else "plays"
         if person in away:
             state = "away"
-        elif scene.place == person:
-            state = "visited" if there else "comes"
+        elif person in robot:
+            state = "visited" if person == robot[0] else "comes"
         turn = scene.requests.index(person) + 1 if person in scene.requests else 0
         return PersonNow(
             person,

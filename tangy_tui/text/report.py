@@ -126,6 +126,9 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
         if change.what in ("played on", "others first", "all called", "nobody won")
     ]
     visits = Counter(name(change.person) for _, change in changes if change.what == "visit")
+    visits -= Counter(
+        name(change.person) for _, change in changes if change.what == "visit put off"
+    )
     if visits:
         each = [who if n == 1 else f"{who} ({n} times)" for who, n in visits.items()]
         lines.append(f"Tangy visited {listed(each)} although they had not asked.")

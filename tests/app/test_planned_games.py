@@ -248,6 +248,10 @@ def test_the_log_and_the_report_tell_what_changed_beside_the_behaviours(taught: 
             words = changed_words(change, activity, session.name)
             assert words in lines and words in unknown
     summed = changes_lines(session.replays, session.name)
+    made = [who for what, who, _ in kept if what == "visit"]
+    put_off = [who for what, who, _ in kept if what == "visit put off"]
+    for person in {*put_off} - {who for who in made if made.count(who) > put_off.count(who)}:
+        assert not any("had not asked" in line and session.name(person) in line for line in summed)
     page, short = session_page(session), list(session_lines(session))
     assert summed and all(line in page and line in short for line in summed)
     planned.workspace.close()
@@ -412,9 +416,13 @@ def test_a_person_is_visited_once_the_robot_stands_there(planned: Planned) -> No
     class OnItsWay(PlannedGame):
         arrived = False
         pace = 0.0
+        bound_for = person
 
     (now,) = watch.look(scene, (person,), 6.0, OnItsWay()).people
     assert (now.state, now.unvisited) == ("comes", None)
+    OnItsWay.bound_for = ""
+    (now,) = watch.look(scene, (person,), 7.0, OnItsWay()).people  # as after an interruption
+    assert (now.state, now.unvisited) == ("plays", None)
     (now,) = watch.look(scene, (person,), 8.0, planned.world).people
     assert (now.state, now.unvisited) == ("visited", 0)
 

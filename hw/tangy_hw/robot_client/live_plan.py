@@ -85,6 +85,11 @@ class LivePlan(PlannedGame):
         return hypot(to.x - state.pose.x, to.y - state.pose.y) <= BESIDE
 
     @property
+    def bound_for(self) -> str:
+        """The place that the robot drives to, "" if it stands."""
+        return self.link.state.going
+
+    @property
     def called_now(self) -> tuple[int, ...]:
         """The numbers that count as called."""
         return tuple(self.calls.called)
