@@ -50,6 +50,7 @@ def data_folder(taught: Path) -> Path:
     return taught
 
 
+@pytest.mark.slow
 def test_the_game_is_paused_and_the_log_says_why(workspace: Workspace, learnt: Policy) -> None:
     clocks, told = Clocks(), list[float]()
     control = scripted_controller(workspace.supervision(learnt, 5))

@@ -108,6 +108,7 @@ def edge(pose: Pose) -> Floats:
     return placed(np.vstack(sides), pose)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("goal", [Pose(8.2, 1.2, pi / 2), Pose(1.6, 3.2, pi / 2)])
 def test_a_robot_with_corners_and_its_scanner_aside_touches_no_wall(goal: Pose) -> None:
     laser, rng = Pose(0.25, 0.0, radians(10)), np.random.default_rng(3)

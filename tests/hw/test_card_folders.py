@@ -23,6 +23,7 @@ def test_the_pictures_of_a_folder_are_read_by_their_names(tangy: Tangy, tmp_path
     assert [row["card"] for row in both] == [9, 7, 8, 9]
 
 
+@pytest.mark.slow
 def test_a_folder_without_pictures_is_refused_and_the_rest_is_read(
     tangy: Tangy, tmp_path: Path
 ) -> None:

@@ -178,6 +178,7 @@ async def test_what_one_picture_alone_shows_is_not_told(activity: Activity) -> N
     assert seen.state in ("occluded", "correctly marked")
 
 
+@pytest.mark.slow
 async def test_a_picture_that_stands_still_tells_of_one_moment(activity: Activity) -> None:
     seen = await seen_in([picture(1 << 7, 0)] * 5, activity)
     assert (seen.state, seen.pictures) == ("occluded", 1)

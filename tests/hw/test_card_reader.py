@@ -103,6 +103,7 @@ def test_cells_under_a_hand_are_hidden_and_the_others_are_read(reader: CardReade
     assert reading.hidden.bit_count() < 20
 
 
+@pytest.mark.slow
 def test_a_card_of_another_deck_is_not_claimed(reader: CardReader) -> None:
     random = np.random.default_rng(1)
     picture = camera(deck_seed=2).take(17, {}, CLEAN, random).picture

@@ -89,6 +89,7 @@ def test_a_card_is_noticed_by_one_tag_however_far_it_is_out_of_the_picture(
     assert reading.card is None and reading.cards == (17, 31)
 
 
+@pytest.mark.slow
 def test_two_copies_of_one_card_are_two_cards(reader: CardReader, camera: CardCamera) -> None:
     both = beside(taken(camera, 17, 1), taken(camera, 17, 2, replace(VIEW, spin=20, pixels=27)))
     reading = reader.read(both)

@@ -100,6 +100,7 @@ class TestPeople:
         assert past(Twist(-0.4, 0.0), person(0.5, 0.1)).forward == -0.4
         assert past(Twist(0.0, 1.0), person(0.5, 0.1)) == Twist(0.0, 1.0)
 
+    @pytest.mark.slow
     @given(st.floats(0.3, 2.5), st.floats(-pi, pi), st.floats(-1.4, 1.4), st.floats(-1.4, 1.4))
     def test_driving_it_never_touches_who_goes_on_as_they_do(
         self, far: float, bearing: float, vx: float, vy: float

@@ -113,6 +113,7 @@ class TestFollowing:
 
 
 class TestFinding:
+    @pytest.mark.slow
     @pytest.mark.parametrize("seed", [10, 11])
     def test_a_robot_that_may_be_anywhere_finds_itself_as_it_turns(self, seed: int) -> None:
         robot = Driven(seed, start=None, true=Pose(3.0, 2.0, 0.4))

@@ -58,6 +58,7 @@ class TestGoing:
         assert robot.twist == STILL and robot.navigator.state == "idle"
         assert robot.navigator.goal is None
 
+    @pytest.mark.slow
     def test_it_stands_while_it_does_not_see(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
@@ -158,6 +159,7 @@ class TestFaults:
         robot.run(1)
         assert robot.twist == STILL and robot.navigator.state == "failed"
 
+    @pytest.mark.slow
     def test_told_to_it_turns_once_and_stands(self) -> None:
         robot = DrivenRobot()
         robot.navigator.spin()

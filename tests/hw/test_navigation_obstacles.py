@@ -52,6 +52,7 @@ class TestObstacles:
         robot.boxes.clear()
         assert robot.arrives() and not robot.touched
 
+    @pytest.mark.slow
     def test_somebody_who_walks_by_is_let_pass(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))

@@ -43,6 +43,7 @@ def bad_pictures(folder: Path) -> dict[str, Path]:
     }
 
 
+@pytest.mark.slow
 def test_what_is_no_picture_is_said_in_one_sentence(tangy: Tangy, tmp_path: Path) -> None:
     for says, path in bad_pictures(tmp_path).items():
         done = tangy("read-card", path, "--json")
@@ -108,6 +109,7 @@ def test_a_card_is_read_from_colours_of_any_kind(
     assert (row["cards"], row["problem"]) == ([42], "")
 
 
+@pytest.mark.slow
 def test_of_several_cards_in_a_picture_none_is_read_or_judged(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 42, "--count", 2, "--png", tmp_path, "--dpi", 60)
     one, other = (Image.open(tmp_path / f"card-04{last}.png") for last in (2, 3))

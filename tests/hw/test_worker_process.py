@@ -333,6 +333,7 @@ def why(owner: Any) -> str:
 class TestOwners:
     """Who keeps a child says how it ended, and starts another."""
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("does", "told"),
         [("dies", "status 3"), ("says garbage", "signal 9"), ("says no end", "signal 9")],

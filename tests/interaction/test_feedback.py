@@ -177,6 +177,7 @@ def test_counts_are_what_the_log_says_after_any_order_of_plays_voids_late_feedba
     assert len(requests) == len(set(requests)), "no request is counted twice"
 
 
+@pytest.mark.slow
 @tried(30)
 @given(moves, st.sampled_from([FORGETFUL, DAILY, PersuasionConfig("bayes-ucb", "people")]))
 def test_with_any_method_the_counts_are_the_logs_and_the_live_beliefs_are_the_recalled_ones(
@@ -202,6 +203,7 @@ def test_with_any_method_the_counts_are_the_logs_and_the_live_beliefs_are_the_re
         assert live.beliefs[person][strategy].beta == pytest.approx(recalled[strategy].beta)
 
 
+@pytest.mark.slow
 @tried(20)
 @given(
     st.lists(st.tuples(st.sampled_from(STRATEGIES), st.booleans()), min_size=1, max_size=8),

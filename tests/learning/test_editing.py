@@ -311,6 +311,7 @@ def editor_of_three(store: Store) -> Editor:
     return editor_of(store)
 
 
+@pytest.mark.slow
 @given(CHANGES)
 @tried(60)
 def test_whatever_is_done_undo_leads_back_step_by_step_and_redo_forward_again(

@@ -119,6 +119,7 @@ def test_an_unfinished_one_is_compared_too(
     assert notes(activity, library, 1) == []
 
 
+@pytest.mark.slow
 def test_one_much_longer_than_the_others_is_noted(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:

@@ -549,6 +549,7 @@ class TestHandsFree:
             await here.over()
         assert here.told == [HearingNote("not decoded", "It died.")] * (room.FAILURES - 1)
 
+    @pytest.mark.slow
     async def test_a_stream_that_nobody_takes_does_not_grow_for_ever(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         here.decoder.decoding.clear()

@@ -126,6 +126,7 @@ class TestLanguage:
         assert wanted(BOOK, USUAL, ["tell a joke"]).phrases == ("tell a joke", *STOPS, *teaching)
         assert wanted(BOOK, PAPER).phrases == (*BOOK.spoken(), *STOPS)
 
+    @pytest.mark.slow
     @given(
         st.builds(
             Wanted,

@@ -144,6 +144,7 @@ def asked(events: list[Event], person: str) -> int:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1, 13))
 def test_nobody_is_asked_in_vain_more_than_six_times_in_a_game(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, seed: int

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from tangy_tui.app.chosen_activity import chosen_activity
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.activities import activity_note
@@ -15,6 +17,7 @@ from tests.support.declared import DECLARED, declared
 from tests.support.waiting import until_shown
 
 
+@pytest.mark.slow
 async def test_a_chooses_the_activity_and_teaching_follows(run: Run, workspace: Workspace) -> None:
     title = declared("trivia").title
     async with run(app=Program(workspace, clock=StillClock())) as pilot:

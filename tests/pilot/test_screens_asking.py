@@ -155,6 +155,7 @@ async def test_what_is_typed_while_tangy_asks_may_be_a_command_as_well(
         assert screen.query(AskingPanel), "it still asks"
 
 
+@pytest.mark.slow
 async def test_nothing_happens_before_a_yes(run: Run, workspace: Workspace, gappy: Policy) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
@@ -393,6 +394,7 @@ async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(
     assert ended.body["stopped"] == "It was left before its end."
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_asking_looks(
     run: Run,

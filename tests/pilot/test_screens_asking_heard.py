@@ -73,6 +73,7 @@ async def played(pilot: TangyPilot) -> PlayScreen:
     return pilot.app.screen
 
 
+@pytest.mark.slow
 async def test_an_answer_is_said_asked_about_and_learnt(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -158,6 +159,7 @@ async def test_while_nothing_is_asked_only_stop_is_heard(
         assert "STOPPED" in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_after_a_stop_what_is_said_is_refused_and_does_not_stay_in_the_line(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -174,6 +176,7 @@ async def test_after_a_stop_what_is_said_is_refused_and_does_not_stay_in_the_lin
         assert screen.control.supervision.question is not None
 
 
+@pytest.mark.slow
 async def test_the_phrases_are_shown_where_tangy_asks(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:

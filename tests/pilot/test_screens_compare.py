@@ -104,6 +104,7 @@ async def test_teacher_is_compared_with_teacher(
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
+@pytest.mark.slow
 async def test_the_policy_screen_tells_why_and_says_what_is_contested(
     run: Run, workspace: Workspace
 ) -> None:
@@ -124,6 +125,7 @@ async def test_the_policy_screen_tells_why_and_says_what_is_contested(
         assert isinstance(pilot.app.screen, WhyDialog)
 
 
+@pytest.mark.slow
 async def test_before_is_compared_with_after_from_the_policy_screen(
     run: Run, workspace: Workspace
 ) -> None:
@@ -138,6 +140,7 @@ async def test_before_is_compared_with_after_from_the_policy_screen(
         assert "asks: contested" in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_an_earlier_policy_can_be_looked_at(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("o", "enter")
@@ -183,6 +186,7 @@ async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
         assert sum(1 for _ in workspace.store.events(PolicyLearnt)) == before + kept
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_comparing_looks(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]

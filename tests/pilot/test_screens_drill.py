@@ -109,6 +109,7 @@ async def answer_round(pilot: TangyPilot, drill: Drill) -> None:
         await pilot.pause()
 
 
+@pytest.mark.slow
 @SIZES
 async def test_a_drill_is_walked_to_its_sheet(
     run: Run, make: Callable[..., DrillScreen], workspace: Workspace, size: tuple[int, int]
@@ -278,6 +279,7 @@ async def test_a_note_is_told_before_it_begins(run: Run, make: Callable[..., Dri
         assert "Tangy has learnt nothing yet" in pilot.text()
 
 
+@pytest.mark.slow
 async def test_it_is_opened_from_home_and_its_score_is_told_there(
     run: Run, workspace: Workspace
 ) -> None:

@@ -33,6 +33,7 @@ from tests.pilot.faults import (
 from tests.support.waiting import until_shown
 
 
+@pytest.mark.slow
 async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -60,6 +61,7 @@ async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
         assert screen.query_one(LogView).sentences[-1] == NO_UNSEEN_FAULT
 
 
+@pytest.mark.slow
 async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -137,6 +139,7 @@ async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
         assert len(faults.shown_keys) == 2
 
 
+@pytest.mark.slow
 async def test_the_list_can_fill_the_screen(run: Run, workspace: Workspace, policy: Policy) -> None:
     async with run(app=playing(workspace, policy, speed=1000)) as pilot:
         screen, game, world = game_of(pilot)
@@ -216,6 +219,7 @@ async def test_a_fault_is_brought_about_by_keys_and_lifted_again(
         assert not world.present
 
 
+@pytest.mark.slow
 async def test_what_is_still_to_come_can_be_lifted(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

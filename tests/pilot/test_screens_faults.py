@@ -31,6 +31,7 @@ from tests.support.waiting import until_shown
 # ------------------------------------------------------------ looking
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at", ["playing", "paused"])
 async def test_a_fault_is_told_at_the_next_look(
     run: Run, workspace: Workspace, policy: Policy, at: str, monkeypatch: pytest.MonkeyPatch
@@ -55,6 +56,7 @@ async def test_a_fault_is_told_at_the_next_look(
         assert "Laser scanner silent" in pilot.text()
 
 
+@pytest.mark.slow
 async def test_nothing_is_written_while_nothing_changes(
     run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -33,6 +33,7 @@ from tests.pilot.faults import (
 from tests.support.waiting import until_shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
 async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
@@ -70,6 +71,7 @@ async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
     assert {move.by for move in kept[0].moves} == {"", "ann"}
 
 
+@pytest.mark.slow
 async def test_the_dialog_says_what_was_expected_and_observed_and_when(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -85,6 +87,7 @@ async def test_the_dialog_says_what_was_expected_and_observed_and_when(
         assert "0:31 halted" in text
 
 
+@pytest.mark.slow
 async def test_the_dialog_says_when_the_fault_is_gone_and_calls_the_expert_once(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -168,6 +171,7 @@ async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
             assert uncleared(workspace.store) is None
 
 
+@pytest.mark.slow
 async def test_stop_works_inside_and_leaves_the_dialog(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -216,6 +220,7 @@ async def test_two_critical_faults_are_cleared_one_after_the_other(
         assert [fault.status for fault in game.faults] == [OVER, OVER]
 
 
+@pytest.mark.slow
 async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

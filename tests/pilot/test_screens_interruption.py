@@ -76,6 +76,7 @@ async def test_it_ends_with_a_report(interrupted: Workspace, run: Run) -> None:
     assert end.record.steps == STEPS and end.record.game in report.name
 
 
+@pytest.mark.slow
 async def test_it_is_discarded_and_a_new_game_begins(interrupted: Workspace, run: Run) -> None:
     async with run(app=Program(interrupted, clock=StillClock())) as pilot:
         await asked(pilot)

@@ -119,6 +119,7 @@ STAFF_SAYS = {"i": "autonomy", "c": "call again", "o": "take over"}
 """In a live game: what is noted of staff at once, and can be said otherwise the next moment."""
 
 
+@pytest.mark.slow
 async def test_pause_and_step_move_the_simulated_game_and_nothing_else(
     run: Run, taught: Workspace
 ) -> None:
@@ -159,6 +160,7 @@ async def test_no_letter_changes_a_live_game_unasked(run: Run, taught: Workspace
             assert link.told == told, letter
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("opens", [home, library, people, play])
 async def test_pasted_text_runs_nothing_but_a_stop(
     run: Run, taught: Workspace, opens: Opens, monkeypatch: pytest.MonkeyPatch
@@ -194,6 +196,7 @@ async def test_a_few_keys_that_come_together_are_keys(run: Run, workspace: Works
         assert isinstance(pilot.app.screen, PeopleScreen)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("opens", [home, teach, library, people, policy, play])
 async def test_help_and_palette_list_every_action_of_a_screen(
     run: Run, taught: Workspace, opens: Opens

@@ -122,6 +122,7 @@ async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
         assert "3: unfinished; not finished" in pilot.text()
 
 
+@pytest.mark.slow
 async def test_deleting_is_asked_about_and_restored_by_the_same_key(
     run: Run, workspace: Workspace
 ) -> None:
@@ -168,6 +169,7 @@ async def test_marked_ones_are_merged_and_taken_apart_again(run: Run, workspace:
         assert states(workspace)[:3] == ["", "", ""]
 
 
+@pytest.mark.slow
 async def test_one_is_split_after_the_chosen_step(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "S")
@@ -202,6 +204,7 @@ async def test_after_its_last_step_nothing_is_split_off(run: Run, workspace: Wor
         assert "Nothing comes after step" in told(pilot)
 
 
+@pytest.mark.slow
 async def test_what_was_made_and_taken_back_is_not_in_the_list(
     run: Run, workspace: Workspace
 ) -> None:
@@ -237,6 +240,7 @@ async def test_the_way_out_and_the_help_are_always_in_the_key_line(
         assert "x put away  / filter" in pilot.lines()[-1]
 
 
+@pytest.mark.slow
 async def test_notes_end_inside_of_the_list(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), size=LARGE) as pilot:
         await press(pilot, "i", "enter")
@@ -246,6 +250,7 @@ async def test_notes_end_inside_of_the_list(run: Run, workspace: Workspace) -> N
             assert max(cell_len("".join(t for t, _ in line.row)) for line in lines) <= width
 
 
+@pytest.mark.slow
 async def test_a_demonstration_opens_at_the_chosen_step(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "enter", "tab", "home", "down", "down", "enter")
@@ -311,6 +316,7 @@ async def test_a_step_that_is_opened_while_teaching_goes_back_in_that_session(
 # ------------------------------------------------------------------------------ the conflicts
 
 
+@pytest.mark.slow
 async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_says(
     run: Run, workspace: Workspace
 ) -> None:
@@ -361,6 +367,7 @@ async def test_answers_are_taken_back_and_learning_can_be_left(
         assert last_policy(workspace.store, "bingo") is None
 
 
+@pytest.mark.slow
 async def test_something_else_can_be_right(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "enter", "O")
@@ -406,6 +413,7 @@ async def test_how_the_list_looks(
         looks(pilot.app)
 
 
+@pytest.mark.slow
 @SIZES
 async def test_how_a_demonstration_looks(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]

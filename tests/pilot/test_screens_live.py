@@ -60,6 +60,7 @@ async def asked_about_the_next(pilot: TangyPilot) -> None:
     await pilot.pause()
 
 
+@pytest.mark.slow
 async def test_staff_see_where_the_robot_is_and_where_it_goes(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -135,6 +136,7 @@ async def test_the_pace_is_told_once_however_often_a_key_changes_it(
         assert f"{live(pilot).world.pace:g} seconds" in told
 
 
+@pytest.mark.slow
 async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -266,6 +268,7 @@ async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that
         assert log.sentences.count(other) == log.sentences.count(own) == 1
 
 
+@pytest.mark.slow
 async def test_between_two_calls_staff_can_step_in_and_who_asks_does_not_wait(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
@@ -297,6 +300,7 @@ async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Pro
         await until_shown(pilot, lambda: bool(live(pilot).query(AskingPanel)))
 
 
+@pytest.mark.slow
 async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
@@ -319,6 +323,7 @@ async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
         await asked_about_the_next(pilot)
 
 
+@pytest.mark.slow
 async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
@@ -357,6 +362,7 @@ async def test_stop_typed_where_letters_are_keys_stops_and_the_rest_is_no_keys(
         assert "stop: staff stopped it" in link.told
 
 
+@pytest.mark.slow
 async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLink) -> None:
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 2)
@@ -367,6 +373,7 @@ async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLin
         assert not isinstance(pilot.app.screen, DrivingDialog)
 
 
+@pytest.mark.slow
 async def test_whoever_drives_by_keys_reads_what_tangy_does_about_what_is_near(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -391,6 +398,7 @@ async def test_whoever_drives_by_keys_reads_what_tangy_does_about_what_is_near(
         await pilot.press("escape")
 
 
+@pytest.mark.slow
 async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
     run: Run, program: Program, link: HeldLink, workspace: Workspace
 ) -> None:
@@ -403,6 +411,7 @@ async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
         assert noted.count("the robot process was frozen for 5.0 s") == 1
 
 
+@pytest.mark.slow
 async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -417,6 +426,7 @@ async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
         assert "may move again" in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_a_call_is_said_again_and_taken_back(
     run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
 ) -> None:

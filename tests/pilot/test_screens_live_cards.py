@@ -50,6 +50,7 @@ async def shown(pilot: TangyPilot, text: str) -> None:
     await until_shown(pilot, lambda: text in screen_text(pilot.app))
 
 
+@pytest.mark.slow
 async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
     run: Run, program: Program, link: HeldLink, workspace: Workspace
 ) -> None:
@@ -72,6 +73,7 @@ async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
         assert name not in " ".join(notes(workspace))  # the log knows ids
 
 
+@pytest.mark.slow
 async def test_staff_say_whose_a_card_is(
     run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
 ) -> None:

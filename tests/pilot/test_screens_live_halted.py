@@ -161,6 +161,7 @@ async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
         await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
 
 
+@pytest.mark.slow
 async def test_a_lost_link_that_was_a_freeze_is_called_what_it_is_as_soon_as_that_is_known(
     run: Run, program: Program, link: HeldLink
 ) -> None:

@@ -153,6 +153,7 @@ async def test_v_shows_what_its_camera_sees(
         assert link.asked_for[count]["after"] == -1
 
 
+@pytest.mark.slow
 async def test_the_last_card_is_drawn_as_the_robot_read_it(
     run: Run, make: Callable[[], SensorsScreen], link: SeeingLink, workspace: Workspace
 ) -> None:
@@ -191,6 +192,7 @@ async def test_whoever_leaves_waits_for_no_answer(sensors: LinkedSensors, link: 
         await asyncio.sleep(0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, (120, 40)], ids=["small", "large"])
 async def test_how_it_looks(
     size: tuple[int, int],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import pytest
 from textual.widgets import Input
 
 from tangy_profiles.demonstration import Demonstration
@@ -22,6 +23,7 @@ def program(workspace: Workspace) -> Program:
     return Program(workspace, asks_name=True, clock=StillClock())
 
 
+@pytest.mark.slow
 async def test_the_name_is_asked_on_the_first_start_and_kept(
     run: Run, workspace: Workspace
 ) -> None:

@@ -125,6 +125,7 @@ async def test_another_person_is_chosen_with_the_arrows(run: Run, workspace: Wor
 # --------------------------------------------------------------------------- what it changes
 
 
+@pytest.mark.slow
 async def test_a_response_is_voided_and_taken_back(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("tab", "tab", "x")
@@ -179,6 +180,7 @@ async def test_a_request_without_a_response_is_answered_late(
         assert "answered later" in pilot.text()
 
 
+@pytest.mark.slow
 async def test_a_strategy_is_switched_off_and_on_again(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("tab", "down", "down", "down", "x")
@@ -202,6 +204,7 @@ async def test_the_last_strategy_stays_on(run: Run, workspace: Workspace) -> Non
         assert "neutral is the last one left" in pilot.text()
 
 
+@pytest.mark.slow
 async def test_another_method_is_chosen_and_the_activitys_again(
     run: Run, workspace: Workspace
 ) -> None:
@@ -346,6 +349,7 @@ async def test_at_every_size_the_chosen_person_is_told_of_in_full(
 # ------------------------------------------------------------------------- how a name is said
 
 
+@pytest.mark.slow
 async def test_a_name_is_heard_and_its_pronunciation_noted(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:

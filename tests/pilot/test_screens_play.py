@@ -80,6 +80,7 @@ async def test_one_step_is_one_step(run: Run, workspace: Workspace, policy: Poli
         assert screen.query_one(StatusLine).status.note == "paused"
 
 
+@pytest.mark.slow
 async def test_what_staff_see_goes_along_with_a_simulated_game(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -167,6 +168,7 @@ async def test_stop_stops_and_only_a_person_lets_it_go_on(
         assert "STOPPED" not in screen_text(pilot.app)
 
 
+@pytest.mark.slow
 async def test_panels_are_chosen_by_number_where_there_is_no_room(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

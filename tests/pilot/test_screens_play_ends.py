@@ -133,6 +133,7 @@ async def test_what_waits_for_the_answer_says_so_in_the_panel(
         assert screen.games == 1
 
 
+@pytest.mark.slow
 async def test_after_a_stop_the_keys_say_what_goes_on_and_what_does_not(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:

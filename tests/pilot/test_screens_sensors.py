@@ -125,6 +125,7 @@ def row(pilot: TangyPilot, label: str) -> str:
     return next(line for line in left(pilot) if label in line)
 
 
+@pytest.mark.slow
 async def test_a_camera_is_told_of_in_a_word_with_age_reason_and_since_when(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
 ) -> None:

@@ -203,6 +203,7 @@ async def test_whether_all_is_ready_is_told_in_view_however_many_people_there_ar
     workspace.close()
 
 
+@pytest.mark.slow
 async def test_a_guest_and_a_new_name_are_taken_in_on_the_page(run: Run, setting: Setting) -> None:
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
@@ -247,6 +248,7 @@ async def test_what_is_told_covers_no_line_of_the_page(run: Run, setting: Settin
         assert text.SEATED not in pilot.text()
 
 
+@pytest.mark.slow
 async def test_who_holds_a_card_before_the_robot_is_here(run: Run, setting: Setting) -> None:
     setting.setup.world = live_world(setting.workspace, setting.link)
     setting.setup.toggle("user2")

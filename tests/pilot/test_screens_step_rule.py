@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.situations import seen_facts
 from tangy_tui.app.workspace import Workspace
@@ -35,6 +37,7 @@ def rules(workspace: Workspace) -> int:
     return sum(bool(one.whatever) for one in library.resolutions)
 
 
+@pytest.mark.slow
 async def test_a_key_makes_the_last_step_a_rule_and_undo_takes_it_back(
     run: Run, tmp_path: Path
 ) -> None:
@@ -59,6 +62,7 @@ async def test_a_key_makes_the_last_step_a_rule_and_undo_takes_it_back(
         await until_shown(pilot, lambda: list(screen.query_one(Transcript).steps) == steps)
 
 
+@pytest.mark.slow
 async def test_esc_makes_no_rule_and_the_word_does_as_the_key(run: Run, tmp_path: Path) -> None:
     workspace = Workspace(tmp_path, activity="trivia")
     listening(workspace)

@@ -65,6 +65,7 @@ async def switching(pilot: TangyPilot, robot: Robot) -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
 async def test_it_says_what_goes_on_and_how_to_leave_it_off(
     run: Run,
@@ -115,6 +116,7 @@ async def test_esc_that_was_typed_ahead_lets_nothing_be_started(
         await until_shown(pilot, lambda: robot.did == ["over"])
 
 
+@pytest.mark.slow
 async def test_one_that_answers_is_played_with_whatever_lay_over_the_dialog(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

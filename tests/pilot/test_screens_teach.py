@@ -68,6 +68,7 @@ async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
         assert steps(workspace) == ["greeting"]
 
 
+@pytest.mark.slow
 async def test_a_rejected_command_changes_nothing_and_comes_back(
     run: Run, workspace: Workspace
 ) -> None:
@@ -78,6 +79,7 @@ async def test_a_rejected_command_changes_nothing_and_comes_back(
         assert not read_demonstrations(workspace.store, workspace.activity.name)
 
 
+@pytest.mark.slow
 async def test_another_behaviour_is_chosen_by_number_and_asked_about_again(
     run: Run, workspace: Workspace
 ) -> None:
@@ -333,6 +335,7 @@ async def test_tab_lists_only_what_can_be_done_now(run: Run, workspace: Workspac
         assert pilot.app.screen.query_one(CommandBar).text == "greet everyone"
 
 
+@pytest.mark.slow
 async def test_going_where_nobody_asks_is_refused_with_a_way_out(
     run: Run, workspace: Workspace
 ) -> None:

@@ -85,6 +85,7 @@ async def test_a_story_waits_for_the_help_to_be_closed(
         assert ended == [True]
 
 
+@pytest.mark.slow
 async def test_the_keys_are_where_they_were_when_the_help_is_closed(
     run: Run, workspace: Workspace
 ) -> None:

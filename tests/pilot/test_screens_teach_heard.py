@@ -145,6 +145,7 @@ async def test_unsure_words_offer_choices_each_of_which_is_asked_about(
         assert len(steps(workspace)) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["n", "escape"])
 async def test_none_of_the_choices_does_nothing_and_leaves_the_keys(
     run: Run, workspace: Workspace, key: str
@@ -303,6 +304,7 @@ async def test_the_key_to_talk_takes_away_what_was_told_of_the_last_answer(
         assert "I heard something" not in dialog_text(pilot)
 
 
+@pytest.mark.slow
 async def test_a_choice_says_which_answers_it_takes_by_voice(
     run: Run, workspace: Workspace
 ) -> None:
@@ -416,6 +418,7 @@ async def test_the_line_is_drawn_only_when_it_shows_something_else(
         assert len(drawn) == 2
 
 
+@pytest.mark.slow
 async def test_names_are_listened_for_as_they_are_said_now(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
     async with run(app=teaching(workspace, ears)) as pilot:
@@ -447,6 +450,7 @@ async def test_the_help_tells_how_to_talk_and_leads_to_the_phrases(
         assert isinstance(pilot.app.screen, PhrasesScreen)
 
 
+@pytest.mark.slow
 async def test_the_ears_stay_with_the_program_and_end_with_it(
     run: Run, workspace: Workspace
 ) -> None:
@@ -468,6 +472,7 @@ async def test_the_ears_stay_with_the_program_and_end_with_it(
     assert ears.closed
 
 
+@pytest.mark.slow
 async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -488,6 +493,7 @@ async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
         assert pilot.app.screen.query_one(Transcript).count == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("shows", "size"),
     [

@@ -194,6 +194,7 @@ async def test_nobody_is_interrupted_who_is_talking_to_tangy(
         assert ears.state == "listening"
 
 
+@pytest.mark.slow
 async def test_stop_and_leaving_let_it_fall_silent(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
@@ -234,6 +235,7 @@ async def test_in_lifes_pace_the_next_step_waits_until_the_line_was_heard(
         assert steps.count == 2
 
 
+@pytest.mark.slow
 async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
     run: Run, workspace: Workspace, policy: Policy, voices: list[FakeVoice]
 ) -> None:

@@ -70,6 +70,7 @@ def persuading(workspace: Workspace) -> str:
     return next(b.name for b in workspace.activity.behaviours.values() if b.persuades)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
 async def test_votes_come_first_and_then_the_draws(
     run: Run, workspace: Workspace, size: tuple[int, int]
@@ -90,6 +91,7 @@ async def test_votes_come_first_and_then_the_draws(
         assert f"Based on {len(why.rests_on)} step" in seen
 
 
+@pytest.mark.slow
 async def test_enter_opens_the_step_where_it_was_demonstrated(
     run: Run, workspace: Workspace
 ) -> None:

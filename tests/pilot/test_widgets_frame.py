@@ -399,6 +399,7 @@ def test_text_has_contrast(theme: Any) -> None:
         assert contrast(theme.foreground, inks[mark]) >= 7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("theme", [t.name for t in THEMES] + ["textual-dark", "nord", "ansi-dark"])
 async def test_every_theme_draws_everything(run: Run, theme: str) -> None:
     async with run(GalleryScreen(), LARGE) as pilot:

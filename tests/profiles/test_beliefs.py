@@ -41,6 +41,7 @@ def test_updating_leaves_the_old_belief_as_it_was() -> None:
     assert belief == Beta(2, 3)
 
 
+@pytest.mark.slow
 @given(counts)
 def test_the_density_is_a_distribution_around_the_mean(count: tuple[int, int]) -> None:
     belief = Beta(1 + count[0], 1 + count[1])
@@ -116,6 +117,7 @@ def test_quantiles_are_those_of_beliefs_that_can_be_written_down(n: int) -> None
         assert Beta(1, n).quantile(share) == pytest.approx(1 - (1 - share) ** (1 / n))
 
 
+@pytest.mark.slow
 @given(st.tuples(st.integers(0, 300), st.integers(0, 300)))
 def test_the_truth_lies_in_the_interval_with_nine_in_ten(pair: tuple[int, int]) -> None:
     belief = Beta(1 + pair[0], 1 + pair[1])

@@ -217,6 +217,7 @@ WORDS = st.sampled_from(
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @given(st.integers(0, len(SHIPPED)), st.integers(0, 60), WORDS | st.text(max_size=12))
 def test_no_damage_to_the_file_gives_a_traceback(
     tmp_path_factory: pytest.TempPathFactory, place: int, length: int, put: str

@@ -185,6 +185,7 @@ def test_last_is_the_newest_of_its_kind(store: Store) -> None:
     assert joke is not None and joke.seq == 2
 
 
+@pytest.mark.slow
 def test_reading_goes_on_after_a_seq_and_while_appending(store: Store) -> None:
     with store.transaction():
         for number in range(store_module.WINDOW * 2 + 5):

@@ -169,6 +169,7 @@ class TestSensors:
         assert "laser scanner      simulated" in lines
         assert lines[-2:] == ["No card was read yet.", "Now: no card in sight."]
 
+    @pytest.mark.slow
     def test_one_that_does_not_work_fails_and_says_why(self, tangy: Tangy) -> None:
         done = tangy("sensors", "--camera", "camera=/dev/video93", "--seconds", 2, "--json")
         told = json.loads(done.stdout)
@@ -191,6 +192,7 @@ class TestSensors:
         done = tangy("sensors", "--camera", source)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
 
+    @pytest.mark.slow
     def test_a_robot_of_ones_own_says_where_its_pictures_come_from(
         self, tangy: Tangy, folder: Path, tmp_path: Path
     ) -> None:

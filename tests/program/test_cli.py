@@ -118,6 +118,7 @@ def test_one_to_eight_people_can_be_played_with(tangy: Tangy, taught: Path) -> N
         assert {row["success"] for row in played["rows"]} == {1.0}
 
 
+@pytest.mark.slow
 def test_the_papers_forest_is_a_setting(tangy: Tangy, taught: Path) -> None:
     learnt = document(tangy("learn", "--forest", "paper", "--json", "--data", taught))
     assert learnt["forest"]["bootstrap"] is True
@@ -169,6 +170,7 @@ def test_a_made_up_activity_is_taught_learnt_and_played(tangy: Tangy, tmp_path: 
 # -------------------------------------------------------------------------- every verb's JSON
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -220,6 +222,7 @@ def test_every_verb_has_help(verb: str, tangy: Tangy) -> None:
     assert "Usage: " in done.stdout
 
 
+@pytest.mark.slow
 def test_a_name_that_somebody_answers_to_is_not_given_again(tangy: Tangy, taught: Path) -> None:
     tangy("people", "rename", "user1", "Rosa", "--data", taught)
     for taken, why in (("rosa", "is what user1 is called"), ("front", "is a place")):

@@ -92,6 +92,7 @@ def test_a_file_in_place_of_the_data_folder_is_refused(
     assert (tmp_path / "file").read_text(encoding="utf-8") == "mine"
 
 
+@pytest.mark.slow
 def test_a_second_writer_is_refused_and_readers_are_not(tangy: Tangy, taught: Path) -> None:
     with Store.open(taught):
         for verb in (

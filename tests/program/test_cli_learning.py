@@ -313,6 +313,7 @@ def test_words_that_fit_several_situations_are_told_apart(tangy: Tangy, taught: 
     assert "fits several situations" in told
 
 
+@pytest.mark.slow
 def test_a_teacher_is_compared_as_they_showed_it_whatever_was_settled(
     tangy: Tangy, disagreeing: Path
 ) -> None:
@@ -327,6 +328,7 @@ def test_a_teacher_is_compared_as_they_showed_it_whatever_was_settled(
     assert not found["same"]
 
 
+@pytest.mark.slow
 def test_what_goes_wrong_is_told_in_one_document(tangy: Tangy, taught: Path) -> None:
     at = ("play", "--headless", "--seed", 3, "--data", taught)
     asked = ("--inject", "laser-disconnected@4", "--inject", "base-stuck@999")

@@ -27,6 +27,7 @@ def answers(rounds: int) -> str:
     return (KEYS + "n\n") * rounds
 
 
+@pytest.mark.slow
 def test_by_lines_a_drill_is_told_and_kept(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "d")
     asked = ("drill", "--plain", "--rounds", "4", "--seed", "3", "--who", "Ada")

@@ -71,6 +71,7 @@ def test_without_consent_nothing_is_kept(tangy: Tangy, album: Path, tmp_path: Pa
     assert not (tmp_path / "d" / "faces").exists()
 
 
+@pytest.mark.slow
 def test_somebody_who_is_known_is_not_made_somebody_else(
     tangy: Tangy, album: Path, data: Path
 ) -> None:
@@ -108,6 +109,7 @@ def test_several_faces_in_a_picture_are_each_told(tangy: Tangy, data: Path) -> N
     assert "Rosa (user2)" in told and "Ben (guest1)" in told and "also" in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("answer", "kept"), [("y\n", True), ("n\n", False), ("\n", False)])
 def test_the_person_is_asked_on_a_terminal(
     tangy: Tangy,

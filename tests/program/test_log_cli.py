@@ -125,6 +125,7 @@ def test_a_game_is_told_step_by_step_with_its_faults_in_place(tangy: Tangy, play
     assert any("complied" in line or "followed" in line for line in lines)
 
 
+@pytest.mark.slow
 def test_a_report_in_json_has_all_of_its_parts(tangy: Tangy, played: Path) -> None:
     for game in ("2", "last", "all"):
         document = json.loads(tangy("log", "report", game, "--json", "--data", played).stdout)

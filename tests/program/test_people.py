@@ -210,6 +210,7 @@ def test_a_method_of_ones_own_is_chosen_in_words(people: Tangy) -> None:
     assert document(people("method", "user2", "default", "--json"))["method"]["own"] is False
 
 
+@pytest.mark.slow
 def test_what_is_not_said_of_a_method_stays_as_it_is(people: Tangy) -> None:
     people("method", "Rosa", "bayes-ucb")
     told = people("method", "Rosa", "0.98", "day").stdout

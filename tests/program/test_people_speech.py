@@ -73,6 +73,7 @@ class TestNames:
         assert changed.stdout == "Xanthippus is said Z AE N.\n"
         assert tangy(*asked, "--forget", "--json", "--data", data).stdout.count("suggested") == 1
 
+    @pytest.mark.slow
     def test_what_to_type_next_has_the_options_that_were_given(
         self, tangy: Tangy, tmp_path: Path
     ) -> None:
@@ -147,6 +148,7 @@ class TestNamesThatSoundAlike:
         assert done.returncode == 2
         assert "Rosa sounds like 'stop'" in done.stderr
 
+    @pytest.mark.slow
     def test_a_new_name_that_sounds_like_anothers_is_taken_and_told_of(
         self, tangy: Tangy, data: Path
     ) -> None:

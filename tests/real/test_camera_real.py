@@ -47,6 +47,7 @@ def differs(image: np.ndarray[tuple[int, ...], np.dtype[np.uint8]], number: int)
 
 
 class TestFiles:
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("name", "code"), [("a.avi", "MJPG"), ("a.mkv", "FFV1"), ("a.mp4", "mp4v")]
     )
@@ -83,6 +84,7 @@ class TestFiles:
             frames = [await camera.frame() for _ in range(15)]
         assert [frame and frame.seq for frame in frames] == list(range(15))
 
+    @pytest.mark.slow
     async def test_a_video_comes_in_its_own_time_and_the_newest_counts(
         self, tmp_path: Path
     ) -> None:
@@ -91,6 +93,7 @@ class TestFiles:
             await until(camera, "ENDED")
             assert await camera.frame() is None
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("name", "content", "word"),
         [
@@ -269,6 +272,7 @@ class TestProcess:
         with pytest.raises(ProcessLookupError):
             os.kill(process, 0)
 
+    @pytest.mark.slow
     async def test_what_libraries_print_goes_to_the_log(
         self, tmp_path: Path, capfd: pytest.CaptureFixture[str]
     ) -> None:
@@ -280,6 +284,7 @@ class TestProcess:
         assert (tmp_path / "camera.log").stat().st_size > 0
         assert capfd.readouterr() == ("", "")
 
+    @pytest.mark.slow
     async def test_a_wait_that_is_over_gives_nothing(self) -> None:
         async with Camera(find_camera("/dev/video93")) as camera:
             assert await camera.frame(wait=0.05) is None

@@ -128,6 +128,7 @@ async def test_five_seconds_arrive_exactly_through_two_programs(robot: Robot) ->
     assert await mic.end() == 0
 
 
+@pytest.mark.slow
 async def test_a_wav_is_taken_and_its_header_is_not_heard(robot: Robot) -> None:
     listener = await robot.listener()
     mic = await robot.mic()
@@ -182,6 +183,7 @@ async def test_of_two_the_newer_is_heard_and_the_older_ends(robot: Robot) -> Non
     assert await newer.status() == 0
 
 
+@pytest.mark.slow
 async def test_another_place_may_be_named(robot: Robot, tmp_path: Path) -> None:
     source = open_source(f"socket:{tmp_path / 'here'}")
     hearing = asyncio.ensure_future(anext(source))
@@ -214,6 +216,7 @@ async def test_what_is_no_such_sound_is_refused_in_a_line(
     assert len(lines) <= 2, "the other says that it waits"
 
 
+@pytest.mark.slow
 def test_on_a_terminal_it_says_what_to_type(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("mic", columns=250)
     assert terminal.wait() == 2
@@ -221,6 +224,7 @@ def test_on_a_terminal_it_says_what_to_type(open_terminal: OpenTerminal) -> None
     assert "rec -q -t raw -b 16 -e signed -r 16000 -c 1 - | ssh ROBOT tangy mic" in terminal.text
 
 
+@pytest.mark.slow
 def test_on_a_terminal_there_is_a_bar(tmp_path: Path) -> None:
     fifo = tmp_path / "sound"
     os.mkfifo(fifo)

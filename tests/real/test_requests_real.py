@@ -110,6 +110,7 @@ class TestSigns:
         assert sorted(most) == [(seat, PEOPLE[seat - 1]) for seat in self.asking]
         assert source.asking == ()
 
+    @pytest.mark.slow
     async def test_a_file_that_cannot_be_read_is_an_error(self, tmp_path: Path) -> None:
         (tmp_path / "a.avi").write_bytes(b"no video")
         source = open_requests(f"signs:{tmp_path / 'a.avi'}", load_room(), PEOPLE, corners=CORNERS)

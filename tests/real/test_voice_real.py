@@ -276,6 +276,7 @@ def test_the_program_speaks_and_writes_nothing_but_the_text(
     assert np.frombuffer(heard[: len(heard) // 2 * 2], "<i2").std() > 100
 
 
+@pytest.mark.slow
 @needs_aplay
 def test_control_c_cuts_it_and_leaves_the_terminal_clean(
     card: int, tmp_path: Path, open_terminal: OpenTerminal

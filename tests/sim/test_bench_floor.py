@@ -135,6 +135,7 @@ class TestWheels:
             one.step(tick * 0.05, 0.05)
         assert (one.forward, one.turn) == pytest.approx((1.0, 2.0))
 
+    @pytest.mark.slow
     @settings(max_examples=30)
     @given(angles, st.integers(0, 99))
     def test_it_never_gets_into_walls_the_table_or_legs(self, heading: float, seed: int) -> None:

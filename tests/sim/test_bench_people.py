@@ -212,6 +212,7 @@ class TestPlaying:
         world.people.meet = noted  # type: ignore[method-assign]
         assert drive_to(world, "user4") and met == ["user4"]
 
+    @pytest.mark.slow
     @settings(max_examples=3)
     @given(st.integers(0, 10_000))
     def test_the_same_seed_plays_the_same_games_and_another_one_others(self, seed: int) -> None:

@@ -236,6 +236,7 @@ class TestFaults:
 
 
 class TestCameras:
+    @pytest.mark.slow
     async def test_streams_show_the_scene_of_now_and_end_with_their_cable(self) -> None:
         async with served() as (one, wires):
             world = one.world

@@ -64,6 +64,7 @@ class TestCards:
             called = set(reader.deck.numbers)
             assert reader.state(reading, ACTIVITY.user_states, called) == ACTIVITY.unread
 
+    @pytest.mark.slow
     def test_a_chip_lies_where_it_lay_when_another_is_put(self) -> None:
         reader, head = CardReader(ACTIVITY.deck), camera(5)
         for marked in (0b1, 0b11):
@@ -98,6 +99,7 @@ class TestFrames:
         last = head.frame(HeadScene("room"))
         assert {head.frame(HeadScene("frozen")) for _ in range(3)} == {last}
 
+    @pytest.mark.slow
     def test_a_camera_that_sees_is_bright_and_sharp_and_a_covered_one_is_not(self) -> None:
         head = camera()
         for heading in range(-180, 180, 60):

@@ -14,6 +14,7 @@ from tangy_sim.device_simulator.tablet import Tablet
 from tests.hw.waiting import PATIENCE, until
 
 
+@pytest.mark.slow
 async def test_it_shows_what_it_is_told_until_it_is_switched_off(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
