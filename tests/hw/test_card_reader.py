@@ -113,6 +113,24 @@ def test_a_card_of_another_deck_is_not_claimed(reader: CardReader) -> None:
     assert CardReader(reader.deck, 2).read(picture).card == 17
 
 
+@pytest.mark.parametrize("bare", [0, 0b1, 0b10000_00000_00000_00010_00000])
+def test_a_full_card_is_read_though_no_number_lies_bare(reader: CardReader, bare: int) -> None:
+    frame = taken(ALL & ~bare & ~reader.deck.free, card=42)
+    reading = reader.read(frame.picture)
+    assert reading.card == 42
+    assert reading.hidden.bit_count() <= 2
+    assert reading.marked | reading.hidden == frame.marked | reading.hidden
+
+
+def test_a_bare_number_of_another_deck_shows_that_a_card_is_foreign(reader: CardReader) -> None:
+    bare = 0b10000_00000_00000_00010_00000
+    random = np.random.default_rng(5)
+    other = camera(deck_seed=2)
+    chips = other.chips(random, ALL & ~bare & ~reader.deck.free)
+    frame = other.take(42, chips, CLEAN, random)
+    assert reader.read(frame.picture).card is None
+
+
 @pytest.mark.slow
 def test_what_is_no_card_is_not_claimed(reader: CardReader) -> None:
     noise = np.random.default_rng(2).integers(0, 256, (240, 320, 3), np.uint8)

@@ -25,6 +25,8 @@ WIDEST = 1920  # pixels: a larger picture is made smaller first
 TRIES = 4  # sightings that are looked at, the surest first
 LEGIBLE = 0.6  # correlation from which a number is taken to be read
 AGREE, FEWEST_AGREE = 0.6, 4  # the share of the legible numbers that must be the card's, and many
+COVERED = 0.7  # the share of the cells that are surely marked on a card with few bare numbers
+CLEARLY = 0.8  # correlation of a number that lies bare: chips reach .7, bare numbers .9
 BY_CHANCE = 1e-6  # or so many of them that another deck's would hardly ever be the same
 NO_TAGS = "no card in sight"
 TOO_LITTLE = "too little of the card in sight"
@@ -169,12 +171,13 @@ class CardReader:
         read = measured.read
         legible = read[:, :2].max(1) >= LEGIBLE
         own = int((legible & (read[:, 0] >= read[:, 1])).sum())
-        if not self.agree(own, int(legible.sum())):
-            few = int(legible.sum()) < FEWEST_AGREE
-            return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
         across = len(self.deck.columns)
         parts = load_classifier().probabilities(measured.rows, measured.beside, across)
         parts = _reconsidered(parts, measured, across)
+        agreed = self.agree(own, int(legible.sum()))
+        if not agreed and not (seen.sure and self.covered(parts, read)):
+            few = int(legible.sum()) < FEWEST_AGREE
+            return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
         grid = self.face.grid
         ends = [
             (grid.left, grid.top),
@@ -197,6 +200,21 @@ class CardReader:
             for same in range(own, legible + 1)
         )
         return by_chance < BY_CHANCE
+
+    def covered(self, parts: Real, read: Real) -> bool:
+        """Say whether marks cover so many numbers that too few are left to be read.
+
+        Only the tags tell then which card it is. A number of another card must not lie bare.
+
+        Args:
+            parts: how probably each cell is unmarked, marked and hidden, (cells, 3).
+            read: how well each cell shows the card's own number and any other, (cells, >= 2).
+        """
+        other = (read[:, 1] > read[:, 0]) & (read[:, 1] >= CLEARLY)
+        tells, hand = load_classifier().tells, _has_hand(parts)
+        cells = [cell for cell in range(len(parts)) if not self.deck.free >> cell & 1]
+        marks = sum(part[MARKED] > part[UNMARKED] and tells(part, hand) for part in parts[cells])
+        return not other.any() and marks >= COVERED * len(cells)
 
     def told(
         self, card: int, parts: Real, corners: tuple[tuple[float, float], ...] = ()
