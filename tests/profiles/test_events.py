@@ -63,7 +63,6 @@ def places() -> tuple[set[str], set[str]]:
     return made, named
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("of", sorted(KINDS))
 def test_a_kind_is_written_by_the_program_and_read_by_it(of: str) -> None:
     record: type[EventRecord] = KINDS[of]
