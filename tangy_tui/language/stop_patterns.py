@@ -203,7 +203,7 @@ _HURTS = (
     "(?:(?:(?:going|about) to|gonna) (?:hit|hurt|crush|squash|run over|run into|knock|trap"
     "|bump into)"
     "|running (?:over|into)|driving (?:over|into)|rolling over|standing on|crushing|squashing"
-    f"|trapping|hurting|hitting|pinning|ramming) (?:{_WHOM}|(?:{_MINE}|the) \\w+)"
+    "|trapping|hurting|hitting|pinning|ramming)"
 )
 _OWN = r"(?:me|us|him|her|them|(?:my|our|his|her|their|your) \w+)"
 _FROM = f"from {_OWN}"
@@ -223,20 +223,22 @@ _STILL = _any(
     f"(?:do not|dont) let {ROBOT} (?:move|drive|go|come|turn|run)(?: \\w+){{0,3}}",
     f"(?:keep|hold) {ROBOT} (?:still|there|back|where it is)",
     "(?:whoa|woah)(?: there)?(?: (?:boy|girl|nelly))?|(?:easy|steady) (?:there|now|boy|on)",
-    f"(?:stay|keep|get|stand|move) (?:back|away|off)(?: {_FROM})?|back (?:off|away)(?: {_FROM})?",
+    f"(?:stay|keep|stand|move) (?:back|away|off)(?: {_FROM})?|back (?:off|away)(?: {_FROM})?",
+    f"get (?:back|away|off) {_FROM}|get off {_OWN}",
     f"(?:get|take|move|keep) (?:{ROBOT} (?:away|off)(?: {_FROM}| {_OWN})?"
     f"|(?:it|this|that) (?:away|off) (?:{_FROM}|{_OWN}))",
     "(?:that|this)(?: i)?s (?:quite |more than )?(?:far|close|near|quite) enough",
     "(?:far|close|near) enough|(?:everything|everybody|everyone) stops",
     "(?:no more|enough) (?:numbers?|calling|driving|moving|playing|of (?:this|it))",
     f"(?:were|we are) (?:all )?(?:done|finished|through) (?:playing|with (?:{GAME}))|game over",
-    f"pause (?:it |this )?for (?:just )?(?:a|1) (?:{_MOMENT})|pause (?:it|there)",
-    f"(?:wait|hold on|hang on) (?:there|right there|a (?:{_MOMENT})|tangy|robot)",
+    "pause (?:it|there)",
+    "(?:wait|hold on|hang on) (?:right )?(?:there|tangy|robot)",
     "(?:tangy|robot) wait",
     "call it a day|leave it (?:there|at that) for (?:today|now)|pack it in|pack (?:it|this) up",
     "(?:do not|dont) (?:you )?dare move(?: another (?:inch|step|metre|centimetre))?",
     "park yourself (?:right )?(?:there|here)",
-    f"(?:youre|you are|its|it is|{ROBOT} is) (?:just )?{_HURTS}",
+    f"(?:youre|you are|{ROBOT} is) (?:just )?{_HURTS} (?:{_WHOM}|(?:{_MINE}|the) \\w+)",
+    f"(?:its|it is) (?:just )?(?!\\w+ to hurt|hurting){_HURTS} (?:{_WHOM})",
 )
 _OFF = "turn|switch|shut|power"
 _CANCEL = "cancel|interrupt|suspend|pause|abandon|break off|call off|quit|terminate|discontinue"
