@@ -8,6 +8,8 @@ ASK_TITLE = "What is the activity called? "
 ASK_ITEMS = "What does each round bring: a question, song, story ...? (Enter: nothing new) "
 ASK_TURNS = "Do people take turns? (y/n) "
 ASK_AGAIN = "Please give it a name with at least one letter. "
+ASK_YES_OR_NO = "Please type y or n. "
+ASK_WHICH_ITEM = "Please name one such thing, as 'song'. (Enter: nothing new) "
 
 
 OR = "{} or {}"

@@ -208,10 +208,13 @@ def activity_new(
     title = _asked(template.ASK_TITLE)
     while not template.NewActivity(title, "", turns=False).name:
         title = _asked(template.ASK_AGAIN)
-    item = _asked(template.ASK_ITEMS).strip()
-    turns = _asked(template.ASK_TURNS).strip().lower().startswith("y")
+    item = _asked(template.ASK_ITEMS)
+    while item and _yes_or_no(item):
+        item = _asked(template.ASK_WHICH_ITEM)
+    item = "" if _yes_or_no(item) is False else item
+    turns = _asked_yes(template.ASK_TURNS)
     new = template.NewActivity(title, item, turns)
-    if turns and not item and _asked(ASK_POINTS).strip().lower().startswith("y"):
+    if turns and not item and _asked_yes(ASK_POINTS):
         _write_new(folder, new.name, game_file(new.name, new.title), "")
         return
     table = template.items_table(new) if item else ""
@@ -235,6 +238,21 @@ def _write_new(folder: Path, name: str, activity: str, items: str) -> None:
         raise TangyError(plain(f"{toml}: cannot be written ({error.strerror}).")) from None
     for line in template.written_lines(str(toml), str(table) if items else ""):
         print(plain(line))
+
+
+def _asked_yes(question: str) -> bool:
+    """Ask until the answer is yes or no."""
+    from tangy_tui.text.activity_template import ASK_YES_OR_NO
+
+    while (said := _yes_or_no(_asked(question))) is None:
+        question = ASK_YES_OR_NO
+    return said
+
+
+def _yes_or_no(text: str) -> bool | None:
+    from tangy_tui.language.answers import yes_or_no
+
+    return yes_or_no({"y": "yes", "n": "no"}.get(text.lower(), text))
 
 
 def _asked(question: str) -> str:

@@ -64,6 +64,12 @@ def test_a_new_activity_is_sound_and_can_be_played_as_it_is_written(
     assert json.loads(played.stdout)["finished"] == 20
 
 
+def test_an_author_who_answers_something_else_is_asked_again(tangy: Tangy, tmp_path: Path) -> None:
+    made = tangy("activity", "new", tmp_path, stdin="Bags\ny\n\nperhaps\nyes\nmaybe\ny\n")
+    assert made.returncode == 0 and made.stdout.count("Please type y or n.") == 2
+    assert "add score" in (tmp_path / "bags.toml").read_text(encoding="utf-8")
+
+
 def test_a_file_that_is_there_is_not_written_over(tangy: Tangy, tmp_path: Path) -> None:
     (tmp_path / "poems.csv").write_text("mine", encoding="utf-8")
     made = tangy("activity", "new", tmp_path, stdin="Poems\npoem\nn\n")
