@@ -2,39 +2,27 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
 
 from tangy_profiles.activity import shipped_activities
-from tangy_profiles.declared.activity import DeclaredActivity, read_declared
 from tangy_profiles.declared.checking import findings
 from tangy_profiles.declared.search import Limit
 from tangy_profiles.declared.state_keys import TELLING
 from tangy_tui.text.activity_search import dead_end_lines, search_lines
+from tests.support.changed import changed_trivia
 from tests.support.declared import DECLARED, declared
 
 SHIPPED = shipped_activities()["trivia"]
 
 
-def changed(folder: Path, *changes: tuple[str, str]) -> DeclaredActivity:
-    text = SHIPPED.read_text(encoding="utf-8")
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    shutil.copy(SHIPPED.with_suffix(".csv"), folder / "trivia.csv")
-    path = folder / "mine.toml"
-    path.write_text(text, encoding="utf-8")
-    return read_declared(path)
-
-
 def flaws(folder: Path, *changes: tuple[str, str]) -> set[tuple[str, str]]:
-    return {(found.flaw, found.name) for found in findings(changed(folder, *changes)).flaws}
+    return {(found.flaw, found.name) for found in findings(changed_trivia(folder, *changes)).flaws}
 
 
 def way_there(folder: Path, *changes: tuple[str, str]) -> list[str]:
-    activity = changed(folder, *changes)
+    activity = changed_trivia(folder, *changes)
     (found,) = findings(activity).flaws
     return list(dead_end_lines(activity, found))
 

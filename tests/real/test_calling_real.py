@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tangy_tui.app.device_simulator import DeviceSimulator
-from tests.real.test_live_robot_file import bench, program, robot_file
+from tests.real.test_live_robot_file import begin, bench, program, robot_file
 from tests.support.terminal import TANGY, Terminal
 
 __all__ = ["bench"]  # the robot beside the program
@@ -63,12 +63,7 @@ def test_the_dialog_and_the_log_say_what_came_of_each_call(
     monkeypatch.setattr("tests.real.test_live_robot_file.robot_file", with_an_expert)
     terminal = program(bench, folder)
     try:
-        if "Is all well now?" in terminal.until(
-            lambda text: "greet everyone" in text or "well" in text
-        ):
-            terminal.settle()
-            terminal.type("y")
-        terminal.until("Now")
+        begin(terminal)
 
         halted(terminal, bench)
         terminal.type("e")
