@@ -1,4 +1,4 @@
-"""Activities in words: what there is in one, and what goes on in its games."""
+"""Words for activities: their parts, and the course of their games."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
             super()._let_people_act()
 
     def _ask_silent(self, behaviour: str, who: str) -> None:
-        """Ask nobody again: whoever says nothing to a `behaviour` is to say nothing."""
+        """Ask nobody again: in a guided game the silence of a person is to be shown, too."""
 
     def _next(self) -> Event | None:
         """Return what has to happen now: the next leg of the way, or the first of a new one."""
