@@ -162,6 +162,7 @@ def test_what_was_chosen_stands_beside_other_choices(ran: Ran) -> None:
         assert ran.page.count("chosen here") == 1
 
 
+@pytest.mark.slow
 def test_neither_curve_hides_the_other_where_both_are_the_same(ran: Ran) -> None:
     if ran.document["experiment"] == 1:
         drawing = figures.mistakes(ran.document["teachers"]["with_mistakes"])

@@ -182,6 +182,7 @@ def test_the_page_is_made_of_the_document_and_has_the_paper_beside(
     assert report(json.loads(json.dumps(document))) == page
 
 
+@pytest.mark.slow
 def test_words_follow_the_numbers(document: dict[str, Any]) -> None:
     row = {**document["faults"][0], "missed": 2, "again": 1, "escalated": 3}
     told = compare({**document, "faults": [row, *document["faults"][1:]]})[0].words

@@ -143,6 +143,7 @@ def test_what_is_no_card_is_not_claimed(reader: CardReader) -> None:
     assert reading.card is None and reading.problem == TOO_LITTLE
 
 
+@pytest.mark.slow
 def test_large_pictures_are_read_as_well(reader: CardReader) -> None:
     frame = taken(0b10101, replace(CLEAN, size=(500, 500)))
     large = cv2.resize(frame.picture, None, fx=5, fy=5, interpolation=cv2.INTER_CUBIC)

@@ -143,6 +143,7 @@ class TestByHand:
         assert by_hand(Twist(-0.5, 0.0)) == Twist(-LIMITS.unseen, 0.0)
         assert by_hand(Twist(-0.5, 0.0), (-0.45, 0.2)) == STILL
 
+    @pytest.mark.slow
     @given(
         st.floats(-2, 2),
         st.floats(-2, 2),

@@ -131,6 +131,7 @@ def test_of_several_cards_in_a_picture_none_is_read_or_judged(tangy: Tangy, tmp_
     assert row["card"] is None
 
 
+@pytest.mark.slow
 def test_what_was_read_is_drawn(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 42, "--count", 1, "--png", tmp_path, "--dpi", 60)
     done = tangy("read-card", tmp_path / "card-042.png", "--draw", tmp_path / "drawn")

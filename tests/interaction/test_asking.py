@@ -348,6 +348,7 @@ def test_what_a_teacher_has_settled_is_not_unsettled_by_an_answer_to_an_older_po
     assert [s.teacher for s in left.answers["joke"]] == ["ann"]
 
 
+@pytest.mark.slow
 def test_an_answer_that_agrees_is_enough_where_the_trees_do_not(
     store: Store, activity: Activity, cover: Cover
 ) -> None:

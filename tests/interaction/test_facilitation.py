@@ -179,6 +179,7 @@ def test_the_same_seed_plays_the_same_games(users: int, facilitate: Make, store:
     assert told(play(one, 2)) == told(play(other, 2))
 
 
+@pytest.mark.slow
 def test_a_made_up_activity_is_facilitated_by_the_same_code(
     lanterns: Activity, cover: Cover, facilitate: Make
 ) -> None:

@@ -270,6 +270,7 @@ class TestUnderstanding:
         if command is not None and command.confidence == 1:
             assert command.behaviour == BOOK.phrases[phrase]
 
+    @pytest.mark.slow
     def test_a_long_text_takes_no_time(self) -> None:
         def seconds(words: int) -> float:
             begun = process_time()

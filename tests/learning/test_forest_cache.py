@@ -58,6 +58,7 @@ def test_other_settings_or_steps_are_another_forest(
     assert len(kept(tmp_path)) == 3
 
 
+@pytest.mark.slow
 def test_what_was_tampered_with_is_found_out_and_put_right(taught: Path) -> None:
     with Store.open(taught, write=True) as store:
         activity = load_activity("bingo")

@@ -87,6 +87,7 @@ def test_every_reachable_joint_state_is_decided_as_expected(
         assert policy.decide(state.situation).behaviour == wanted
 
 
+@pytest.mark.slow
 def test_it_is_exact_when_one_behaviour_was_shown_a_hundred_times_and_another_once(
     activity: Activity,
 ) -> None:

@@ -52,6 +52,7 @@ def test_every_state_is_consistent(activity: Activity, lanterns: Activity) -> No
                 assert state.user(state.attended).activity == state.situation.user_state
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["bingo", "lanterns"])
 @pytest.mark.parametrize("users", [1, 4, 8])
 def test_every_state_of_a_game_is_among_them(

@@ -239,6 +239,7 @@ NEEDED = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "key", "verb"), NEEDED)
 def test_the_verb_that_meets_a_bad_row_names_it_and_goes_on(
     every_kind: Path, tangy: Tangy, kind: str, key: str, verb: tuple[str, ...]
@@ -252,6 +253,7 @@ def test_the_verb_that_meets_a_bad_row_names_it_and_goes_on(
         assert ran.returncode == 0, ran.stderr
 
 
+@pytest.mark.slow
 def test_doctor_and_store_check_name_every_bad_row(every_kind: Path, tangy: Tangy) -> None:
     assert tangy("store", "check", "--data", every_kind).returncode == 0
     step, fault = seqs(every_kind, "demonstration step")[7], seqs(every_kind, "fault")[1]

@@ -58,6 +58,7 @@ def test_neither_voice_nor_screen_is_worse_than_either() -> None:
     assert diagnosed(evidence("voice-dead", "screen-dead")) == ["mute"]
 
 
+@pytest.mark.slow
 @given(st.sets(st.sampled_from(SHOWING), min_size=1, max_size=5))
 def test_the_critical_one_comes_first_and_none_is_lost(kinds: set[str]) -> None:
     found = evidence(*kinds)

@@ -120,6 +120,7 @@ def test_different_seeds_draw_different_drills() -> None:
 # --------------------------------------------------------------------------- what happens then
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
 def test_each_kind_of_fault_is_seen_and_alone(table: Tabletop, kind: RoundKind) -> None:
     shown = table.play(3, kind, Random(1))

@@ -47,6 +47,7 @@ def test_what_comes_to_nothing_with_nothing_left_to_mend_is_a_request_that_stays
     assert not world.can_show(KINDS["no-effect"], action)
 
 
+@pytest.mark.slow
 def test_what_a_person_did_not_do_after_an_answer_is_no_effect_to_be_expected(
     supervise: Supervise,
 ) -> None:

@@ -357,6 +357,7 @@ def closing_step(supervise: Supervise) -> tuple[int, int]:
     raise AssertionError("Nobody was encouraged.")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [kind.name for kind in KINDS.values() if kind.stops])
 def test_what_breaks_a_behaviour_off_explains_that_nothing_has_come_of_it(
     supervise: Supervise, kind: str

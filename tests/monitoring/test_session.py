@@ -138,6 +138,7 @@ def test_what_is_over_needs_no_care_and_what_is_borne_does(
     assert [fault.code for fault in session.look_after] == ["arm-failed"]
 
 
+@pytest.mark.slow
 def test_beliefs_go_from_what_they_were_before_the_session_to_what_they_are(
     workspace: Workspace, supervise: Supervise
 ) -> None:

@@ -38,6 +38,7 @@ async def test_a_key_that_comes_twice_opens_one_screen(
         assert len(pilot.app.screen_stack) == 2
 
 
+@pytest.mark.slow
 async def test_two_keys_make_one_demonstration(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         pilot.type("t", "enter", "enter")
@@ -98,6 +99,7 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
+@pytest.mark.slow
 async def test_v_needs_something_that_was_learnt(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("v", "enter")

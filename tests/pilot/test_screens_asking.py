@@ -175,6 +175,7 @@ async def test_nothing_happens_before_a_yes(run: Run, workspace: Workspace, gapp
         assert screen.control.supervision.question is not None
 
 
+@pytest.mark.slow
 async def test_keys_typed_ahead_answer_nothing(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
@@ -383,6 +384,7 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
         assert screen.control.supervision.question is None
 
 
+@pytest.mark.slow
 async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:

@@ -187,6 +187,7 @@ async def test_the_phrases_are_shown_where_tangy_asks(
         assert isinstance(pilot.app.screen, PhrasesScreen)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(60, 18), (80, 24)], ids=["tiny", "small"])
 async def test_how_asking_with_ears_looks(
     run: Run,

@@ -163,6 +163,7 @@ def spoil(workspace: Workspace) -> None:
     workspace.store.append(replace(kept, digest="0" * 64, rows=rows, versions=versions))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("key", "used", "kept"), [("n", 0, 0), ("y", 1, 0), ("1", 1, 1)])
 async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
     run: Run, workspace: Workspace, key: str, used: int, kept: int

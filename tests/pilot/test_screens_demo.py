@@ -85,6 +85,7 @@ async def test_letters_change_nothing_in_it(run: Run, workspace: Workspace) -> N
         assert not screen.held
 
 
+@pytest.mark.slow
 async def test_escape_leaves_it_and_nothing_of_it_stays(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("d", "enter")

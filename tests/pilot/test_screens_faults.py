@@ -79,6 +79,7 @@ async def test_nothing_is_written_while_nothing_changes(
         assert not any(looked)
 
 
+@pytest.mark.slow
 async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tried_again(
     run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -107,6 +108,7 @@ async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tr
 # ------------------------------------------------------------ pictures
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
 async def test_how_standing_still_looks(
     run: Run,

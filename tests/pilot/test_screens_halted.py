@@ -145,6 +145,7 @@ async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
         assert "Emergency stop pressed" in str(ended.body["stopped"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["y", "n"])
 async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
     run: Run, workspace: Workspace, policy: Policy, key: str
@@ -237,6 +238,7 @@ async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
         assert pilot.app.screen is screen
 
 
+@pytest.mark.slow
 async def test_leaving_the_program_while_it_is_halted_ends_the_game_in_thesentences(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -351,6 +353,7 @@ async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
         assert room.motion is not None
 
 
+@pytest.mark.slow
 async def test_a_step_that_could_not_be_carried_out_is_marked(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

@@ -44,6 +44,7 @@ async def asked(pilot: TangyPilot) -> None:
     await until(lambda: isinstance(pilot.app.screen, ChooseDialog))
 
 
+@pytest.mark.slow
 async def test_it_goes_on_paused_with_its_steps_counted(interrupted: Workspace, run: Run) -> None:
     async with run(app=Program(interrupted, clock=StillClock())) as pilot:
         await asked(pilot)
@@ -84,6 +85,7 @@ async def test_it_is_discarded_and_a_new_game_begins(interrupted: Workspace, run
         await until(lambda: len(list(interrupted.store.events(GameBeginning))) == 2)
 
 
+@pytest.mark.slow
 async def test_esc_leaves_it_as_it_is(interrupted: Workspace, run: Run) -> None:
     async with run(app=Program(interrupted, clock=StillClock())) as pilot:
         await asked(pilot)

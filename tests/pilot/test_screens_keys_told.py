@@ -56,6 +56,7 @@ async def test_the_help_of_home_tells_no_key_that_does_nothing_there(run: Run) -
         assert pilot.app.screen.maximized is None
 
 
+@pytest.mark.slow
 async def test_the_help_of_a_screen_with_a_command_line_tells_of_both(
     run: Run, workspace: Workspace
 ) -> None:

@@ -106,6 +106,7 @@ async def wait_for(pilot: TangyPilot, kind: type[object]) -> None:
 # ----------------------------------------------------------------------------------- the list
 
 
+@pytest.mark.slow
 async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
     run: Run, workspace: Workspace
 ) -> None:
@@ -351,6 +352,7 @@ async def test_what_is_left_open_is_asked_about_in_games(run: Run, workspace: Wo
         assert [s.user_state for s in contested] == [WRONG]
 
 
+@pytest.mark.slow
 async def test_answers_are_taken_back_and_learning_can_be_left(
     run: Run, workspace: Workspace
 ) -> None:
@@ -376,6 +378,7 @@ async def test_something_else_can_be_right(run: Run, workspace: Workspace) -> No
         assert library_of(workspace).resolutions[0].right == ("joke",)
 
 
+@pytest.mark.slow
 async def test_a_step_of_an_answer_opens_in_its_demonstration(
     run: Run, workspace: Workspace
 ) -> None:

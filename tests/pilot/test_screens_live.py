@@ -159,6 +159,7 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hands_free", [True, False])
 async def test_a_stop_that_is_said_goes_to_the_robot_itself(
     run: Run,
@@ -187,6 +188,7 @@ async def test_a_stop_that_is_said_goes_to_the_robot_itself(
         await until_shown(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
 
 
+@pytest.mark.slow
 async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
     run: Run, program: Program, link: HeldLink
 ) -> None:
@@ -202,6 +204,7 @@ async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
         await until_shown(pilot, lambda: link.told[-1] == "release")
 
 
+@pytest.mark.slow
 async def test_who_stops_the_robot_from_another_console_is_seen_on_a_small_screen(
     run: Run, program: Program, workspace: Workspace
 ) -> None:
@@ -232,6 +235,7 @@ async def test_each_stop_is_logged_once_and_told_once(
         assert sum(line.startswith("STOP.") for line in told) == 2
 
 
+@pytest.mark.slow
 async def test_staff_can_ask_for_help_for_somebody(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
@@ -350,6 +354,7 @@ async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
         assert not live(pilot).control.taking_over
 
 
+@pytest.mark.slow
 async def test_stop_typed_where_letters_are_keys_stops_and_the_rest_is_no_keys(
     run: Run, program: Program, link: HeldLink
 ) -> None:

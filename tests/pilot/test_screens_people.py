@@ -146,6 +146,7 @@ async def test_a_response_is_voided_and_taken_back(run: Run, workspace: Workspac
         assert "void:" not in pilot.text()
 
 
+@pytest.mark.slow
 async def test_what_is_void_does_not_void_again_and_can_be_answered(
     run: Run, workspace: Workspace
 ) -> None:

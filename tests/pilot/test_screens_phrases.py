@@ -58,6 +58,7 @@ async def find(pilot: TangyPilot, *keys: str) -> None:
     await pilot.pause()
 
 
+@pytest.mark.slow
 async def test_it_shows_behaviours_people_seats_and_words(run: Run, screen: PhrasesScreen) -> None:
     async with run(screen) as pilot:
         await looked_up(pilot)
@@ -158,6 +159,7 @@ async def test_at_the_smallest_size_it_is_drawn(
         looks(pilot.app)
 
 
+@pytest.mark.slow
 async def test_the_palette_leads_to_it_and_esc_back(run: Run, workspace: Workspace) -> None:
     program = Program(workspace, clock=StillClock())
     async with run(app=program) as pilot:

@@ -69,6 +69,7 @@ async def pause_at_once(pilot: Pilot[None]) -> PlayScreen:
     return screen
 
 
+@pytest.mark.slow
 async def test_one_step_is_one_step(run: Run, workspace: Workspace, policy: Policy) -> None:
     async with run(app=playing(workspace, policy), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
@@ -96,6 +97,7 @@ async def test_what_staff_see_goes_along_with_a_simulated_game(
         assert called
 
 
+@pytest.mark.slow
 async def test_the_policy_row_in_use_is_marked(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
@@ -146,6 +148,7 @@ async def test_speed_goes_from_life_to_a_thousand_times(
         assert screen.query_one(StatusLine).status.note == "x1"
 
 
+@pytest.mark.slow
 async def test_stop_stops_and_only_a_person_lets_it_go_on(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:

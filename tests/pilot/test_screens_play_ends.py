@@ -120,6 +120,7 @@ async def test_another_game_goes_on_though_the_last_one_was_paused(
 # ------------------------------------------------------------------------- while Tangy asks
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["g", "full_stop", "E"])
 async def test_what_waits_for_the_answer_says_so_in_the_panel(
     run: Run, workspace: Workspace, gappy: Policy, key: str

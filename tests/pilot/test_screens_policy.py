@@ -25,6 +25,7 @@ def taught(workspace: Workspace) -> Workspace:
     return workspace
 
 
+@pytest.mark.slow
 async def test_after_learning_the_screen_names_the_key_that_plays(
     run: Run, taught: Workspace
 ) -> None:
@@ -39,6 +40,7 @@ async def test_after_learning_the_screen_names_the_key_that_plays(
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, PlayScreen))
 
 
+@pytest.mark.slow
 async def test_the_word_play_opens_a_game_from_teaching(run: Run, taught: Workspace) -> None:
     learn(taught)
     async with run(app=Program(taught, clock=StillClock())) as pilot:

@@ -64,6 +64,7 @@ async def opened(pilot: Any) -> None:
     await until_shown(pilot, lambda: isinstance(pilot.app.screen, SetUpScreen))
 
 
+@pytest.mark.slow
 async def test_people_patterns_and_seats_are_chosen_by_keys_and_nothing_moves(
     run: Run, setting: Setting
 ) -> None:

@@ -238,6 +238,7 @@ async def test_yes_and_no_are_heard_when_that_is_switched_on(
         assert "Heard: yes." in log_of(pilot)
 
 
+@pytest.mark.slow
 async def test_a_yes_does_not_choose_and_a_no_chooses_none(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True, answers=True)
     async with run(app=teaching(workspace, ears)) as pilot:
@@ -327,6 +328,7 @@ async def test_a_choice_says_which_answers_it_takes_by_voice(
         assert steps(workspace) == []
 
 
+@pytest.mark.slow
 async def test_a_yes_that_no_question_waits_for_does_nothing(
     run: Run, workspace: Workspace
 ) -> None:
@@ -358,6 +360,7 @@ async def test_what_was_said_while_a_question_was_open_comes_next(
         assert steps(workspace) == ["greeting", "call number"]
 
 
+@pytest.mark.slow
 async def test_a_recording_is_listened_to_only_when_a_command_is_due(
     run: Run, workspace: Workspace
 ) -> None:

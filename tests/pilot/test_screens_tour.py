@@ -53,6 +53,7 @@ async def test_a_new_teacher_gives_one_real_command_and_answers_its_question(
         assert [step.behaviour for step in shown.steps] == ["greeting"]
 
 
+@pytest.mark.slow
 async def test_escape_skips_the_tour_and_stays_where_one_teaches(
     run: Run, workspace: Workspace
 ) -> None:
@@ -117,6 +118,7 @@ async def test_a_game_that_was_begun_stays_its_teachers(run: Run, workspace: Wor
         assert read_demonstrations(workspace.store, "bingo")[-1].teacher == "Ada"
 
 
+@pytest.mark.slow
 async def test_escape_takes_back_what_was_begun_before_it_skips_the_tour(
     run: Run, workspace: Workspace
 ) -> None:

@@ -183,6 +183,7 @@ async def test_the_microphone_is_shut_while_tangy_speaks_and_t_lets_it_fall_sile
         assert not voices[0].speaking
 
 
+@pytest.mark.slow
 async def test_nobody_is_interrupted_who_is_talking_to_tangy(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:

@@ -347,6 +347,7 @@ async def test_plus_enlarges_the_panel_that_has_the_keys(run: Run) -> None:
         assert screen.maximized is None
 
 
+@pytest.mark.slow
 async def test_the_palette_offers_the_keys_of_the_screen_and_does_not_blink(run: Run) -> None:
     screen = Plain()
     async with run(screen) as pilot:
@@ -434,6 +435,7 @@ async def test_no_color_leaves_no_colour_and_every_mark(
             assert mark in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE])
 async def test_pictures_to_look_at(run: Run, picture: Any, size: tuple[int, int]) -> None:
     async with run(GalleryScreen(), size) as pilot:

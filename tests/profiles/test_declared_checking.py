@@ -75,6 +75,7 @@ def test_a_fact_that_is_never_set_back(tmp_path: Path) -> None:
     assert ("fact never cleared", "answer") in flaws(tmp_path, ('"clear answer", ', ""))
 
 
+@pytest.mark.slow
 def test_a_behaviour_that_is_never_possible(tmp_path: Path) -> None:
     needs = 'needs = ["open is yes", "open is no"]\n'
     never = ('[behaviours."tell scores"]\n', f'[behaviours."tell scores"]\n{needs}')

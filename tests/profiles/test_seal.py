@@ -55,6 +55,7 @@ def test_a_program_that_was_killed_leaves_nothing_to_say(store: Store, tmp_path:
             assert (again.notices, append_body(again, "joke", {})) == ([], number + 1)
 
 
+@pytest.mark.slow
 def test_a_lost_tail_is_said_whatever_became_of_it(store: Store, tmp_path: Path) -> None:
     """Damage that leaves all events says nothing; each that takes some says which."""
     for number in range(40):

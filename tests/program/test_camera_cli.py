@@ -60,6 +60,7 @@ class TestCamera:
         assert done.returncode == 1
         assert "covered: Nothing can be seen" in done.stdout
 
+    @pytest.mark.slow
     def test_one_that_is_not_there_fails(self, tangy: Tangy) -> None:
         done = tangy("camera", "/dev/video93", "--seconds", 2)
         assert done.returncode == 1
@@ -80,6 +81,7 @@ class TestCamera:
 
 
 class TestCapture:
+    @pytest.mark.slow
     def test_every_picture_is_kept_with_what_was_seen(
         self, tangy: Tangy, folder: Path, tmp_path: Path
     ) -> None:
@@ -108,6 +110,7 @@ class TestCapture:
         assert "000003.png  it works" in done.stdout
         assert (tmp_path / "set" / "000001.png").read_bytes() == before
 
+    @pytest.mark.slow
     async def test_what_a_reader_says_is_kept_too(self, folder: Path, tmp_path: Path) -> None:
         def reader(image: Image) -> dict[str, int]:
             return {"height": int(image.shape[0])}

@@ -219,6 +219,7 @@ def test_a_teacher_answers_by_lines_and_each_answer_is_verified(
     assert document(tangy("demonstrations", "conflicts", "--json", "--data", untaught)) == []
 
 
+@pytest.mark.slow
 def test_an_older_policy_can_be_played_by_name(tangy: Tangy, taught: Path, tmp_path: Path) -> None:
     at = ("--data", taught)
     assert "There is no policy" in refusal(tangy("play", "--policy", "nope", "--headless", *at))
@@ -231,6 +232,7 @@ def test_an_older_policy_can_be_played_by_name(tangy: Tangy, taught: Path, tmp_p
 # ------------------------------------------------------------------------------- showing again
 
 
+@pytest.mark.slow
 def test_a_demonstration_is_shown_again_from_a_step(tangy: Tangy, disagreeing: Path) -> None:
     at = ("--data", disagreeing)
     again = ("teach", "--teacher", "Cleo", "--json", "--again")

@@ -170,6 +170,7 @@ def test_a_robots_devices_are_tried_and_what_nothing_drives_is_missing(tmp_path:
     assert found["Tangy's wheels"].state == "missing"
 
 
+@pytest.mark.slow
 def test_the_code_of_the_chest_screen_is_told_and_stays_the_same(tmp_path: Path) -> None:
     file, folder = tmp_path / "mine.toml", tmp_path / "data"
     shipped = load_robot().file.read_text(encoding="utf-8")

@@ -206,6 +206,7 @@ def test_what_was_answered_before_an_interrupt_is_kept_and_told(
     assert [(len(one["answers"]), one["finished"]) for one in kept] == [(1, False)] * bool(lines)
 
 
+@pytest.mark.slow
 def test_a_wrong_line_of_a_script_says_what_is_kept(tangy: Tangy, taught: Path) -> None:
     asked = ("drill", "--json", "--rounds", "4", "--seed", "3", "--data", taught)
     done = tangy(*asked, stdin="nonsense\n")

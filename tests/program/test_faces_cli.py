@@ -55,6 +55,7 @@ def data(_known: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(_known, tmp_path / "mine"))
 
 
+@pytest.mark.slow
 def test_the_enrolled_are_known_and_others_are_not(tangy: Tangy, album: Path, data: Path) -> None:
     pictures = [album / f"new-{person}.png" for person in range(3)]
     rows = json.loads(tangy("faces", "who", *pictures, "--json", "--data", data).stdout)

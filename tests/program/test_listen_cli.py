@@ -266,6 +266,7 @@ class TestCheckingAMicrophone:
         assert (done.returncode, done.stdout) == (2, "")
         assert done.stderr == "tangy: nowhere.wav: there is no such file.\n"
 
+    @pytest.mark.slow
     def test_what_is_to_be_said_is_listed_for_a_recording(
         self, tangy: Tangy, tmp_path: Path
     ) -> None:
@@ -294,6 +295,7 @@ class TestCheckingAMicrophone:
         assert mic_check.patience(mic) == seconds
         assert NO_SOUND_SECONDS < ALONE < PATIENCE, "it is said before it is given up"
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(("understood", "status"), [(6, 0), (2, 1)])
     def test_a_check_that_fails_stores_nothing_and_the_status_says_so(
         self,
@@ -324,6 +326,7 @@ class TestCheckingAMicrophone:
         with Store.open(tmp_path / "data", write=False) as store:
             assert any(store.events("microphone checked")) is not bool(status)
 
+    @pytest.mark.slow
     def test_what_was_not_measured_is_not_put_in_figures(
         self, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:

@@ -45,6 +45,7 @@ def played(_played: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(_played, tmp_path / "played"))
 
 
+@pytest.mark.slow
 def test_the_list_has_every_game_in_order(tangy: Tangy, played: Path) -> None:
     done = tangy("log", "list", "--json", "--data", played)
     games = json.loads(done.stdout)

@@ -128,6 +128,7 @@ def test_nothing_is_written_by_looking(tangy: Tangy, tmp_path: Path) -> None:
 # --------------------------------------------------------------------------- what is changed
 
 
+@pytest.mark.slow
 def test_a_response_is_void_by_its_number_and_counts_again_after_undo(people: Tangy) -> None:
     assert counts(people("void", "Rosa", 1, "--why", "she slept", "--json"), "praise") == (6, 8)
     history = document(people("history", "Rosa", "--json"))

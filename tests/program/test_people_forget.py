@@ -237,6 +237,7 @@ def test_a_teachers_name_has_the_limits_of_other_names(
     assert "teacher's name" in done.stderr and why in done.stderr
 
 
+@pytest.mark.slow
 def test_a_first_name_alone_goes_from_what_was_typed_for_that_person(
     tangy: Tangy, tmp_path: Path
 ) -> None:

@@ -64,6 +64,7 @@ class TestFiles:
             assert differs(frame.image(), number) < 12
         assert camera.sight.state == "ENDED"
 
+    @pytest.mark.slow
     async def test_a_folder_gives_its_pictures_and_leaves_out_what_is_none(
         self, tmp_path: Path
     ) -> None:
@@ -121,6 +122,7 @@ class TestFiles:
         assert float(np.mean(cv2.absdiff(small.image(), like))) < 12
         assert (whole.width, whole.height, whole.seq) == (160, 120, small.seq + 1)
 
+    @pytest.mark.slow
     async def test_a_playlist_reads_nothing_else(self, tmp_path: Path) -> None:
         path = tmp_path / "list.m3u8"
         path.write_text("#EXTM3U\n#EXTINF:10,\nhttp://127.0.0.1:9/x.ts\n#EXT-X-ENDLIST\n")

@@ -34,6 +34,7 @@ def said(text: str) -> str:
     return from_ipa(done.stdout.decode())
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(st.sampled_from(sorted(PHONES - {"AA", "AH", "ER", "R"})))
 def test_a_consonant_or_vowel_is_said_as_it_is_written(phone: str) -> None:

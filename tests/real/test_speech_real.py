@@ -156,6 +156,7 @@ class TestVoices:
         assert all(first == name for first, name in taken), found
         assert len(taken) >= len(UNKNOWN) - 1, found  # the bench says how many in the long run
 
+    @pytest.mark.slow
     def test_other_speech_is_nothing(self, studio: Studio, voices: Voices) -> None:
         found = {said: studio.hear(voices.say(said, voice))[0] for said, voice in OTHER}
         assert found == dict.fromkeys(found, "nothing")

@@ -227,6 +227,7 @@ class TestFaults:
             with pytest.raises(DeviceError):
                 await peer.arms.pose({"left_arm": [0, 5, 0, 10, 0, 0]}, 0.5)
 
+    @pytest.mark.slow
     async def test_a_dead_voice_says_nothing(self) -> None:
         async with played() as peer:
             peer.bench.do({"do": "inject", "kind": "voice-dead"})
