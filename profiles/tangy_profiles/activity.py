@@ -8,7 +8,7 @@ nothing here or above names one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
 from os.path import isdir
@@ -91,6 +91,7 @@ class Activity:
     asking: AskingLimits = field(default_factory=AskingLimits)
     rules: GameRules = NO_RULES
     summary: str = ""  # for how many people it is, how long it takes, what they need
+    file: str = ""  # its path, if it comes neither with Tangy nor with a package
 
     @cached_property
     def unread(self) -> str:
@@ -277,7 +278,7 @@ def load_activity(name: str) -> Activity:
     if name in shipped:
         return read_activity(shipped[name])
     if name.endswith(".toml"):
-        return read_activity(Path(name))
+        return replace(read_activity(Path(name)), file=str(Path(name).resolve()))
     if isdir(name):  # noqa: PTH112 - it says no to a name too long, where Path raises
         raise ProfileError(plain(f"{name}: is a folder; name the TOML file in it."))
     known = known_activities()

@@ -22,6 +22,7 @@ from tangy_profiles.state import ActivityState, Variable
 class GameBeginning(EventRecord):
     """A game begins, by the policy of that digest. The first logs do not name the `world`.
 
+    `file` is the path of an activity that does not come with Tangy or with a package.
     `asks_in_visit` and `asks_in_game` say how often a person may be asked in vain; 0: not logged.
     """
 
@@ -34,6 +35,7 @@ class GameBeginning(EventRecord):
     world: Sparse[GameWorld | None] = None
     asks_in_visit: Sparse[Count] = 0
     asks_in_game: Sparse[Count] = 0
+    file: Sparse[str] = ""
     patterns: Sparse[tuple[str, ...]] = ()
     several: Sparse[bool] = False
     visits: Sparse[bool] = False

@@ -24,9 +24,12 @@ _SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxlong, _SHORT.maxother = 2, 100, 40,
 def nearest(word: str, words: Iterable[str]) -> str:
     """Say which of `words` was probably meant, or list them: the tail of an error sentence."""
     known = sorted(words)
-    close = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
-    if close:
-        return f"did you mean {close[0]!r}?"
+    close = difflib.get_close_matches(word, known, n=3, cutoff=0.5)
+    if close:  # among equals, the same letters in another order are a slip of the fingers
+        ratios = [difflib.SequenceMatcher(None, one, word).ratio() for one in close]
+        equal = [one for one, ratio in zip(close, ratios, strict=True) if ratio == ratios[0]]
+        meant = max(equal, key=lambda one: sorted(one) == sorted(word))
+        return f"did you mean {meant!r}?"
     if not known:
         return "there is none to choose from."
     return "choose one of: " + ", ".join(known) + "."

@@ -130,6 +130,7 @@ class Facilitation:
                 game=self._game,
                 number=self.games,
                 activity=self._activity.name,
+                file=self._activity.file,
                 policy=self.policy.digest,
                 seed=self._seed,
                 people=tuple(self.world.people),

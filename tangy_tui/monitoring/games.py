@@ -61,6 +61,8 @@ class Game:
     """How often the robot waited for late data, and for how many s."""
     away: frozenset[str] = frozenset()
     """Who was not here, and did not come in the game, as far as staff said so."""
+    file: str = ""
+    """The path of the activity's file, if it came neither with Tangy nor with a package."""
 
     @property
     def smooth(self) -> bool:
@@ -175,6 +177,7 @@ def _game(
         other=len(faults) - sum(faults),
         ended=None if end is None else datetime.fromisoformat(end.at),
         last_seq=None if end is None else end.seq,
+        file=begun.file,
         stopped=None if ending is None else ending.stopped,
         world=world,
         asks=(begun.asks_in_visit, begun.asks_in_game),

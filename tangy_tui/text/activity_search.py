@@ -54,11 +54,15 @@ def finding_words(source: str, found: ActivityFlaw) -> str:
             words = f"behaviours.{found.name}: {found.text!r} lacks a word when it is said"
         case "never ends":
             words = f"stages: from here no game can end: {found.name}"
+        case "nothing possible":
+            words = (
+                f"behaviours: here none of them is possible: {found.name}; check 'needs' and 'to'"
+            )
     return f"{source}: {words}."
 
 
 def dead_end_lines(activity: DeclaredActivity, found: ActivityFlaw) -> Iterator[str]:
-    """Tell the shortest way to where no game can end, and what can be done there."""
+    """Tell the shortest way to where a game cannot end or go on, and what can be done there."""
     end = found.dead_end
     if end is None:
         return
@@ -71,6 +75,8 @@ def dead_end_lines(activity: DeclaredActivity, found: ActivityFlaw) -> Iterator[
         whom = f" ({_player(step.whom)})" if step.whom is not None else ""
         yield f"  {number}. {activity.in_names(step.situation)} -> {step.behaviour}{whom}"
         yield from (f"     then {_event_words(event)}" for event in step.then)
+    if found.flaw == "nothing possible":
+        return
     yield "From then on only these are possible:"
     for situation, behaviours in islice(end.trap.possible.items(), MOST_SITUATIONS):
         yield f"  {activity.in_names(situation)} -> {', '.join(behaviours)}"

@@ -40,8 +40,9 @@ def note_words(note: SessionNote) -> str:
 def unknown_words(activity: str) -> str:
     """Say that an activity is unknown, and which details are missing for that reason."""
     return plain(
-        f"The activity {activity!r} is not here any more. So the report leaves out what Tangy "
-        "said, and counts each behaviour that Tangy could carry out as a success."
+        f"Tangy cannot find the file of the activity {activity!r}: name it with --activity. "
+        "Without it, Tangy leaves out what it said, and counts each behaviour that it could carry "
+        "out as a success."
     )
 
 

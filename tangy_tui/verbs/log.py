@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -171,13 +171,22 @@ def open_log(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
 def known_activities_of(games: Sequence[Game], file: str) -> dict[str, Activity]:
     """Load the activities of games, as far as they are to be had.
 
+    Args:
+        games: the games, each of which may know the file of its activity.
+        file: an activity's file that counts before all others ("": none).
+
     Raises:
         TangyError: the file that was named has a mistake, or none of the games is of it.
     """
     from tangy_profiles.activity import known_activities, load_activity
+    from tangy_profiles.errors import ProfileError
 
     wanted = {game.activity for game in games}
     known = {name: load_activity(name) for name in sorted(wanted & known_activities().keys())}
+    for path in dict.fromkeys(game.file for game in games if game.file):
+        with suppress(ProfileError):  # it was moved, or has mistakes now
+            played_from = load_activity(path)
+            known[played_from.name] = played_from
     if file:
         own = load_activity(file)
         if own.name not in wanted:

@@ -65,6 +65,18 @@ def test_a_game_that_does_not_end_as_it_is_expected_to_go(tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
+def test_where_no_behaviour_is_possible(tmp_path: Path) -> None:
+    text = SHIPPED.read_text(encoding="utf-8")
+    headers = [line for line in text.splitlines() if line.startswith("[behaviours.")]
+    nothing = [(line, f'{line}\nneeds = ["hinted is no"]') for line in headers]
+    assert ("nothing possible", "start") in flaws(tmp_path, *nothing)
+    activity = changed_trivia(tmp_path, *nothing)
+    (found,) = (one for one in findings(activity).flaws if one.flaw == "nothing possible")
+    *_, last = dead_end_lines(activity, found)
+    assert last == "  1. start -> give hint (player 1)"
+
+
+@pytest.mark.slow
 def test_a_text_that_lacks_a_word_when_it_is_said(tmp_path: Path) -> None:
     early = flaws(tmp_path, ("Welcome to the quiz!", "Welcome! The first is: {ask}"))
     assert early == {("text lacks a word", "welcome everyone")}

@@ -98,6 +98,7 @@ def test_a_key_that_nobody_took_is_refused_with_the_nearest_one() -> None:
 def test_the_nearest_word_is_named_or_all_words_are_listed() -> None:
     assert nearest("jok", ["joke", "greeting"]) == "did you mean 'joke'?"
     assert nearest("zzz", ["joke", "greeting"]) == "choose one of: greeting, joke."
+    assert nearest("tiems", ["items", "teams", "title"]) == "did you mean 'items'?"
     assert nearest("zzz", []) == "there is none to choose from."
 
 

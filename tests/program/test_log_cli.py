@@ -12,6 +12,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
+from tangy_profiles.activity import shipped_activities
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.fault_table import ROWS
 from tangy_tui.monitoring.games import Game
@@ -184,11 +185,27 @@ def test_a_game_of_an_activity_that_is_gone_is_still_listed(
         append_body(store, "game begun", {**begun, "game": "feedfacefeed", "activity": "whist"})
     assert "whist" in tangy("log", "list", "--data", played).stdout
     done = tangy("log", "show", "last", "--data", played)
-    assert (done.returncode, "The activity 'whist' is not here" in done.stderr) == (0, True)
-    assert "The activity 'whist' is not here" in tangy("log", "report", "--data", played).stdout
+    missing = "Tangy cannot find the file of the activity 'whist': name it with --activity."
+    assert (done.returncode, missing in done.stderr) == (0, True)
+    assert missing in tangy("log", "report", "--data", played).stdout
     other = Path(__file__).parent.parent / "lanterns.toml"
     done = tangy("log", "report", "--activity", other, "--data", played)
     assert (done.returncode, "played was whist" in done.stderr) == (2, True)
+
+
+def test_a_game_of_a_file_is_shown_with_what_that_file_says(tangy: Tangy, tmp_path: Path) -> None:
+    data, shipped = tmp_path / "data", shipped_activities()["memory"]
+    own = tmp_path / "mine.toml"
+    own.write_text(shipped.read_text().replace('name = "memory"', 'name = "mine"'))
+    shutil.copy(shipped.with_suffix(".csv"), tmp_path)
+    file = ("--activity", own, "--data", data)
+    tangy("teach", "--teacher", "scripted", "--guided", "--users", 1, *file)
+    tangy("learn", *file)
+    tangy("play", "--games", 1, "--headless", "--users", 1, *file)
+    done = tangy("log", "show", "last", "--data", data)
+    assert ("cannot find" in done.stderr, "Let us find the pairs" in done.stdout) == (False, True)
+    own.unlink()
+    assert "cannot find the file" in tangy("log", "show", "last", "--data", data).stderr
 
 
 def test_nobody_is_told_by_a_name_that_was_changed(tangy: Tangy, played: Path) -> None:

@@ -26,6 +26,7 @@ Flaw = Literal[
     "behaviour never possible",
     "text lacks a word",
     "never ends",
+    "nothing possible",
 ]
 PLAYERS = ("one", "other")
 LIMIT = Limit(states=12_000, seconds=10.0)
@@ -36,7 +37,7 @@ SHARE = 0.6
 
 @dataclass(frozen=True, slots=True)
 class DeadEnd:
-    """Where no game of a number of players can end, and how one comes there."""
+    """Where a game of a number of players cannot end or cannot go on, and how it comes there."""
 
     players: int
     as_expected: bool
@@ -107,6 +108,7 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
         slots, one = _played_as_expected(activity, players, left)
         note(players, one, as_expected=True)
     flaws = list(islice(_dead_ends(activity, found), 1))
+    flaws += islice(_idle(activity, found), 1)
     missing = tuple(_missing(activity, tried))
     whole = all(one.whole for one in tried)
     played = {name for one in tried for name in one.played}
@@ -134,6 +136,17 @@ def _dead_ends(
         trap = one.loop if games.as_expected or not one.lost.way else one.lost
         end = DeadEnd(games.players, games.as_expected, trap)
         yield ActivityFlaw("never ends", activity.in_names(trap.situation), dead_end=end)
+
+
+def _idle(
+    activity: DeclaredActivity, found: Sequence[tuple[SearchedGames, Reach]]
+) -> Iterator[ActivityFlaw]:
+    """Yield for each search with every behaviour where none of them is possible."""
+    for games, one in found:
+        if one.idle is not None and not games.as_expected:
+            end = DeadEnd(games.players, games.as_expected, one.idle)
+            name = activity.in_names(one.idle.situation)
+            yield ActivityFlaw("nothing possible", name, dead_end=end)
 
 
 def _missing(activity: DeclaredActivity, found: Sequence[Reach]) -> Iterator[ActivityFlaw]:

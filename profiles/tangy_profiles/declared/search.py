@@ -94,7 +94,8 @@ class Reach:
     `open` are those reached in which nothing was shown, or in which selectors disagree. `cut`
     says why the search ended early, if it did: then other situations may be reached as well.
     If a game can come to where none ends, `lost` is where the end is lost first, and `loop` where
-    games then stay. `shares` says what makes the most states of a search that was cut.
+    games then stay. `idle` is where first there is no move. `shares` says what makes the most
+    states of a search that was cut.
     """
 
     reached: dict[Situation, int] = field(default_factory=dict)
@@ -103,6 +104,7 @@ class Reach:
     cut: Cut = ""
     lost: Trap | None = None
     loop: Trap | None = None
+    idle: Trap | None = None
     shares: tuple[Share, ...] = ()
     played: dict[str, int] = field(default_factory=dict)
 
@@ -170,6 +172,15 @@ def explore(
             came[new] = Came(node, move, event)
             waiting.append((other, new))
 
+    def possible(one: DeclaredGame) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(name for name, _ in moves(one)))
+
+    def trap(nodes: Sequence[Node]) -> Trap:
+        return Trap(
+            way_to(nodes[0], came, lambda node: situation(known[node])),
+            {situation(known[node]): possible(known[node]) for node in nodes},
+        )
+
     while waiting:
         looked += 1
         if looked % LOOKS_AT_CLOCK == 0 and thread_time() > until:
@@ -188,14 +199,13 @@ def explore(
         able = moves(one)
         if not able or able[0][0] == UNDECIDED:
             found.open[here] = able[0][0] if able else ""
+            if not able and found.idle is None:
+                found.idle = trap([node])
             ends.append(node)  # the answer decides how it goes on
             continue
         for move in able:
             found.played[move[0]] = found.played.get(move[0], 0) + 1
             reach_node(done_move(one, move), False, node, move)
-
-    def possible(one: DeclaredGame) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(name for name, _ in moves(one)))
 
     keys = [key for robot, key in known if robot]
     found.states = len(keys)
@@ -205,13 +215,8 @@ def explore(
     stuck = without_end(known, before, ends)
     lost = next((node for node in stuck if node[0]), None)
     if lost is not None:
-        found.lost, found.loop = (
-            Trap(
-                way_to(nodes[0], came, lambda node: situation(known[node])),
-                {situation(known[node]): possible(known[node]) for node in nodes},
-            )
-            for nodes in ([lost], [node for node in loop_in(stuck, before) if node[0]])
-        )
+        found.lost = trap([lost])
+        found.loop = trap([node for node in loop_in(stuck, before) if node[0]])
     return found
 
 
