@@ -23,6 +23,7 @@ class RobotSetup:
     in its picture. `faces` are rows of features by person, of the kind `face_kind`. `pairing` is
     what tablets are known by (see `drivers.chest_pairing`); without one they pair anew.
     `courtesies` are what it says to those for whom it stands on its way (see `Courtesies`).
+    `record` is a file for the scans of a drive by hand; without a map, the pose is the wheels'.
     """
 
     robot: str
@@ -42,6 +43,7 @@ class RobotSetup:
     log: str = ""
     pairing: Mapping[str, str] = field(default_factory=dict)
     courtesies: Mapping[str, str] = field(default_factory=dict)
+    record: str = ""
 
     def to_json(self) -> str:
         """Write it as a line."""

@@ -36,8 +36,11 @@ LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: what goes wrong
 PICTURES = 10  # of each drawn face that the bench's people are known by
 CAMERA = "camera"
 
-Opening = Callable[[bool, Cancellation], AbstractContextManager[LiveWorld]]
+Opened = TypeVar("Opened")
+Opening = Callable[[bool, Cancellation], AbstractContextManager[Opened]]
 """Opens a robot, or its bench (in a hurry, if that is wanted), unless it is called off."""
+WorldOpening = Opening[LiveWorld]
+"""Opens it for games."""
 
 
 def opening_of(
@@ -47,7 +50,7 @@ def opening_of(
     injections: Sequence[Injection] = (),
     own: Mapping[str, Any] | None = None,
     **both: Any,
-) -> Opening:
+) -> WorldOpening:
     """Return a callable that opens the robot or its bench.
 
     Args:
@@ -137,7 +140,7 @@ def open_bench(
             cameras={CAMERA: bench.wires.head} if CAMERA in has else {},
             requests=f"signs:{bench.wires.infrared}" if "requests" in has else "",
             corners=bench.wires.corners,
-            start=None if lost else _start(workspace.room, tuple(workspace.names)),
+            start=None if lost else start_of(workspace.room, tuple(workspace.names)),
             map=map_,
             stepped=stepped,
             seed=seed,
@@ -188,11 +191,7 @@ def open_robot(
         Cancelled: it was called off.
         TangyError: the profile names none, or the robot process does not begin.
     """
-    if not workspace.robot.drivers:
-        raise DeviceError(
-            f"{workspace.robot.file.name} names no drivers, so there is no robot to be reached: "
-            "try --bench, or name them as docs/robots.md tells."
-        )
+    check_drivers(workspace.robot)
     from tangy_hw.drivers.chest_pairing import keep_pairing
     from tangy_hw.perception.faces.face_store import read_faces
     from tangy_hw.perception.faces.reader import open_reader
@@ -211,7 +210,7 @@ def open_robot(
         cameras=dict(named.split("=", 1) for named in cameras),
         requests=requests,
         corners=corners,
-        start=None if lost else _start(workspace.room, tuple(workspace.names)),
+        start=None if lost else start_of(workspace.room, tuple(workspace.names)),
         seed=seed,
         faces={p: rows.tolist() for p, rows in known.items() if p in workspace.names},
         map=map_,
@@ -225,6 +224,19 @@ def open_robot(
     with linked as world:
         world.cards.dealt.deal(cards or {})
         yield world
+
+
+def check_drivers(robot: Robot) -> None:
+    """Look whether a robot's file says how it can be reached.
+
+    Raises:
+        DeviceError: it names no drivers.
+    """
+    if not robot.drivers:
+        raise DeviceError(
+            f"{robot.file.name} names no drivers, so there is no robot to be reached: "
+            "try --bench, or name them as docs/robots.md tells."
+        )
 
 
 def _is_declared(workspace: Workspace) -> bool:
@@ -307,7 +319,8 @@ def check_map(workspace: Workspace, map_: str) -> None:
             raise MapFileError(plain(told)) from None
 
 
-def _start(room: Room, people: tuple[str, ...]) -> tuple[float, float, float]:
+def start_of(room: Room, people: tuple[str, ...]) -> tuple[float, float, float]:
+    """Return the pose at the front of a room: x, y in m, and the heading in rad."""
     front = room.stand(FRONT, people)
     return front.x, front.y, FACING
 

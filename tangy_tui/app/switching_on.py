@@ -7,13 +7,10 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, Generic, NoReturn
 
 from tangy_hw.cancellation import Cancellation
-from tangy_tui.app.robot_opening import Opening
-
-if TYPE_CHECKING:
-    from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_tui.app.robot_opening import Opened, Opening
 
 ENDING = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 """By which a person or a system ends a program."""
@@ -27,10 +24,10 @@ SIGNALLED = 128
 """The exit status of a program that a signal has ended is this and the signal's number."""
 
 
-class SwitchingOn:
+class SwitchingOn(Generic[Opened]):
     """One robot: `open` it on a thread, `cancel` that from another, and `close` it in the end."""
 
-    def __init__(self, opening: Opening, *, stepped: bool = False) -> None:
+    def __init__(self, opening: Opening[Opened], *, stepped: bool = False) -> None:
         """Prepare it.
 
         Args:
@@ -42,7 +39,7 @@ class SwitchingOn:
         self._cancellation = Cancellation()
         self._opened = ExitStack()
 
-    def open(self) -> LiveWorld:
+    def open(self) -> Opened:
         """Switch it on, which takes seconds.
 
         Raises:
@@ -66,7 +63,7 @@ class SwitchingOn:
 
 
 @contextmanager
-def switched_on(opening: Opening, *, stepped: bool) -> Iterator[LiveWorld]:
+def switched_on(opening: Opening[Opened], *, stepped: bool) -> Iterator[Opened]:
     """Switch a robot on for a program without a screen, and off again however that ends.
 
     Raises:

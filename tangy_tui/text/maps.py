@@ -4,6 +4,56 @@ from __future__ import annotations
 
 from tangy_profiles.reading import plain
 
+DRIVE_MODE = "map"
+DRIVES = "drive"
+DRIVE_ON = "drive on"
+DONE = "draw the map"
+GO_ON = "go on"
+LEAVE = "leave"
+STOPPED = "stopped"
+STOPPED_HERE = "You stopped Tangy. Press g to go on."
+HOW_TO_DRIVE = (
+    "Drive round the room, along its walls, and come back to places you have been. Hold an arrow "
+    "key to drive. Press enter when the walls are complete."
+)
+OVER = "Is the drive over?"
+OVER_DETAIL = "Tangy then matches the scans and draws the map. The scans are kept."
+NOTHING_YET = "Nothing is recorded yet. Leave without a map?"
+DRIVE_HELP = (
+    "Hold ↑ or ↓ to drive, ← or → to turn. Space stops, enter ends the drive.\n\n"
+    "Tangy slows down near people and things that its laser scanner sees, and stops before it "
+    "reaches them. It cannot see behind itself or over its scanner: look there yourself. If it "
+    "stands although there is room, Shift+↑ and Shift+↓ move it at a crawl, whatever is near.\n\n"
+    "The picture follows the wheels, so its walls may be bent. When the drive is over, Tangy "
+    "matches the scans and straightens them. It can do that where the robot has come back to a "
+    "place it had seen, so drive in loops. Ask people to leave the room: anyone who stands in it "
+    "becomes part of the map."
+)
+
+DRIVE_NEEDS_YAML = "--drive: say where the map goes, as in --yaml room.yaml."
+DRIVE_NEEDS_SCREEN = "--drive: you drive with the arrow keys, so this needs a terminal."
+DRIVE_ALONE = "--drive records a new log: leave LOG, --room and --match out."
+NOTHING_RECORDED = "Nothing was recorded, so there is no map."
+
+
+def drive_is_there(record: str, yaml: str) -> str:
+    """Say that an earlier drive stands where this one would be recorded."""
+    return (
+        f"{record} is there already. Draw its map with: tangy map {record} --match --yaml {yaml}. "
+        "For a new drive, choose another name or delete that file."
+    )
+
+
+def recorded_words(scans: int, metres: float) -> str:
+    """Say how much of a drive (in metres) is recorded."""
+    return f"{scans} scans recorded, {metres:.1f} m driven"
+
+
+def kept_words(log: str) -> str:
+    """Say that the scans of a drive are kept."""
+    return plain(f"The scans are kept in {log}.")
+
+
 BETTER = (
     "Give a log of a smaller area, one that often returns to places it has seen, or one that a "
     "mapping program has corrected, without --match."

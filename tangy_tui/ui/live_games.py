@@ -16,7 +16,7 @@ from tangy_tui.ui.interruption import ask_about_interrupted
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.past_game import PastGame
-    from tangy_tui.app.robot_opening import Opening
+    from tangy_tui.app.robot_opening import WorldOpening
     from tangy_tui.app.set_up import SetUp
     from tangy_tui.app.switching_on import SwitchingOn
     from tangy_tui.learning.policy import Policy
@@ -45,7 +45,7 @@ async def play_from_home(program: Program, policy: Policy) -> None:
 
 async def play_live(
     program: Program,
-    opening: Opening,
+    opening: WorldOpening,
     policy: Policy,
     *,
     games: int,
@@ -93,7 +93,9 @@ async def play_live(
         await asyncio.shield(asyncio.to_thread(robot.close))
 
 
-async def _set_up(program: Program, setup: SetUp, robot: SwitchingOn) -> LiveWorld | None:
+async def _set_up(
+    program: Program, setup: SetUp, robot: SwitchingOn[LiveWorld]
+) -> LiveWorld | None:
     """Let staff set the game up; None where they leave."""
     from tangy_tui.ui.activity_choice import choose_activity
     from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -115,7 +117,7 @@ async def _set_up(program: Program, setup: SetUp, robot: SwitchingOn) -> LiveWor
     return setup.world if begins else None
 
 
-async def _switch_on(program: Program, robot: SwitchingOn) -> LiveWorld | None:
+async def _switch_on(program: Program, robot: SwitchingOn[LiveWorld]) -> LiveWorld | None:
     """Switch a robot on behind a dialog; None where it was called off, or could not be.
 
     It may have come on at the very moment at which it was called off: then it goes off again.

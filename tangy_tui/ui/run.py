@@ -22,10 +22,11 @@ from tangy_tui.ui.writer import outlive_terminal
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import CameraHub
+    from tangy_hw.robot_client.client import RobotLink
     from tangy_profiles.drill_sheet import Sheet
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.past_game import PastGame
-    from tangy_tui.app.robot_opening import Opening
+    from tangy_tui.app.robot_opening import WorldOpening
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_session import TeachingSession
     from tangy_tui.speech.input import SpeechInput
@@ -110,7 +111,7 @@ def run_playing(
 
 def run_live(
     workspace: Workspace,
-    opening: Callable[[int], Opening],
+    opening: Callable[[int], WorldOpening],
     policy: Policy,
     *,
     games: int,
@@ -207,6 +208,27 @@ def run_watching(folder: Path, *, who: str, note: str, ascii_only: bool) -> int:
             link=settings.link,
         )
         return run_app(app)
+
+
+def run_map_drive(
+    workspace: Workspace, link: RobotLink, record: Path, *, ascii_only: bool
+) -> tuple[bool, int]:
+    """Let staff drive to draw a map; return whether to draw it, and the exit status."""
+    from tangy_tui.ui.app import TangyApp
+    from tangy_tui.ui.screens.map_drive import MapDriveScreen
+
+    outlive_terminal()
+    read_replies()
+    screen = MapDriveScreen(link, record, workspace.robot.title)
+    app = TangyApp(
+        lambda: screen,
+        kind=terminal_kind(ascii=True if ascii_only else None),
+        pictures=workspace.store.folder,
+        keymap=workspace.settings.keymap,
+        link=workspace.settings.link,
+    )
+    status = run_app(app)
+    return screen.done, status
 
 
 def run_demo(workspace: Workspace, *, seed: int, ascii_only: bool, voice: bool = False) -> int:

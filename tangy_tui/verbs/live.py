@@ -39,7 +39,7 @@ from tangy_tui.verbs.sensors import Cameras, RobotName
 if TYPE_CHECKING:
     from tangy_sim.worlds.injection import Injection
     from tangy_tui.app.live_games import LiveGames
-    from tangy_tui.app.robot_opening import Opening
+    from tangy_tui.app.robot_opening import WorldOpening
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.console.set_up import SetUpLines
     from tangy_tui.monitoring.supervision import Event
@@ -179,7 +179,7 @@ def live(
             "cards": read_dealt(card or (), workspace.people), "courtesies": COURTESIES,
         }  # fmt: skip
 
-        def opening(seed: int) -> Opening:
+        def opening(seed: int) -> WorldOpening:
             both: dict[str, Any] = {"seed": seed, "pace": pace, "map_": map_, "lost": lost}
             return opening_of(workspace, bench=bench, injections=faults, own=own, **both)
 

@@ -9,9 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from tangy_profiles.defaults import USUAL_ROBOT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text import maps
 from tangy_tui.verbs.common import Ascii, Data, Json, Seed, print_json
+from tangy_tui.verbs.map_drive import drive_for_map
+from tangy_tui.verbs.sensors import RobotName
 
 if TYPE_CHECKING:
     from tangy_hw.navigation.agreement import Verdict
@@ -44,6 +48,16 @@ def draw_map(
         bool,
         typer.Option("--match", help="Correct the log's wheel odometry by matching scans."),
     ] = False,
+    drive: Annotated[
+        bool,
+        typer.Option(
+            "--drive", help="Drive the robot with the arrow keys, and draw the map of that."
+        ),
+    ] = False,
+    robot: RobotName = USUAL_ROBOT,
+    bench: Annotated[
+        bool, typer.Option("--bench", help="With --drive: simulate the robot's devices.")
+    ] = False,
     ascii_only: Ascii = False,
     seed: Seed = None,
     data: Data = None,
@@ -55,13 +69,23 @@ def draw_map(
     them: it matches the scans, and closes loops. A map that does not close is refused. What
     stands on the floor for the robot but not for its laser, as a table's top, is written beside
     the map, as FILE-keep-out.yaml.
+
+    With `--drive` you drive the robot with the arrow keys, beginning at the front. Tangy records
+    the scans in FILE-scans.log, and draws the map from them as with `--match`.
     """
-    if (source is None) == (room is None):
-        raise TangyError("Say what to draw: a log of scans or a map, or else --room NAME.")
+    if drive and (match or source is not None or room is not None):
+        raise TangyError(maps.DRIVE_ALONE)
+    if not drive and (source is None) == (room is None):
+        raise TangyError("Say what to draw: a log of scans or a map, --room NAME, or --drive.")
     if yaml is not None and yaml.suffix not in YAML:
         raise TangyError(plain(f"--yaml {yaml}: name it .yaml."))
     if png is not None and png.suffix.lower() != ".png":
         raise TangyError(plain(f"--png {png}: name it .png."))
+    if drive:
+        source = drive_for_map(
+            yaml, robot=robot, bench=bench, seed=seed or 1, data=data, ascii_only=ascii_only
+        )
+        match = True
     found: dict[str, Any]
     if room is not None:
         map_, found = _of_room(room, resolution, people)
@@ -140,7 +164,6 @@ def _refuse(path: Path, closes: Verdict, share: float, found: Revisits, picture:
         TangyError: always.
     """
     from tangy_hw.navigation.agreement import TORN
-    from tangy_tui.text import maps
 
     if closes == "unknown":
         why = maps.unknown_words()

@@ -9,21 +9,40 @@ from numpy.typing import NDArray
 
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, OccupancyMap
 
+ROBOT, ROBOT_ASCII = "●", "o"
 NOTHING, UNSEEN, KEPT_OUT, WALL = range(4)
 
 
-def map_lines(map_: OccupancyMap, columns: int = 100, *, ascii_only: bool = False) -> list[str]:
+def map_lines(
+    map_: OccupancyMap,
+    columns: int = 100,
+    rows: int = 0,
+    *,
+    robot: tuple[float, float] | None = None,
+    ascii_only: bool = False,
+) -> list[str]:
     """Return lines of limited length, the highest y at the top.
 
     Walls are full blocks, free floor is blank, keep-out areas and unknown cells are shaded;
     in ASCII they are `#`, blank, `+` and `.`.
+
+    Args:
+        map_: the map.
+        columns: the longest line.
+        rows: the most lines; 0: as many as it takes.
+        robot: where the robot is marked (x, y in m).
+        ascii_only: draw with ASCII characters.
     """
-    kinds = _shrunk(_kinds(map_), ceil(map_.shape[1] / columns))[::-1]
+    by = ceil(map_.shape[1] / columns)
+    if rows:
+        by = max(by, ceil(map_.shape[0] / (2 * rows)))
+    kinds = _shrunk(_kinds(map_), by)[::-1]
+    at = None if robot is None else _cell(map_, robot, by, len(kinds))
     if len(kinds) % 2:
         kinds = np.vstack((kinds, np.full((1, kinds.shape[1]), UNSEEN)))
     upper, lower = kinds[::2], kinds[1::2]
     signs = " .+#" if ascii_only else " ░▒█"
-    lines = []
+    lines: list[str] = []
     for above, below in zip(upper, lower, strict=True):
         line = ""
         for top, bottom in zip(above, below, strict=True):
@@ -31,8 +50,19 @@ def map_lines(map_: OccupancyMap, columns: int = 100, *, ascii_only: bool = Fals
                 line += signs[max(top, bottom)]
             else:
                 line += "▀" if top == WALL else "▄"
+        if at is not None and len(lines) == at[0] and 0 <= at[1] < len(line):
+            line = line[: at[1]] + (ROBOT_ASCII if ascii_only else ROBOT) + line[at[1] + 1 :]
         lines.append(line.rstrip())
     return lines
+
+
+def _cell(map_: OccupancyMap, robot: tuple[float, float], by: int, count: int) -> tuple[int, int]:
+    """Return the line and the column of a point, where `count` rows of squares are drawn."""
+    column, row = (
+        int((at - corner) / map_.resolution / by)
+        for at, corner in zip(robot, map_.origin, strict=True)
+    )
+    return (count - 1 - row) // 2, column
 
 
 def _kinds(map_: OccupancyMap) -> NDArray[np.int64]:

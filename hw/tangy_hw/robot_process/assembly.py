@@ -15,12 +15,15 @@ from tangy_hw.device_protocols import Clock, DeviceError, MachineClock, OwnNavig
 from tangy_hw.drivers.registry import Wiring, open_device
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.simulated_clock import SteppedClock
+from tangy_hw.navigation.dead_reckoning import DeadReckoning
 from tangy_hw.navigation.external_navigator import ExternalNavigator
 from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.navigation.occupancy import map_of_room, with_feet
+from tangy_hw.navigation.poses import HERE
+from tangy_hw.navigation.scan_recorder import ScanRecorder
 from tangy_hw.perception.camera_hub import CameraHub, camera_sources
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
@@ -189,13 +192,15 @@ def _wayfinder(
 ) -> NavigatorProtocol:
     """Return what finds place and way: the robot's own navigation where it has one, or ours."""
     limits, laser = MotionLimits.of(robot), laser_of(robot)
+    start = None if setup.start is None else Pose(*setup.start)
+    if setup.record:
+        return DeadReckoning(ScanRecorder(Path(setup.record)), start or HERE, laser)
     if own is not None:
         return ExternalNavigator(own, limits, laser)
     count = len(setup.people)
     known = map_of_room(room, people=count)
     if setup.map:
         known = with_feet(read_map(Path(setup.map)), room, count)
-    start = None if setup.start is None else Pose(*setup.start)
     seats = room.seated(count)
     return Navigator(
         known,

@@ -1,0 +1,97 @@
+"""Navigation without a map: the pose by wheel odometry alone, while staff drive by the keys.
+
+It plans no paths. It tracks people as the navigator does, so that driving by hand slows down for
+them, and records the scans from which a map is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tangy_hw.device_protocols import STILL, Odometry, Pose, Scan, Twist
+from tangy_hw.navigation.localisation import Estimate
+from tangy_hw.navigation.navigator import State
+from tangy_hw.navigation.people_tracker import PeopleTracker, Track
+from tangy_hw.navigation.planning import Path
+from tangy_hw.navigation.poses import HERE, Floats, between, compose
+from tangy_hw.navigation.scan_recorder import ScanRecorder
+from tangy_hw.navigation.surroundings import Held
+from tangy_profiles.health import OK, Fact, Reading
+
+NOWHERE: Floats = np.zeros((0, 2))
+
+
+class DeadReckoning:
+    """Counts the way by the wheels, from a start pose; implements `NavigatorProtocol`."""
+
+    drives = False
+    state: State = "idle"
+    path: Path | None = None
+    lets: Held = ""
+    obstacles = unseen = NOWHERE
+    particles: Floats = np.zeros((0, 3))
+
+    def __init__(self, recorder: ScanRecorder, start: Pose = HERE, laser: Pose = HERE) -> None:
+        """Begin at a pose.
+
+        Args:
+            recorder: records the scans.
+            start: the robot's pose in the map that is to be drawn.
+            laser: where the scanner sits on the robot.
+        """
+        self._recorder, self._laser = recorder, laser
+        self._pose = start
+        self._odometry: Pose | None = None
+        self._time = 0.0
+        self._tracker = PeopleTracker(laser)
+        self.tracks: tuple[Track, ...] = ()
+
+    @property
+    def estimate(self) -> Estimate:
+        """The pose by the wheels; its error is not known."""
+        return Estimate(self._pose, np.zeros((3, 3)), 0.0, 1.0, 1)
+
+    def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
+        """Follow the wheels and the people for `dt` s, and record the scan; it never drives."""
+        if self._odometry is not None:
+            self._pose = compose(self._pose, between(self._odometry, odometry.pose))
+        self._odometry = odometry.pose
+        self._time += dt
+        if scan is not None:
+            tracks = self._tracker.update(odometry.pose, scan, dt, None)
+            self.tracks = tuple(one.seen_from(odometry.pose) for one in tracks)
+            self._recorder.note(scan, compose(self._pose, self._laser), self._time)
+        return STILL
+
+    def go(self, goal: Pose) -> None:
+        """Drive nowhere: there is no map."""
+
+    def spin(self) -> None:
+        """Turn nowhere: there is no place to find on a map."""
+
+    def cancel(self) -> None:
+        """Stand still, which it does anyway."""
+
+    def held(self) -> None:
+        """Take note that the robot must not drive."""
+
+    def place(self, pose: Pose | None) -> None:
+        """Count the way from another pose, as staff say."""
+        self._pose = self._pose if pose is None else pose
+
+    def finds_way(self, goal: Pose) -> bool:
+        """Return that there is no way."""
+        return False
+
+    def facts(self) -> Mapping[str, Fact]:
+        """Return path, fit, spread, slip and still, with nothing wrong."""
+        return {"path": "clear", "fit": 1.0, "spread": 0.0, "slip": 0.0, "still": 0.0}
+
+    def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
+        """Return the readings of "localisation" and "navigator"; `age` is in s."""
+        return (
+            Reading("localisation", age, OK, {"fit": 1.0, "spread": 0.0}),
+            Reading("navigator", age, OK, {"path": "clear"}),
+        )

@@ -1,0 +1,141 @@
+"""Driving the robot by keys to draw a map, which grows on the screen meanwhile."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.content import Content
+from textual.widgets import Static
+
+from tangy_hw.device_protocols import Twist
+from tangy_hw.navigation.map_drawing import map_lines
+from tangy_tui.app.map_drive import SoFar, map_so_far
+from tangy_tui.text import maps as text
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.hand_driving import DRIVE_KEYS, TELL_SECONDS, HandDriving
+from tangy_tui.ui.keys import bind
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.panels import KeyLine
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+
+if TYPE_CHECKING:
+    from tangy_hw.robot_client.client import RobotLink
+    from tangy_tui.ui.app import TangyApp
+
+DRAWN_SECONDS = 2.0  # between two pictures of the map
+
+
+class MapDriveScreen(HandDriving, TangyScreen[None]):
+    """The map so far, and the keys to drive. Enter ends the drive, ctrl+x stops the robot."""
+
+    DEFAULT_CSS = """
+    MapDriveScreen #map { height: 1fr; content-align: center middle; }
+    MapDriveScreen #hazard { height: 2; padding: 0 1; }
+    MapDriveScreen #so-far { height: 1; padding: 0 1; }
+    """
+    HELP = text.DRIVE_HELP
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *DRIVE_KEYS,
+        *bind("open", "done", name=text.DONE),
+        *bind("back", "done", name=text.DONE, show=False),
+        *bind("next", "go_on", name=text.GO_ON),
+    ]
+
+    app: TangyApp
+
+    def __init__(self, link: RobotLink, record: Path, title: str) -> None:
+        """Make the screen.
+
+        Args:
+            link: to the robot, which is on.
+            record: the log that it writes.
+            title: the robot's.
+        """
+        HandDriving.__init__(self, link)
+        TangyScreen.__init__(self)
+        self._record, self._title = record, title
+        self._so_far: SoFar | None = None
+        self.done = False
+        """Whether the map is to be drawn from this drive."""
+
+    def compose(self) -> ComposeResult:
+        """Lay out the map, what was recorded, and the keys."""
+        yield StatusLine(Status(mode=text.DRIVE_MODE, robot=self._title))
+        yield Static("", id="map", markup=False)
+        yield Static(text.recorded_words(0, 0.0), id="so-far")
+        yield Static(text.HOW_TO_DRIVE, id="hazard")
+        yield KeyLine(("↑↓←→", text.DRIVES), "still", "open:draw the map", "stop", "help")
+
+    def on_mount(self) -> None:
+        """Look all the time what the robot does, and draw now and then."""
+        self.set_interval(TELL_SECONDS, self._watch)
+        self.set_interval(DRAWN_SECONDS, self._look)
+
+    def _watch(self) -> None:
+        """Tell the robot that this screen lives, and say why it stands."""
+        self.link.alive()
+        stopped = self.link.state.stopped
+        self.query_one(StatusLine).show(
+            Status(
+                mode=text.DRIVE_MODE,
+                robot=text.STOPPED if stopped else self._title,
+                alarm=bool(stopped),
+            )
+        )
+        if not stopped:
+            self.tell_held()
+
+    def _look(self) -> None:
+        self.run_worker(self._draw, thread=True, exclusive=True, group="map")
+
+    def _draw(self) -> None:
+        """Draw what was recorded so far, on a thread: reading it takes a while."""
+        if (found := map_so_far(self._record)) is not None:
+            self.app.call_from_thread(self._show, found)
+
+    def _show(self, found: SoFar) -> None:
+        self._so_far = found
+        picture = self.query_one("#map", Static)
+        columns, rows = picture.size
+        lines = map_lines(
+            found.map,
+            max(1, columns),
+            max(1, rows),
+            robot=self.link.state.pose[:2],
+            ascii_only=self.app.kind.ascii,
+        )
+        width = max(map(len, lines), default=0)
+        picture.update(Content("\n".join(line.ljust(width) for line in lines)))
+        self.query_one("#so-far", Static).update(text.recorded_words(found.scans, found.metres))
+
+    def show_words(self, words: str) -> None:
+        """Show them below the map."""
+        self.query_one("#hazard", Static).update(Content(words))
+
+    def on_stop(self, message: Stop) -> None:
+        """Stop the robot, before anything is drawn."""
+        self.link.stop(message.reason)
+        self.show_words(text.STOPPED_HERE)
+
+    def action_go_on(self) -> None:
+        """Release a stop."""
+        self.link.release()
+        self.show_words("")
+
+    def action_done(self) -> None:
+        """Ask whether the drive is over; the robot stands meanwhile."""
+        self.drive(Twist())
+        self.run_worker(self._ask_done(), group="done", exclusive=True)
+
+    async def _ask_done(self) -> None:
+        if self._so_far is None:
+            asked = ConfirmDialog(text.NOTHING_YET, yes=text.LEAVE, no=text.DRIVE_ON)
+        else:
+            asked = ConfirmDialog(text.OVER, text.OVER_DETAIL, yes=text.DONE, no=text.DRIVE_ON)
+        if await self.app.push_screen_wait(asked):
+            self.done = self._so_far is not None
+            self.app.leave()

@@ -1,0 +1,57 @@
+"""A drive on the bench by commands of the keys, recorded, matched and drawn as a map."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangy_hw.navigation.alignment import aligned
+from tangy_hw.navigation.mapping import Placed
+from tangy_hw.navigation.matched_map import judged
+from tangy_hw.navigation.occupancy import OCCUPIED
+from tangy_hw.navigation.scan_log import read_log
+from tangy_hw.robot_client.client import RobotLink
+from tangy_profiles.room import load_room
+from tangy_tui.app.device_simulator import DeviceSimulator
+from tests.real.bench_setup import setup_on
+from tests.support.waiting import wait_until
+
+ROOM = load_room()
+OFF = 0.15  # m that a wall of the map may be off
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
+
+
+def test_a_drive_by_hand_is_recorded_and_its_map_has_the_rooms_walls(tmp_path: Path) -> None:
+    log = tmp_path / "a-scans.log"
+    bench = DeviceSimulator(
+        seed=3, people={"user1": "Rosa"}, stepped=False, activity="bingo", robot="tangy"
+    )
+    link = RobotLink(replace(setup_on(bench), record=str(log)))
+    try:
+        link.start()
+        turned = 0
+
+        def drives() -> bool:
+            """Go on for a moment as somebody at the keys would, and look how far it is."""
+            link.tell("drive", forward=0.3 if turned % 2 else 0.0, turn=0.6)
+            return link.state.number > 0 and len(log.read_text().splitlines()) > 25 * (turned + 1)
+
+        for turned in range(3):
+            wait_until(drives)
+        assert not link.state.hazard
+    finally:
+        link.close()
+        bench.close()
+    scans = aligned([Placed(one.scan, one.odometry) for one in read_log(log)])
+    drawn = judged(scans, 0.05).map
+    occupied = np.argwhere(drawn.cells == OCCUPIED)
+    points = np.array([drawn.point(row, column) for row, column in occupied])
+    for side, wall in ((0, 0.0), (0, ROOM.width), (1, ROOM.depth)):
+        near = np.abs(points[:, side] - wall) < OFF
+        assert near.sum() > 20, f"the wall at {wall} m is in the map"
+    inside = (points > -OFF) & (points < (ROOM.width + OFF, ROOM.depth + OFF))
+    assert inside.all(axis=1).mean() > 0.95
