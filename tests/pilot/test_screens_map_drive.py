@@ -37,7 +37,7 @@ async def test_the_map_grows_while_somebody_drives(run: Run, tmp_path: Path) -> 
     async with run(screen) as pilot:
         await pilot.press("up", "left", "shift+up", "space")
         assert link.told.count("drive") == 4
-        link.state = replace(link.state, pose=(3.0, 2.0, 0.0))
+        link.state = replace(link.state, pose=Pose(3.0, 2.0, 0.0))
         record(log, 11)
         await until_shown(
             pilot, lambda: "11 scans recorded, 1.0 m driven" in screen_text(pilot.app)
@@ -85,5 +85,5 @@ async def test_leaving_with_nothing_recorded_draws_no_map(run: Run, tmp_path: Pa
         await pilot.press("escape")
         await until_shown(pilot, lambda: "Leave without a map?" in screen_text(pilot.app))
         await pilot.press("y")
-        await until_shown(pilot, lambda: pilot.app.leaving)
+        await until_shown(pilot, lambda: not pilot.app.is_running)
         assert not screen.done

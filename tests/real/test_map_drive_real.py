@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -33,15 +34,14 @@ def test_a_drive_by_hand_is_recorded_and_its_map_has_the_rooms_walls(tmp_path: P
     link = RobotLink(replace(setup_on(bench), record=str(log)))
     try:
         link.start()
-        turned = 0
 
-        def drives() -> bool:
-            """Go on for a moment as somebody at the keys would, and look how far it is."""
-            link.tell("drive", forward=0.3 if turned % 2 else 0.0, turn=0.6)
-            return link.state.number > 0 and len(log.read_text().splitlines()) > 25 * (turned + 1)
+        def recorded(forward: float, scans: int) -> bool:
+            """Drive on for a moment as somebody at the keys would; look how far it is."""
+            link.tell("drive", forward=forward, turn=0.6)
+            return link.state.number > 0 and len(log.read_text().splitlines()) > scans
 
-        for turned in range(3):
-            wait_until(drives)
+        for forward, scans in ((0.0, 25), (0.3, 50), (0.0, 75)):
+            wait_until(partial(recorded, forward, scans))
         assert not link.state.hazard
     finally:
         link.close()
