@@ -46,8 +46,8 @@ def test_a_drive_by_hand_is_recorded_and_its_map_has_the_rooms_walls(tmp_path: P
     finally:
         link.close()
         bench.close()
-    scans = aligned([Placed(one.scan, one.odometry) for one in read_log(log)])
-    drawn = judged(scans, 0.05).map
+    matched = aligned([Placed(one.scan, one.odometry) for one in read_log(log)])
+    drawn = judged(matched, 0.05).map
     occupied = np.argwhere(drawn.cells == OCCUPIED)
     points = np.array([drawn.point(row, column) for row, column in occupied])
     for side, wall in ((0, 0.0), (0, ROOM.width), (1, ROOM.depth)):
