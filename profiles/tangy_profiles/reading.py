@@ -1,4 +1,4 @@
-"""TOML read key by key, so that every mistake is one line: file, key, value, nearest valid word."""
+"""TOML read key by key: every mistake is told in a line, with file, key, value and nearest word."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from typing import Any
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.given_file import lines_of, read_given
 from tangy_profiles.plain_text import plain as plain  # it is taken from here
+from tangy_profiles.toml_lines import KeyPath, line_of
 
 LARGEST_PROFILE = 1_000_000  # bytes; ours have some 20 kB
 
@@ -45,10 +46,29 @@ def _short(text: str, most: int = 60) -> str:
 class Table:
     """One TOML table. Taking a key checks it; `close` refuses the keys that nobody took."""
 
-    def __init__(self, values: Mapping[str, Any], file: str, path: str = "") -> None:
+    def __init__(
+        self,
+        values: Mapping[str, Any],
+        file: str,
+        path: str = "",
+        *,
+        text: str = "",
+        at: KeyPath = (),
+    ) -> None:
+        """Take the values of a table.
+
+        Args:
+            values: by key.
+            file: the name of the file.
+            path: where the table stands in it, as sentences name it.
+            text: of the file, for the lines that mistakes are on.
+            at: where the table stands in the text.
+        """
         self._values = values
         self._file = file
         self._path = path
+        self._text = text
+        self._at = at
         self._taken: set[str] = set()
 
     def where(self, key: str) -> str:
@@ -56,8 +76,10 @@ class Table:
         return f"{self._file}: {self._path}{_short(key)}"
 
     def wrong(self, key: str, problem: str) -> ProfileError:
-        """Make the error for a key, with the value that stands there."""
+        """Make the error for a key, with its value and line."""
         shown = f" = {_short(_SHORT.repr(self._values[key]), 120)}" if key in self._values else ""
+        if (line := line_of(self._text, (*self._at, key))) is not None:
+            shown += f" (line {line})"
         return ProfileError(plain(f"{self.where(key)}{shown}: {_short(problem, 400)}"))
 
     def __contains__(self, key: str) -> bool:
@@ -67,13 +89,22 @@ class Table:
         self._taken.add(key)
         if key not in self._values:
             if default is None:
-                raise self.wrong(key, f"is missing; it must be {noun}.")
+                raise self.wrong(key, f"is missing; it must be {noun}.{self._misspelt(key)}")
             return default
         value = self._values[key]
         kinds = kind if isinstance(kind, tuple) else (kind,)
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             raise self.wrong(key, f"must be {noun}.")
         return value
+
+    def _misspelt(self, key: str) -> str:
+        """Name the key that stands where another one is missing, "" if none is like it."""
+        others = [other for other in self._values if other not in self._taken]
+        close = difflib.get_close_matches(key, others, n=1)
+        if not close:
+            return ""
+        line = line_of(self._text, (*self._at, close[0]))
+        return f" Do you mean {close[0]!r}{'' if line is None else f' (line {line})'}?"
 
     def text(self, key: str, default: str | None = None) -> str:
         """Take a line of text (not empty unless that is the default)."""
@@ -164,7 +195,7 @@ class Table:
     def table(self, key: str, *, optional: bool = False) -> Table:
         """Take a table; an absent optional one reads as empty."""
         value = self._take(key, dict, "a table", {} if optional else None)
-        return Table(value, self._file, f"{self._path}{_short(key)}.")
+        return self._inner(value, f"{_short(key)}.", key)
 
     def tables(self, key: str, *, optional: bool = False) -> Iterator[Table]:
         """Take an array of tables, in order."""
@@ -174,7 +205,12 @@ class Table:
                 raise self.wrong(key, "must be a list of tables ([[...]]).")
             name = value.get("name")
             label = _short(name) if isinstance(name, str) else place
-            yield Table(value, self._file, f"{self._path}{key}[{label}].")
+            yield self._inner(value, f"{key}[{label}].", key, place - 1)
+
+    def _inner(self, values: Mapping[str, Any], path: str, *at: str | int) -> Table:
+        """Make a table within this one."""
+        where = (*self._at, *at)
+        return Table(values, self._file, f"{self._path}{path}", text=self._text, at=where)
 
     def items(self) -> Iterator[tuple[str, Table]]:
         """Take every key as a table of its own, in order."""
@@ -209,7 +245,8 @@ def read_toml(path: Path) -> Table:
         raise ProfileError(plain(f"{path}: is a folder; name the TOML file in it."))
     content = read_given(path, LARGEST_PROFILE, ProfileError, called=name)
     try:
-        values = tomllib.loads(lines_of(content))
+        text = lines_of(content)
+        values = tomllib.loads(text)
     except UnicodeDecodeError:
         raise ProfileError(f"{name}: is not UTF-8 text.") from None
     except tomllib.TOMLDecodeError as error:
@@ -220,4 +257,4 @@ def read_toml(path: Path) -> Table:
         raise ProfileError(f"{name}: is nested too deeply.") from None
     if not values:
         raise ProfileError(f"{name}: is empty: it has no entries.")
-    return Table(values, name)
+    return Table(values, name, text=text)

@@ -1,0 +1,58 @@
+"""The line of a key is found, however a TOML file is written."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.toml_lines import KeyPath, line_of
+
+TEXT = '''# a comment
+name = "x"
+long = """
+seats = 3
+[inner]
+"""
+list = [
+    1,
+    2,
+]
+dotted.key = 1
+
+[table]
+here = { a = 1, b = 2 }
+
+[[seats]]
+x = 1
+
+[[seats]]  # the second
+x = 2
+[[seats.legs]]
+y = 1
+[[seats.legs]]
+y = 2
+'''
+
+
+@pytest.mark.parametrize(
+    ("path", "line"),
+    [
+        (("name",), 2),
+        (("long",), 3),
+        (("list",), 7),
+        (("dotted", "key"), 11),
+        (("table",), 13),
+        (("table", "here", "b"), 14),
+        (("table", "missing"), 13),
+        (("seats", 0, "x"), 17),
+        (("seats", 1), 19),
+        (("seats", 1, "x"), 20),
+        (("seats", 1, "legs", 1, "y"), 24),
+        (("missing",), None),
+    ],
+)
+def test_a_key_or_the_table_it_is_missing_in_has_a_line(path: KeyPath, line: int | None) -> None:
+    assert line_of(TEXT, path) == line
+
+
+def test_a_file_is_searched_no_longer_than_a_moment() -> None:
+    assert line_of("a = [\n" + "1,\n" * 300_000 + "]\nb = 1\n", ("b",)) is None
