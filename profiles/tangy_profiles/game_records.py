@@ -23,6 +23,8 @@ class GameBeginning(EventRecord):
     """A game begins, by the policy of that digest. The first logs do not name the `world`.
 
     `file` is the path of an activity that does not come with Tangy or with a package.
+    `room` is the name or the file of a room that was chosen; "": the number of people decided.
+
     `asks_in_visit` and `asks_in_game` say how often a person may be asked in vain; 0: not logged.
     """
 
@@ -33,6 +35,7 @@ class GameBeginning(EventRecord):
     seed: int = 0
     people: tuple[str, ...]
     world: Sparse[GameWorld | None] = None
+    room: Sparse[str] = ""
     asks_in_visit: Sparse[Count] = 0
     asks_in_game: Sparse[Count] = 0
     file: Sparse[str] = ""

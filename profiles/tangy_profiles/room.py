@@ -6,7 +6,7 @@ x runs along the front wall from the left, y from the front wall towards the sea
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from math import hypot
@@ -14,12 +14,15 @@ from pathlib import Path
 
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
-from tangy_profiles.reading import Table, nearest, read_toml
+from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import FRONT
 
-AT_ONE_TABLE = 8
-"""People who sit at the one table of a common room; more need a hall."""
+ELBOW_ROOM = 0.9
+"""The width at a table that a person needs, in m: closer cards get into one picture."""
+
+USUAL, HALL = "common-room", "hall"
+"""The rooms that are taken when nobody names one."""
 
 SEAT = "seat"
 """What a seat is called in a room whose file has no word for it."""
@@ -61,6 +64,19 @@ class Room:
     seat_names: tuple[str, ...] = ()
     tables: tuple[tuple[float, float, float, float], ...] = ()
     """Each of several tables in a row; `table` is what they take together."""
+    file: Path = Path()
+
+    @property
+    def source(self) -> str:
+        """What `load_room` loads it by: the name of a shipped room, the path of any other."""
+        return self.file.stem if self.file.parent == _SHIPPED_ROOMS else str(self.file)
+
+    @property
+    def places(self) -> int:
+        """How many people can sit here."""
+        left, _, right, _ = self.table
+        at_one = 0 if self.tables else int((right - left) / ELBOW_ROOM + 1e-9)
+        return max(len(self.seats), at_one)
 
     def seated(self, count: int) -> tuple[Point, ...]:
         """Return a seat for each of `count` people: the room's own, or as many spread evenly.
@@ -123,20 +139,33 @@ class Room:
         if place == FRONT:
             return self.front
         seat = self.seated(len(people))[list(people).index(place)]
-        return Point(seat.x, self.table[1] - self.reach)
+        near = next((t[1] for t in self.tables if t[0] <= seat.x <= t[2]), self.table[1])
+        return Point(seat.x, near - self.reach)
 
 
-def load_room(name: str = "common-room") -> Room:
+_SHIPPED_ROOMS = (SHIPPED / "rooms").resolve()
+
+
+def shipped_rooms() -> dict[str, Path]:
+    """Return the files of the rooms that come with Tangy, by name."""
+    return {path.stem: path for path in sorted(_SHIPPED_ROOMS.glob("*.toml"))}
+
+
+def load_room(name: str = USUAL, own: Mapping[str, Path] | None = None) -> Room:
     """Load a room by name, or by the path of its TOML file.
 
+    Args:
+        name: the name or path.
+        own: the files of other rooms that have a name.
+
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
+        ProfileError: one line that says file, line, key, value and the nearest valid word.
     """
-    folder = SHIPPED / "rooms"
-    shipped = {path.stem: path for path in folder.glob("*.toml")}
-    if name not in shipped and not name.endswith(".toml"):
-        raise ProfileError(f"There is no room {name!r}: {nearest(name, shipped)}")
-    top = read_toml(shipped.get(name) or Path(name))
+    known = {**(own or {}), **shipped_rooms()}
+    if name not in known and not name.endswith(".toml"):
+        raise ProfileError(plain(f"There is no room {name!r}: {nearest(name, known)}"))
+    file = known.get(name) or Path(name)
+    top = read_toml(file)
     width = top.number("width", 2, 100)
     depth = top.number("depth", 2, 100)
     front_x, front_y = top.numbers("front", 2, 0, max(width, depth))
@@ -148,14 +177,20 @@ def load_room(name: str = "common-room") -> Room:
         max(table[3] for table in tables),
     )
     reach = top.number("reach", 0.2, 3)
-    seats, names = [], []
+    whole = (left, near, right, far)
+    seats, names = list[Point](), list[str]()
     for entry in top.tables("seats"):
-        seats.append(Point(entry.number("x", 0, width), entry.number("y", 0, depth)))
+        seat = Point(entry.number("x", 0, width), entry.number("y", 0, depth))
+        if seats and seat.x <= seats[-1].x:
+            raise entry.wrong("x", "seats must go from the left to the right.")
+        at = next((one for one in tables if one[0] <= seat.x <= one[2]), None)
+        if at is None and len(tables) > 1:
+            raise entry.wrong("x", "must be at one of the tables.")
+        if seat.y <= (at or whole)[3]:
+            raise entry.wrong("y", "must be behind the table, as Tangy sees it.")
+        seats.append(seat)
         names.append(_words(entry, "name"))
         entry.close()
-    alone = [s for s in seats if not any(t[0] <= s.x <= t[2] for t in tables)]
-    if len(tables) > 1 and alone:
-        raise top.wrong("seats", "must each be at one of the tables.")
     if not seats:
         raise top.wrong("seats", "must hold at least one seat.")
     if len(set(filter(None, names))) < len(list(filter(None, names))):
@@ -170,12 +205,13 @@ def load_room(name: str = "common-room") -> Room:
         width,
         depth,
         Point(front_x, front_y),
-        (left, near, right, far),
+        whole,
         reach,
         tuple(seats),
         _words(top, "seat_word"),
         tuple(names),
         tables if len(tables) > 1 else (),
+        file.resolve(),
     )
     top.close()
     return room
@@ -199,7 +235,7 @@ def _tables(top: Table, most: float) -> tuple[tuple[float, float, float, float],
 def room_for(people: int) -> Room:
     """Return the first of the rooms that come with Tangy in which so many people fit."""
     room = load_room()
-    return room if people <= AT_ONE_TABLE else load_room("hall")
+    return room if people <= room.places else load_room(HALL)
 
 
 def _words(table: Table, key: str) -> str:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from tangy_profiles.activity import Activity, known_activities, load_activity
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
-from tangy_profiles.errors import ProfileError, TangyError
-from tangy_profiles.reading import plain, read_toml
+from tangy_profiles.errors import ProfileError
+from tangy_tui.app.choice_file import keep_choice, read_choice
 
 FILE = "activity.toml"
 
@@ -19,13 +18,7 @@ def chosen_activity(folder: Path) -> str:
     Raises:
         ProfileError: the file has a mistake.
     """
-    path = folder / FILE
-    if not path.exists():
-        return DEFAULT_ACTIVITY
-    table = read_toml(path)
-    name = table.text("activity")
-    table.close()
-    return name
+    return read_choice(folder / FILE, "activity") or DEFAULT_ACTIVITY
 
 
 def choose_activity(folder: Path, activity: str) -> str:
@@ -43,13 +36,7 @@ def choose_activity(folder: Path, activity: str) -> str:
     """
     load_activity(activity)
     kept = str(Path(activity).resolve()) if activity.endswith(".toml") else activity
-    new = folder / f"{FILE}.new"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        new.write_text(f"activity = {json.dumps(kept, ensure_ascii=False)}\n", encoding="utf-8")
-        new.replace(folder / FILE)
-    except OSError as error:
-        raise TangyError(plain(f"{folder / FILE}: cannot be written: {error.strerror}.")) from None
+    keep_choice(folder / FILE, "activity", kept)
     return kept
 
 

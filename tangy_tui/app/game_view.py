@@ -34,6 +34,8 @@ class GameView:
     cause: str
     scene: Scene
     pose: Sparse[tuple[float, float] | None] = None
+    room: Sparse[str] = ""
+    """As in `GameBeginning`."""
 
 
 def view_of(control: GameController) -> GameView | None:
@@ -58,5 +60,6 @@ def view_of(control: GameController) -> GameView | None:
             cause=cause,
             scene=world.scene(),
             pose=None if pose is None else (round(pose.x, 2), round(pose.y, 2)),
+            room=supervision.game.room,
         )
     return None

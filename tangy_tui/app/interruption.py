@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.game_records import GameEnding
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.past_game import PastGame, interrupted_game
+from tangy_tui.app.rooms import find_room
 
 if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
@@ -19,7 +20,14 @@ def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
 
 
 def take_up(workspace: Workspace, past: PastGame) -> None:
-    """Let people sit as they sat in a game that is to go on; the same people take part."""
+    """Let people sit as they sat in a game that is to go on, in the same room.
+
+    Raises:
+        TangyError: its room cannot be had.
+    """
+    if not workspace.room_is_given:
+        room = past.beginning.room
+        workspace.choose_room(find_room(workspace.store.folder, room) if room else None)
     workspace.seat(past.beginning.people)
 
 

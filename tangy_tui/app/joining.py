@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tangy_tui.app.register import add_person
+from tangy_tui.app.rooms import check_places
 
 if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
@@ -19,6 +20,8 @@ def let_join(workspace: Workspace, name: str, *, guest: bool = False) -> str:
         TangyError: there is no room for more, or the name cannot be given.
     """
     order = [person.id for person in workspace.people]
+    if workspace.room is workspace.chosen_room:
+        check_places(workspace.room, len(order) + 1)
     try:
         with workspace.store.transaction():
             id = add_person(workspace.store, guest=guest)

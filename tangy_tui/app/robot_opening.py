@@ -121,7 +121,7 @@ def open_bench(
         stepped=stepped,
         activity=workspace.profile,
         robot=str(workspace.robot.file),
-        room=workspace.room.name,
+        room=str(workspace.room.file),
         log=folder / BENCH_LOG,
         cancellation=cancellation,
     )
@@ -131,7 +131,7 @@ def open_bench(
             robot=str(workspace.robot.file),
             activity=workspace.profile,
             people=tuple(workspace.names),
-            room=workspace.room.name,
+            room=str(workspace.room.file),
             drivers={
                 **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE if name in has},
                 "laser": {"kind": "scip", "at": bench.wires.scip},
@@ -205,7 +205,7 @@ def open_robot(
         robot=str(workspace.robot.file),
         activity=workspace.profile,
         people=tuple(workspace.names),
-        room=workspace.room.name,
+        room=str(workspace.room.file),
         courtesies=courtesies or {},
         cameras=dict(named.split("=", 1) for named in cameras),
         requests=requests,

@@ -19,6 +19,7 @@ from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.app.chosen_activity import choosable
 from tangy_tui.app.joining import let_join
+from tangy_tui.app.rooms import KnownRoom, choose_room, find_room, known_rooms
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
@@ -160,6 +161,22 @@ class SetUp:
         self.patterns, self.strength = [], ""
         self.seats = seats_as_before(workspace)
         self.away &= set(self.seats)
+
+    def rooms(self) -> list[KnownRoom]:
+        """Return the rooms that can be chosen, the present one first."""
+        return list(known_rooms(self.workspace.store.folder, self.workspace.room))
+
+    def choose_room(self, wanted: str) -> None:
+        """Play in another room from now on, as long as the robot is off.
+
+        Raises:
+            TangyError: there is no such room, its file has a mistake, or not everybody fits in.
+        """
+        if self.world is None:
+            room = find_room(self.workspace.store.folder, wanted)
+            self.workspace.choose_room(room)
+            self.workspace.seat(self.seats)
+            choose_room(self.workspace.store.folder, room)
 
     def choose_strength(self, name: str) -> None:
         """Choose how strongly people may be spoken to, by name.

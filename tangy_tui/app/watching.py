@@ -8,14 +8,16 @@ import select
 import socket
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tangy_profiles.activity import Activity, known_activities, load_activity
 from tangy_profiles.codec import Unreadable, read
-from tangy_profiles.errors import TangyError
+from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.person import MOST_PEOPLE, load_people
+from tangy_profiles.room import Room, load_room, room_for
 from tangy_profiles.store import Store
 from tangy_tui.app.game_view import GameView
 from tangy_tui.app.session_door import FILE, LONGEST_NAME, reachable
@@ -27,6 +29,14 @@ WATCH_SECONDS = 0.2
 LARGEST_VIEW = 1_000_000  # bytes
 CHUNK = 65_536
 PATIENCE_SECONDS = 1.0  # for the door to answer
+
+
+def room_of(view: GameView) -> Room:
+    """Return the room of a game; if its file is not here, the one that so many people fit into."""
+    with suppress(ProfileError):
+        if view.room:
+            return load_room(view.room)
+    return room_for(len(view.scene.doing))
 
 
 class NobodyThere(TangyError):

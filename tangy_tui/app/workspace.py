@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import replace
 from datetime import datetime
 from functools import cached_property
 from pathlib import Path
@@ -15,15 +14,14 @@ from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.defaults import REGISTERED, USUAL_ROBOT
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
-from tangy_profiles.person import Person, folded, load_people, unaccented
+from tangy_profiles.person import Person, load_people
 from tangy_profiles.process_log import logging_to
-from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
-from tangy_profiles.room import room_for
-from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
 from tangy_tui.app.chosen_activity import choose_activity, chosen_activity
-from tangy_tui.app.register import known_people, participants, past_guests
+from tangy_tui.app.participants import Participants
+from tangy_tui.app.register import past_guests
+from tangy_tui.app.rooms import check_places, chosen_room, find_room
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 from tangy_tui.app.session_door import SessionDoor
@@ -34,9 +32,7 @@ if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.health import Health
-    from tangy_profiles.voice import VoicePreference
     from tangy_tui.interaction.facilitation import Facilitation
-    from tangy_tui.interaction.forgetting import Forgotten
     from tangy_tui.interaction.memory import PersonModels
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.interaction.record import Record
@@ -56,7 +52,7 @@ def data_folder(chosen: Path | None) -> Path:
     return chosen or user_data_path("tangy", appauthor=False)
 
 
-class Workspace:
+class Workspace(Participants):
     """One activity with its robot, room and people, and the data folder they are kept in."""
 
     def __init__(
@@ -67,26 +63,46 @@ class Workspace:
         users: int = REGISTERED,
         write: bool = True,
         robot: str = USUAL_ROBOT,
+        room: str = "",
         now: Callable[[], datetime] | None = None,
     ) -> None:
-        """Read the profiles and open the store, whose clock is `now` (default: the machine's).
+        """Read the profiles and open the store.
+
+        Args:
+            folder: the data folder.
+            activity: its name or file; "" for the chosen one.
+            users: how many people take part.
+            write: whether something is to be written to the store.
+            robot: the name or file of its profile.
+            room: its name or file; "" for the chosen one.
+            now: the clock of the store; None for the machine's.
 
         Raises:
             ProfileError: a profile or the settings have a mistake, or there is no such activity.
             StoreError: the data folder cannot be used, or another Tangy writes to it.
+            TangyError: not everybody fits into the room.
         """
         self.settings = read_settings(folder)
         self._users = users
         self.robot: Robot = load_robot(robot)
         self._take_up(activity or chosen_activity(folder))
         load_people(1 if users == REGISTERED else users)  # before a store is opened for them
+        self.chosen_room = find_room(folder, room) if room else chosen_room(folder)
+        self.room_is_given = bool(room)
+        """Whether the room of this run was named, whatever a game was played in before."""
         self.store = Store.open(folder, write=write, now=now)
         self.door = SessionDoor(folder)
         self._logging = ExitStack()
         if write:
             self._logging.enter_context(logging_to(folder))
-        self.people: tuple[Person, ...] = ()
+        self.people = ()
         self.register(users)
+        if room and self.chosen_room is not None:
+            try:
+                check_places(self.chosen_room, len(self.people))
+            except TangyError:
+                self.close()
+                raise
         for guest in past_guests(self.store) if write else ():
             self.forget(guest)  # a guest is there for a day
 
@@ -110,126 +126,6 @@ class Workspace:
         self.door.close()
         self._logging.close()
         self.store.close()
-
-    def read_people(self) -> None:
-        """Reload the people: names, pronunciations, voices, seats."""
-        self.people = self.room.placed(known_people(self.store, self._sample))
-
-    def register(self, users: int = REGISTERED) -> None:
-        """Let the first `count` registered people take part, or all of them."""
-        teams = tuple(Person(team, team) for team in self.activity.teams)
-        self._sample = teams or participants(self.store, users)
-        self.room = room_for(len(self._sample))
-        self.read_people()
-
-    def seat(self, order: Sequence[str]) -> None:
-        """Let people sit in another order of their ids."""
-        self._sample = tuple(sorted(self._sample, key=lambda person: order.index(person.id)))
-        self.read_people()
-
-    def name(self, person: str) -> str:
-        """Return a person's name."""
-        return next((p.name for p in self.people if p.id == person), person)
-
-    def find_person(self, wanted: str) -> Person:
-        """Return the person of an id or a name.
-
-        Raises:
-            TangyError: nobody, or more than one, is called that.
-        """
-        by_id = [p for p in self.people if p.id == wanted]
-        found = by_id or [p for p in self.people if folded(p.name) == folded(wanted)]
-        found = found or [p for p in self.people if unaccented(p.name) == unaccented(wanted)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
-        there = ", ".join(f"{p.id} is {p.name}" for p in self.people)  # never guess at a person
-        raise TangyError(plain(f"There is nobody called {wanted!r}: {there}."))
-
-    def rename(self, person: Person, name: str) -> None:
-        """Give a person another name, one that nobody else answers to.
-
-        Lines that were spoken with the old one are forgotten.
-
-        Raises:
-            TangyError: the name is somebody else's name or id, or a place, or means something
-                else where it is said.
-        """
-        wanted = folded(name)
-        taken = {FRONT: "is a place"}
-        for other in self.people:
-            if other.id != person.id:
-                taken |= dict.fromkeys(
-                    (folded(other.id), folded(other.name)), f"is what {other.id} is called"
-                )
-        if wanted in taken:
-            raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))
-        from tangy_tui.speech.name_conflicts import check_new_name
-
-        check_new_name(self.activity, self.people, replace(person, name=name.strip()))
-        old = self.name(person.id)
-        self.store.rename(person.id, name)
-        self.read_people()
-        if self.name(person.id) != old:
-            from tangy_hw.audio.synthesis import clear_cache
-
-            clear_cache()
-
-    def pronounce(self, person: Person, phones: str | None) -> None:
-        """Note how a person's name is pronounced (ARPAbet, a comma between words); None: no more.
-
-        Raises:
-            TangyError: a phone is none, there are not as many words as in the name, or it sounds
-                like somebody else's, or like a phrase.
-        """
-        self.store.pronounce(person.id, phones and self.check_said(person, phones))
-        self.read_people()
-
-    def check_said(self, person: Person, phones: str) -> str:
-        """Return the phones of a person's name as they are written down.
-
-        Raises:
-            TangyError: as for `pronounce`.
-        """
-        from tangy_tui.language.pronunciation import check_name
-        from tangy_tui.speech.name_conflicts import check_said
-
-        checked = check_name(phones, person.name)
-        check_said(self.activity, self.people, person, checked)
-        return checked
-
-    def prefer_voice(self, person: Person, preference: VoicePreference) -> None:
-        """Note how a person likes to be spoken to."""
-        self.store.prefer_voice(person.id, preference)
-        self.read_people()
-
-    def forget(self, person: Person, also: Sequence[str] = ()) -> Forgotten:
-        """Forget a person: name, pronunciation, voice, face, and consent.
-
-        The name goes from words that were typed or said as well, in the log and in the files of
-        the data folder. What they did stays in the log, under an id that says nobody's name.
-
-        Args:
-            person: who.
-            also: other names that they were called by, which are to go, too.
-
-        Raises:
-            TangyError: some of it cannot be deleted.
-        """
-        from tangy_tui.interaction.forgetting import forget_person
-
-        forgotten = forget_person(self.store, self.activity, self.people, person, also)
-        self.read_people()
-        from tangy_hw.audio.synthesis import clear_cache
-
-        clear_cache()
-        return forgotten
-
-    @property
-    def names(self) -> dict[str, str]:
-        """The participants' names, by id."""
-        return {person.id: person.name for person in self.people}
 
     @cached_property
     def intents(self) -> Intents:
@@ -364,6 +260,7 @@ class Workspace:
             names=self.names,
             people=self.people,
             seed=seed,
+            room=self.room_source,
             answers=OnlineLearning(self.store, self.activity) if asks else None,
             learnt=self.intents.model,
         )

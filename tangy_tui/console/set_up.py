@@ -26,7 +26,9 @@ _WORDS = re.compile(r"words (.+)", re.I)
 _JOINS = re.compile(r"(guest|add) (.+)", re.I)
 _NAME = re.compile(r"rename (.+?) to (.+)", re.I)
 _ACTIVITY = re.compile(r"activity (.+)", re.I)
+_ROOM = re.compile(r"room (.+)", re.I)
 _ACTIVITIES = ("activity", "activities")
+_ROOMS = ("room", "rooms")
 
 
 class SetUpLines:
@@ -50,6 +52,9 @@ class SetUpLines:
                 return True
             if words.casefold() in _ACTIVITIES:
                 self._write(text.activities_line(self.setup.activities().values()))
+                continue
+            if words.casefold() in _ROOMS:
+                self._write(text.rooms_line(self._rooms()))
                 continue
             try:
                 done = self._own(words) or self._take(self._command(words))
@@ -97,6 +102,8 @@ class SetUpLines:
             setup.rename(self._find(name[1]), name[2])
         elif wanted := _ACTIVITY.fullmatch(words):
             self._play(wanted[1])
+        elif room := _ROOM.fullmatch(words):
+            setup.choose_room(self._rooms().get(room[1].casefold(), room[1]))
         else:
             return False
         return True
@@ -105,6 +112,10 @@ class SetUpLines:
         if self.setup.teams_play:
             raise TangyError(text.TEAMS_PLAY)
         self.setup.add(name, guest=guest)
+
+    def _rooms(self) -> dict[str, str]:
+        """Return what loads each room, by its title in small letters."""
+        return {one.room.title.casefold(): one.source for one in self.setup.rooms() if one.room}
 
     def _play(self, wanted: str) -> None:
         """Play another activity, called by its word or its title."""

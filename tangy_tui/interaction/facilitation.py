@@ -70,6 +70,7 @@ class Facilitation:
         names: Mapping[str, str],
         people: Sequence[Person] = (),
         seed: int,
+        room: str = "",
         answers: OnlineLearning | None = None,
         learnt: Learnt | None = None,
     ) -> None:
@@ -83,6 +84,7 @@ class Facilitation:
             names: what people are called, by id.
             people: what else is known of those who have the names: how they and seats are called.
             seed: of the random generators.
+            room: what loads the room, "" where the number of people decides which it is.
             answers: where a teacher is present, what learns from the answers; without it, a
                 situation that Tangy is not sure about ends the game.
             learnt: see `Phrasebook`.
@@ -90,6 +92,7 @@ class Facilitation:
         self.world = world
         self.policy = policy
         self.persuasion = persuasion
+        self.room = room
         self.games = 0
         self.steps = 0
         self.over = True
@@ -135,6 +138,7 @@ class Facilitation:
                 seed=self._seed,
                 people=tuple(self.world.people),
                 world=self.world.played_in,
+                room=self.room,
                 asks_in_visit=self._activity.asking.visit,
                 asks_in_game=self._activity.asking.game,
                 **self.changes.logged,

@@ -8,6 +8,7 @@ from typing import assert_never
 from tangy_tui.app.set_up import Check, CheckName, SetUp
 from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.register import staff_names
+from tangy_tui.text.rooms import room_words
 
 TITLE = "Set up"
 PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
@@ -22,7 +23,7 @@ SEATED = "Tangy is on: people and seats stay. Leave with esc to change them."
 PATTERNS_HOW = "Press the numbers of the patterns, in the order you want."
 SEATS = "The room"
 TEAMS_PLAY = "Teams play this activity: people are not added one by one."
-ACTIVITY = "Activity"
+ACTIVITY, ROOM = "Activity", "Room"
 ADD, ADD_GUEST, RENAME = "Who has come?", "Is {} here for good?", "What is {} called?"
 FOR_GOOD, TODAY = "takes part from now on", "is a guest today"
 FOR_GOOD_NOTE, TODAY_NOTE = "Tangy remembers the person", "Tangy forgets the person tomorrow"
@@ -205,8 +206,8 @@ def _to_do(check: Check) -> str:
 
 LINES_HELP = (
     "Type: left Rosa, here Rosa, seat Rosa 3, guest Anna, add Anna, rename Rosa to Rosie, "
-    "activity trivia, play for line, full card, several winners, pace 20, visits on, words gentle, "
-    "time 40. Then: begin. Or: end."
+    "activity trivia, room hall, play for line, full card, several winners, pace 20, visits on, "
+    "words gentle, time 40. Then: begin. Or: end."
 )
 LINES_ANYWAY = "Not everything is ready. Type begin to begin anyway, or end."
 
@@ -222,6 +223,11 @@ def activities_line(titles: Iterable[str]) -> str:
     return f"You can play: {', '.join(titles)}. Type: activity, and one of them."
 
 
+def rooms_line(names: Iterable[str]) -> str:
+    """List the rooms that can be chosen."""
+    return f"There are these rooms: {', '.join(names)}. Type: room, and one of them."
+
+
 def lines_of(setup: SetUp) -> list[str]:
     """Describe the set-up line by line."""
     name = staff_names(setup.workspace.name)
@@ -232,7 +238,8 @@ def lines_of(setup: SetUp) -> list[str]:
     return [
         f"{PEOPLE}: {people_words(setup)}.",
         *people,
-        f"{ACTIVITY}: {setup.workspace.activity.title}.",
+        f"{ACTIVITY}: {setup.workspace.activity.title}. "
+        f"{ROOM}: {room_words(setup.workspace.room, setup.workspace.chosen_room)}.",
         *_game_lines(setup),
         *missing_words(setup.workspace.robot, setup.workspace.activity),
     ]

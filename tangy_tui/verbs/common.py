@@ -27,6 +27,12 @@ Users = Annotated[
         show_default=False,
     ),
 ]
+RoomName = Annotated[
+    str,
+    typer.Option(
+        "--room", metavar="NAME|FILE", help="The room: a name, or its TOML; usually the chosen one."
+    ),
+]
 Ascii = Annotated[bool, typer.Option("--ascii", help="Draw with plain ASCII characters only.")]
 Games = Annotated[int, typer.Option(min=1, help="How many games.")]
 

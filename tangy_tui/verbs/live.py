@@ -31,6 +31,7 @@ from tangy_tui.verbs.playing import (
     list_injections,
     play_with_staff,
     recall,
+    tell_small_room,
     who_answers,
 )
 from tangy_tui.verbs.resuming import Discard, Resume, past_game
@@ -62,6 +63,7 @@ def live(
     ] = False,
     plain_lines: Plain = False,
     activity: common.ActivityName = "",
+    room: common.RoomName = "",
     policy: PolicyName = "",
     inject: Annotated[
         list[str] | None,
@@ -159,9 +161,13 @@ def live(
         raise TangyError("--mic: Tangy listens in a live game on the screen; there is none here.")
     from tangy_tui.app.machine_load import machine_load
 
-    with machine_load(load), open_workspace(data, activity, users, robot=robot) as workspace:
+    with (
+        machine_load(load),
+        open_workspace(data, activity, users, robot=robot, room=room) as workspace,
+    ):
         need_policy(workspace.store, workspace.activity, policy)
         world = BENCH if bench else LIVE
+        tell_small_room(workspace)
         past = past_game(workspace, world, resume=resume, discard=discard, asks=screen)
         learnt = recall(workspace, policy, quiet=as_json)
         number = workspace.game_seed(seed) if past is None else past.beginning.seed

@@ -34,7 +34,7 @@ def draw_map(
         str | None, typer.Option(metavar="NAME|FILE", help="A room's profile, instead of a log.")
     ] = None,
     people: Annotated[
-        int | None, typer.Option(min=0, max=8, help="With --room: how many people sit there.")
+        int | None, typer.Option(min=0, max=24, help="With --room: how many people sit there.")
     ] = None,
     yaml: Annotated[
         Path | None,

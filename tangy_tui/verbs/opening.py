@@ -23,17 +23,23 @@ MOST_TOLD = 5
 
 @contextmanager
 def open_workspace(
-    data: Path | None, activity: str, users: int, *, write: bool = True, robot: str = USUAL_ROBOT
+    data: Path | None,
+    activity: str,
+    users: int,
+    *,
+    write: bool = True,
+    robot: str = USUAL_ROBOT,
+    room: str = "",
 ) -> Iterator[Workspace]:
     """Open the workspace on a data folder, say what its store has noticed, and close it afterwards.
 
     Raises:
-        TangyError: where the folder, the activity or the robot cannot be read.
+        TangyError: where the folder, the activity, the robot or the room cannot be read.
     """
     from tangy_tui.app.workspace import Workspace, data_folder
 
     workspace = Workspace(
-        data_folder(data), activity=activity, users=users, write=write, robot=robot
+        data_folder(data), activity=activity, users=users, write=write, robot=robot, room=room
     )
     try:
         say_notices(workspace.store.notices)

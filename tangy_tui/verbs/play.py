@@ -33,6 +33,7 @@ from tangy_tui.verbs.playing import (
     play_by_turns,
     play_with_staff,
     recall,
+    tell_small_room,
     who_answers,
 )
 from tangy_tui.verbs.resuming import Discard, Resume, past_game
@@ -54,6 +55,7 @@ def play(
     headless: Annotated[bool, typer.Option("--headless", help="Run without a screen.")] = False,
     plain_lines: Plain = False,
     activity: common.ActivityName = "",
+    room: common.RoomName = "",
     policy: PolicyName = "",
     teacher: Teacher = None,
     inject: Annotated[
@@ -111,8 +113,9 @@ def play(
         raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
     if camera and not screen:
         raise TangyError("--camera: cameras are watched on the screen; see tangy sensors --plain.")
-    with open_workspace(data, activity, users, robot=robot) as workspace:
+    with open_workspace(data, activity, users, robot=robot, room=room) as workspace:
         need_policy(workspace.store, workspace.activity, policy)
+        tell_small_room(workspace)
         past = past_game(workspace, SIMULATED, resume=resume, discard=discard, asks=screen)
         if past is not None:
             seed = past.beginning.seed

@@ -47,6 +47,14 @@ SCRIPTED = "scripted"
 """Who answers, or clears, by what the activity expects."""
 
 
+def tell_small_room(workspace: Workspace) -> None:
+    """Say on standard error if the chosen room is too small, and which one is taken."""
+    from tangy_tui.text.rooms import fallback_words
+
+    if (chosen := workspace.chosen_room) is not None and workspace.room is not chosen:
+        say_notices([fallback_words(workspace.room, chosen)])
+
+
 def who_answers(teacher: str | None, expert: str, data: Path | None) -> str:
     """Return who answers where Tangy asks.
 

@@ -93,7 +93,7 @@ async def test_the_line_of_the_cursor_is_marked_and_says_which_keys_change_it(
     run: Run, setting: Setting
 ) -> None:
     async with run(app=setting.program()) as pilot:
-        await pilot.press(*["down"] * (len(setting.setup.seats) + 1))
+        await pilot.press(*["down"] * (len(setting.setup.seats) + 2))
         await until_shown(
             pilot, lambda: "▸ Played for             a line, as usual" in pilot.text()
         )

@@ -9,7 +9,6 @@ from functools import partial
 from time import monotonic
 from typing import ClassVar
 
-from rich.cells import cell_len
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
@@ -20,9 +19,9 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import CHECKS, SetUp
 from tangy_tui.text import set_up as text
-from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.program import NOT_POSSIBLE, NOTHING_MOVES
 from tangy_tui.text.register import staff_names
+from tangy_tui.text.rooms import OTHER_ROOM
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
@@ -33,10 +32,11 @@ from tangy_tui.ui.joining import ask_new_name, ask_who_joins
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import WIDE, key_line, panel
+from tangy_tui.ui.room_choice import ask_room
+from tangy_tui.ui.screens.set_up_lines import check_lines, game_lines, people_lines
 from tangy_tui.ui.widgets.room_view import RoomView
-from tangy_tui.ui.widgets.set_up_list import SetUpLine, SetUpList
+from tangy_tui.ui.widgets.set_up_list import SetUpList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
-from tangy_tui.ui.widgets.wrapping import wrap
 
 LOOK_SECONDS = 0.5
 """Between two looks at what is ready."""
@@ -160,57 +160,10 @@ class SetUpScreen(TangyScreen[bool]):
             )
         )
         lines = self.query_one(SetUpList)
-        lines.show([*self._people(), *self._game(), *self._checks()])
+        width = lines.content_size.width
+        lines.show([*people_lines(setup), *game_lines(setup, width), *check_lines(setup)])
         lines.border_subtitle = text.summary_words(setup.checks())
         self._draw_seats()
-
-    def _people(self) -> list[SetUpLine]:
-        setup, name = self.setup, staff_names(self.setup.workspace.name)
-        lines = [SetUpLine("head", "people", text.PEOPLE, text.people_words(setup))]
-        several, seat = len(setup.tables) > 1, 0
-        for table, sitting in enumerate(setup.tables):
-            for place, person in enumerate(sitting):
-                seat += 1
-                away = person in setup.away
-                value = (text.AWAY_SHORT if several else text.AWAY) if away else text.HERE
-                label = f"{seat:>2} {name(person)}" if several else f"{seat:>2}  {name(person)}"
-                at, ink = (table, place) if several else None, "dim" if away else "good"
-                lines.append(SetUpLine("person", person, label, value, ink, at))
-        return lines
-
-    def _game(self) -> list[SetUpLine]:
-        setup = self.setup
-        rows = [
-            ("activity", text.ACTIVITY, setup.workspace.activity.title),
-            ("patterns", "Played for", text.patterns_words(setup)),
-            ("several", "Winners", text.winners_words(setup)),
-            ("pace", "Pace", text.pace_words(setup.pace)),
-            ("visits", "Visits", text.visits_words(setup)),
-            ("strength", "Tangy's words", text.strength_words(setup)),
-            ("minutes", "Time", text.minutes_words(setup.minutes)),
-        ]
-        rules = setup.workspace.activity.rules
-        if not setup.calls:
-            rows = [row for row in rows if row[0] != "pace"]
-        if not rules.patterns:
-            rows = [row for row in rows if row[0] not in ("patterns", "several", "visits")]
-        width = self.query_one(SetUpList).content_size.width - cell_len(text.GAME) - 3
-        first, *more = wrap(text.pattern_keys(setup), max(20, width)) or [""]
-        heads = [SetUpLine("head", "game", text.GAME, first)]
-        heads += [SetUpLine("head", f"game{at}", " " * cell_len(text.GAME), one)
-                  for at, one in enumerate(more)]  # fmt: skip
-        return [*heads, *(SetUpLine("choice", id, label, value) for id, label, value in rows)]
-
-    def _checks(self) -> list[SetUpLine]:
-        lines = [SetUpLine("head", "checks", text.READY, "")]
-        inks = {"ready": "good", "not ready": "warn", "off": "dim", "not told": "dim"}
-        for check in self.setup.checks():
-            ink = inks.get(check.state, "text")
-            label, value = text.NAMES[check.name], text.check_words(check)
-            lines.append(SetUpLine("check", check.name, label, value, ink))
-        workspace = self.setup.workspace
-        told = missing_words(workspace.robot, workspace.activity)
-        return [*lines, *(SetUpLine("head", "missing", "", one) for one in told)]
 
     # -------------------------------------------------------------------------------- the keys
 
@@ -270,6 +223,10 @@ class SetUpScreen(TangyScreen[bool]):
                 self._say(text.OTHER_ACTIVITY)
             case "activity" if self._choose is not None and not self._busy:
                 self.run_worker(self._ask(self._choose), name="activity", group="check")
+            case "room" if setup.world is not None:
+                self._say(OTHER_ROOM)
+            case "room" if not self._busy:
+                self.run_worker(self._ask(self._choose_room), name="room", group="check")
             case "patterns":
                 self._say(text.PATTERNS_HOW)
 
@@ -295,6 +252,10 @@ class SetUpScreen(TangyScreen[bool]):
         line = self.query_one(SetUpList).chosen
         if line is not None and line.kind == "person" and not self._busy:
             self.run_worker(self._ask(partial(self._rename, line.id)), name="name", group="check")
+
+    async def _choose_room(self) -> None:
+        if room := await ask_room(self.app, self.setup.rooms()):
+            self.setup.choose_room(room)
 
     async def _join(self) -> None:
         if who := await ask_who_joins(self.app):

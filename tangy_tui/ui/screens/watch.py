@@ -13,10 +13,10 @@ from textual.widgets import Static
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import CallMade, GameChange
 from tangy_profiles.person import Person
-from tangy_profiles.room import Point, room_for
+from tangy_profiles.room import Point
 from tangy_profiles.store import Store
 from tangy_tui.app.game_view import GameView
-from tangy_tui.app.watching import WATCH_SECONDS, Guest, NobodyThere, WatchedLog
+from tangy_tui.app.watching import WATCH_SECONDS, Guest, NobodyThere, WatchedLog, room_of
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted, Unclear
 from tangy_tui.text import watching as text
@@ -162,7 +162,7 @@ class WatchScreen(TangyScreen[None]):
         left = self.query_one("#left", Vertical)
         left.remove_children(".panel")
         self._activity = self._log.activity(view.activity)
-        room = room_for(len(people))
+        room = room_of(view)
         seated = room.placed([Person(one, self._called(one)) for one in people])
         label = str if self._activity is None else self._activity.deck.label
         left.mount(panel(RoomView(room, seated, label=label)), before="#called")

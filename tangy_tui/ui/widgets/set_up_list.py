@@ -20,7 +20,7 @@ STATE = 6
 
 TURNS = "  ← →"
 """Says at the cursor that left and right change a choice."""
-KEYED = ("activity", "patterns")
+KEYED = ("activity", "room", "patterns")
 """Choices that left and right do not change."""
 
 LineKind = Literal["head", "person", "choice", "check"]

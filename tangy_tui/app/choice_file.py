@@ -1,0 +1,38 @@
+"""A choice that is kept in the data folder, as a TOML file of one key."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain, read_toml
+
+
+def read_choice(path: Path, key: str) -> str:
+    """Return the choice that a file keeps, "" if there is no such file.
+
+    Raises:
+        ProfileError: the file has a mistake.
+    """
+    if not path.exists():
+        return ""
+    table = read_toml(path)
+    choice = table.text(key)
+    table.close()
+    return choice
+
+
+def keep_choice(path: Path, key: str, choice: str) -> None:
+    """Write a choice to its file, as a whole or not at all.
+
+    Raises:
+        TangyError: it cannot be written.
+    """
+    new = path.with_name(f"{path.name}.new")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        new.write_text(f"{key} = {json.dumps(choice, ensure_ascii=False)}\n", encoding="utf-8")
+        new.replace(path)
+    except OSError as error:
+        raise TangyError(plain(f"{path}: cannot be written: {error.strerror}.")) from None

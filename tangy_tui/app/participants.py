@@ -1,0 +1,175 @@
+"""Who takes part, in which room, on which seats, and what is known of each person."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.defaults import REGISTERED
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import Person, folded, unaccented
+from tangy_profiles.reading import plain
+from tangy_profiles.room import Room, room_for
+from tangy_profiles.state import FRONT
+from tangy_profiles.store import Store
+from tangy_tui.app.register import known_people, participants
+from tangy_tui.app.rooms import check_places
+
+if TYPE_CHECKING:
+    from tangy_profiles.voice import VoicePreference
+    from tangy_tui.interaction.forgetting import Forgotten
+
+
+class Participants:
+    """The people of a workspace, who are placed in a room."""
+
+    activity: Activity
+    store: Store
+    room: Room
+    people: tuple[Person, ...]
+    chosen_room: Room | None
+    """The room that somebody chose. It is taken as long as everybody fits in."""
+    _sample: tuple[Person, ...]
+
+    def read_people(self) -> None:
+        """Reload the people: names, pronunciations, voices, seats."""
+        self.people = self.room.placed(known_people(self.store, self._sample))
+
+    def register(self, users: int = REGISTERED) -> None:
+        """Let the first `count` registered people take part, or all of them."""
+        teams = tuple(Person(team, team) for team in self.activity.teams)
+        self._sample = teams or participants(self.store, users)
+        self._place()
+
+    def _place(self) -> None:
+        """Take the chosen room if everybody fits in, and the seats in it."""
+        count, chosen = len(self._sample), self.chosen_room
+        self.room = chosen if chosen and count <= chosen.places else room_for(count)
+        self.read_people()
+
+    @property
+    def room_source(self) -> str:
+        """What loads the room, "" where the number of people decides which it is."""
+        return self.room.source if self.room is self.chosen_room else ""
+
+    def choose_room(self, room: Room | None) -> None:
+        """Play in a room from now on; None: in the one that the number of people decides.
+
+        Raises:
+            TangyError: not everybody fits in.
+        """
+        if room is not None:
+            check_places(room, len(self._sample))
+        self.chosen_room = room
+        self._place()
+
+    def seat(self, order: Sequence[str]) -> None:
+        """Let people sit in another order of their ids."""
+        self._sample = tuple(sorted(self._sample, key=lambda person: order.index(person.id)))
+        self.read_people()
+
+    def name(self, person: str) -> str:
+        """Return a person's name."""
+        return next((p.name for p in self.people if p.id == person), person)
+
+    def find_person(self, wanted: str) -> Person:
+        """Return the person of an id or a name.
+
+        Raises:
+            TangyError: nobody, or more than one, is called that.
+        """
+        by_id = [p for p in self.people if p.id == wanted]
+        found = by_id or [p for p in self.people if folded(p.name) == folded(wanted)]
+        found = found or [p for p in self.people if unaccented(p.name) == unaccented(wanted)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
+        there = ", ".join(f"{p.id} is {p.name}" for p in self.people)  # never guess at a person
+        raise TangyError(plain(f"There is nobody called {wanted!r}: {there}."))
+
+    def rename(self, person: Person, name: str) -> None:
+        """Give a person another name, one that nobody else answers to.
+
+        Lines that were spoken with the old one are forgotten.
+
+        Raises:
+            TangyError: the name is somebody else's name or id, or a place, or means something
+                else where it is said.
+        """
+        wanted = folded(name)
+        taken = {FRONT: "is a place"}
+        for other in self.people:
+            if other.id != person.id:
+                taken |= dict.fromkeys(
+                    (folded(other.id), folded(other.name)), f"is what {other.id} is called"
+                )
+        if wanted in taken:
+            raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))
+        from tangy_tui.speech.name_conflicts import check_new_name
+
+        check_new_name(self.activity, self.people, replace(person, name=name.strip()))
+        old = self.name(person.id)
+        self.store.rename(person.id, name)
+        self.read_people()
+        if self.name(person.id) != old:
+            from tangy_hw.audio.synthesis import clear_cache
+
+            clear_cache()
+
+    def pronounce(self, person: Person, phones: str | None) -> None:
+        """Note how a person's name is pronounced (ARPAbet, a comma between words); None: no more.
+
+        Raises:
+            TangyError: a phone is none, there are not as many words as in the name, or it sounds
+                like somebody else's, or like a phrase.
+        """
+        self.store.pronounce(person.id, phones and self.check_said(person, phones))
+        self.read_people()
+
+    def check_said(self, person: Person, phones: str) -> str:
+        """Return the phones of a person's name as they are written down.
+
+        Raises:
+            TangyError: as for `pronounce`.
+        """
+        from tangy_tui.language.pronunciation import check_name
+        from tangy_tui.speech.name_conflicts import check_said
+
+        checked = check_name(phones, person.name)
+        check_said(self.activity, self.people, person, checked)
+        return checked
+
+    def prefer_voice(self, person: Person, preference: VoicePreference) -> None:
+        """Note how a person likes to be spoken to."""
+        self.store.prefer_voice(person.id, preference)
+        self.read_people()
+
+    def forget(self, person: Person, also: Sequence[str] = ()) -> Forgotten:
+        """Forget a person: name, pronunciation, voice, face, and consent.
+
+        The name goes from words that were typed or said as well, in the log and in the files of
+        the data folder. What they did stays in the log, under an id that says nobody's name.
+
+        Args:
+            person: who.
+            also: other names that they were called by, which are to go, too.
+
+        Raises:
+            TangyError: some of it cannot be deleted.
+        """
+        from tangy_tui.interaction.forgetting import forget_person
+
+        forgotten = forget_person(self.store, self.activity, self.people, person, also)
+        self.read_people()
+        from tangy_hw.audio.synthesis import clear_cache
+
+        clear_cache()
+        return forgotten
+
+    @property
+    def names(self) -> dict[str, str]:
+        """The participants' names, by id."""
+        return {person.id: person.name for person in self.people}
