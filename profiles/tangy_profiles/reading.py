@@ -89,7 +89,11 @@ class Table:
         self._taken.add(key)
         if key not in self._values:
             if default is None:
-                raise self.wrong(key, f"is missing; it must be {noun}.{self._misspelt(key)}")
+                meant = self._misspelt(key)
+                raise self.wrong(
+                    key,
+                    f"is missing; it must be {noun}." + (f" Do you mean {meant}?" * bool(meant)),
+                )
             return default
         value = self._values[key]
         kinds = kind if isinstance(kind, tuple) else (kind,)
@@ -104,7 +108,7 @@ class Table:
         if not close:
             return ""
         line = line_of(self._text, (*self._at, close[0]))
-        return f" Do you mean {close[0]!r}{'' if line is None else f' (line {line})'}?"
+        return f"{close[0]!r}" + ("" if line is None else f" (line {line})")
 
     def text(self, key: str, default: str | None = None) -> str:
         """Take a line of text (not empty unless that is the default)."""

@@ -61,8 +61,9 @@ def check_places(room: Room, people: int) -> None:
         TangyError: they cannot.
     """
     if people > room.places:
-        told = f"{room.title} has {room.places} seats, and {people} people take part."
-        raise TangyError(plain(told))
+        raise TangyError(
+            plain(f"{room.title} has {room.places} seats, and {people} people take part.")
+        )
 
 
 def chosen_room(folder: Path) -> Room | None:
