@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from time import monotonic
 from unittest.mock import patch
 
@@ -14,8 +15,10 @@ import pytest
 from tangy_hw.device_protocols import STILL, DeviceError, MachineClock, Twist
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.robot_process import controller as robots
 from tangy_hw.robot_process import performer
+from tangy_hw.robot_process.control_loop import ControlLoop
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import ERROR, OK
@@ -173,3 +176,30 @@ class TestSpin:
                 patch.object(robot.navigator, "spin"),
             ):
                 assert await soon(robot.spin()) is found
+
+
+class TestArms:
+    """What the arms do where somebody is within their reach."""
+
+    @pytest.mark.parametrize(
+        ("x", "posture", "moves"),
+        [(0.6, "cheer", False), (1.2, "cheer", True), (0.6, "drive", True)],
+    )
+    async def test_a_gesture_towards_somebody_near_is_left_out(
+        self, x: float, posture: str, moves: bool, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        robot = load_robot()
+        robot = replace(robot, body=replace(robot.body, arms=0.7))
+        parts = ToldBody()
+        near = (Track(x, 0.0, 0.0, 0.0, 0.1, 5.0, 5.0, person=True, hidden=False),)
+        clock = MachineClock()
+        navigator = Navigator(MAP, np.random.default_rng(1), HERE)
+        monkeypatch.setattr(Navigator, "tracks", near)
+        acts = performer.Performer(
+            parts.body(), ControlLoop(clock, lambda: False), robot, navigator, str
+        )
+        doing = asyncio.create_task(acts.perform(text="Hello", posture=robot.postures[posture]))
+        await until(lambda: "say" in parts.told and ("pose" in parts.told or not moves))
+        assert ("pose" in parts.told) is moves
+        await acts.be_still()
+        doing.cancel()

@@ -89,7 +89,7 @@ class LiveRobot:
         self._stops = StopLatch()
         self._alone_since: float | None = None
         self._left_alone = False
-        self._performer = Performer(body, self.passing, robot.gaze, lambda: self._halted)
+        self._performer = Performer(body, self.passing, robot, navigator, lambda: self._halted)
         self._courtesies = Courtesies(courtesies or {}, lambda text: self.perform(text=text))
         self._wanted: Pose | None = None
         self._was = ""  # how the last drive ended

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Callable, Coroutine, Mapping, Sequence
+from math import hypot
 from typing import Any
 
 from tangy_hw.device_protocols import Arms, Picture
+from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.control_loop import ControlLoop
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import ERROR
+from tangy_profiles.robot import Robot
 
 SPEECH_SECONDS = 60.0  # for one line
 POSE_SECONDS = 1.5  # in which arms are where they should be
 STOP_SECONDS = 1.0  # in which arms and voice have heard that they are to stop
+
+STOWED = "drive"
+"""The posture with the arms close to the body, which may be taken whoever is near."""
+
+_LOG = logging.getLogger(__name__)
 
 Angles = Mapping[str, Sequence[float]]
 
@@ -26,12 +35,23 @@ class Performer:
         self,
         body: Body,
         passing: ControlLoop,
-        gazes: Mapping[str, Angles],
+        robot: Robot,
+        navigator: NavigatorProtocol,
         halted: Callable[[], str],
     ) -> None:
-        """Take them; `gazes` are where the eyes turn to, by what they look at."""
+        """Take them.
+
+        Args:
+            body: the devices.
+            passing: the control loop, in which time passes.
+            robot: its profile: where the eyes turn to, and how the arms are close to the body.
+            navigator: tracks who is around.
+            halted: says why nothing may move, "" if it may.
+        """
         self._body, self._passing = body, passing
-        self._gazes, self._halted = gazes, halted
+        self._gazes, self._stowed = robot.gaze, _listed(robot.postures.get(STOWED, {}))
+        self._reach = robot.body.arms
+        self._halted, self._navigator = halted, navigator
         self._gaze = ""
 
     async def perform(
@@ -49,7 +69,7 @@ class Performer:
         if self._body.screen is not None and picture is not None:
             doing["shown"] = self._body.screen.show(picture)
         arms = self._body.arms
-        if arms is not None and posture and (gazes or arms.reading().state != ERROR):
+        if arms is not None and posture and (gazes or self._may_gesture(arms, posture)):
             doing["posed"], self._gaze = self._pose(arms, posture), ""
         tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
         try:
@@ -66,6 +86,20 @@ class Performer:
         return {
             what: not task.cancelled() and task.exception() is None for what, task in tasks.items()
         }
+
+    def _may_gesture(self, arms: Arms, posture: Angles) -> bool:
+        """Return whether the arms may move: not with an error, and not out towards somebody."""
+        if arms.reading().state == ERROR:
+            return False
+        if _listed(posture) != self._stowed and self._somebody_in_reach:
+            _LOG.info("leaves a gesture out: somebody is within reach of the arms")
+            return False
+        return True
+
+    @property
+    def _somebody_in_reach(self) -> bool:
+        """Whether the arms could hit somebody if they moved out."""
+        return any(hypot(one.x, one.y) - one.half < self._reach for one in self._navigator.tracks)
 
     async def _pose(self, arms: Arms, posture: Angles) -> None:
         """Move the arms; not when it was stopped before they were told."""
@@ -96,3 +130,8 @@ class Performer:
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
+
+
+def _listed(angles: Angles) -> dict[str, list[float]]:
+    """Return angles as they come over a pipe."""
+    return {limb: [float(joint) for joint in joints] for limb, joints in angles.items()}
