@@ -27,7 +27,7 @@ class KeyReader:
         if not isinstance(event, events.Key | events.Paste):
             return False
         focused = self._app.focused
-        writes = isinstance(focused, Input) or getattr(focused, "filtering", False)
+        writes = isinstance(focused, Input) or getattr(focused, "writes", False)
         if (not writes or isinstance(event, events.Paste)) and self._says_stop(event):
             return True
         if not writes and self._is_typed(event):

@@ -1,4 +1,4 @@
-"""Choosing one of several: policies, teachers."""
+"""Choosing one of several: people, policies, activities."""
 
 from __future__ import annotations
 
@@ -17,6 +17,9 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.page import Page, PageLine
 from tangy_tui.ui.widgets.rows import fit, shorten
 
+UNFILTERED = "letters filter   enter takes it   esc goes back"
+FILTERED = "/{}_   enter takes it   esc shows all"
+
 
 @dataclass(frozen=True, slots=True)
 class Option:
@@ -27,17 +30,34 @@ class Option:
     note: str = ""
 
 
+class OptionPage(Page):
+    """The options; letters filter them."""
+
+    LETTERS_FILTER = True
+
+    def _say_filter(self, count: str = "") -> None:
+        """Say at the foot of the dialog what is filtered by."""
+        keys = FILTERED.format(clean(self.filter)) if self.filter else UNFILTERED
+        self.screen.query_one(".box").border_subtitle = keys.replace("[", "\\[")
+
+
 class ChooseDialog(Dialog[str | None]):
-    """Up and down choose, Enter takes it; the answer is the word of the option, or None."""
+    """Up and down choose, letters filter, Enter takes it.
+
+    The answer is the word of the option, or None.
+    """
 
     DEFAULT_CSS = """
     ChooseDialog > .box { width: 70; padding: 0 1; }
     ChooseDialog Page { height: auto; max-height: 1fr; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,q", "close", "Choose none", key_display="esc"),
+        Binding("escape", "close", "Choose none", key_display="esc"),
     ]
-    HELP = "Choose with up and down, and take it with Enter; esc goes back without a choice."
+    HELP = (
+        "Choose with up and down, and take it with Enter. Type some letters to see only the lines "
+        "with them; esc shows all lines again, or goes back without a choice."
+    )
 
     def __init__(self, question: str, options: Sequence[Option]) -> None:
         super().__init__(None)
@@ -46,9 +66,9 @@ class ChooseDialog(Dialog[str | None]):
 
     def compose(self) -> ComposeResult:
         """Lay out the list."""
-        box = Vertical(Page(self._write), id="choose", classes="box")
+        box = Vertical(OptionPage(self._write), id="choose", classes="box")
         box.border_title = Content(self._question)
-        box.border_subtitle = "enter takes it   esc goes back"
+        box.border_subtitle = UNFILTERED
         yield box
 
     def on_mount(self) -> None:

@@ -1,10 +1,17 @@
-"""Filtering a list: `/` begins, words are typed at its foot, Enter keeps them, esc shows all."""
+"""Filtering a list: `/` begins, words are typed at its foot, Enter keeps them, esc shows all.
+
+In a list of which letters are no keys (`LETTERS_FILTER`) they filter at once; Enter is a key there,
+and the typed word stop still stops the robot.
+"""
 
 from __future__ import annotations
+
+from typing import ClassVar
 
 from textual import events
 
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.typed_stop import WORD
 from tangy_tui.ui.widgets.rows import RowView
 
 LONGEST = 40
@@ -18,8 +25,10 @@ class Filtered(RowView):
     foot while it is not (`_hint`).
     """
 
+    LETTERS_FILTER: ClassVar[bool] = False
+
     filtering = False
-    """Whether words are being typed."""
+    """Whether words are being typed, and nothing else."""
 
     filter = ""
     """The words by which it is filtered."""
@@ -28,6 +37,15 @@ class Filtered(RowView):
     def filtered(self) -> bool:
         """Whether esc has something to take back."""
         return self.filtering or bool(self.filter)
+
+    @property
+    def writes(self) -> bool:
+        """Whether the next letter is one of a word, and cannot be one of a stop.
+
+        Where letters filter, "stop" stops, but "Christopher" does not.
+        """
+        word = self.filter.casefold().rpartition(" ")[2]
+        return self.filtering or (self.LETTERS_FILTER and not WORD.startswith(word))
 
     def begin_filter(self) -> None:
         """Begin to type words."""
@@ -44,8 +62,10 @@ class Filtered(RowView):
         """While words are typed, letters are letters and no keys; esc takes the words back."""
         if event.key == "escape" and self.filtered:
             self.filtering, self.filter = False, ""
-        elif not self.filtering:
+        elif not self.filtering and not (self.LETTERS_FILTER and self._filters(event)):
             return
+        elif event.key == "slash" and not self.filter:
+            pass  # it begins, as in every list
         elif event.key == "enter":
             self.filtering = False
         elif event.key == "backspace":
@@ -58,9 +78,16 @@ class Filtered(RowView):
         event.prevent_default()
         self._refilter()
 
+    def _filters(self, event: events.Key) -> bool:
+        """Say whether a key filters by itself: a letter, a digit, or one within the words."""
+        typed = event.character or ""
+        if self.filter and event.key in ("backspace", "space"):
+            return True
+        return event.is_printable and (typed.isalnum() or event.key == "slash")
+
     def on_paste(self, event: events.Paste) -> None:
         """Take pasted words while words are typed."""
-        if self.filtering:
+        if self.filtering or self.LETTERS_FILTER:
             event.stop()
             pasted = " ".join(event.text.split())
             self.filter = (self.filter + clean(pasted))[:LONGEST]
