@@ -12,6 +12,7 @@ import asyncio
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
 
 from tangy_profiles.errors import TangyError
@@ -78,13 +79,15 @@ class Stamped(Generic[Value]):
 class Picture(NamedTuple):
     """What the chest screen shows: a line in large type, the number that was called, the last few.
 
-    `asks` is for whom something is asked, "" for everybody.
+    `asks` is for whom something is asked, "" for everybody. `file` is the path of a picture that is
+    shown with the line.
     """
 
     text: str
     number: str = ""
     before: tuple[str, ...] = ()
     asks: str = ""
+    file: str = ""
 
 
 class Clock(Protocol):
@@ -211,6 +214,14 @@ class Voice(Device, Protocol):
 
         Raises:
             DeviceError: it cannot be said.
+        """
+        ...
+
+    async def play(self, sound: Path) -> None:
+        """Play a WAV file, and wait until it was heard, or cut by `hush`.
+
+        Raises:
+            DeviceError: it cannot be heard.
         """
         ...
 

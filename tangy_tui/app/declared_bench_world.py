@@ -5,6 +5,7 @@ from __future__ import annotations
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
 from tangy_profiles.behaviour import Action
 from tangy_profiles.codec import written
+from tangy_profiles.declared.speech import media
 from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import ActivityState
@@ -33,6 +34,14 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         if memory is not None:
             self.bench.do("rules", memory=written(memory))
         return super().resume(past)
+
+    def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
+        """Speak, show and play; people on the bench know what they see and hear."""
+        after = self.game.copy()
+        after.execute(action.behaviour.name, whom)
+        if any(media(after, action.behaviour.name)):
+            self.bench.do("rules", rows=[after.row])
+        return super()._perform(action, whom)
 
     def can_show(self, kind: Kind, action: Action) -> bool:
         """Say whether a fault of a kind would be seen if it came with an action."""

@@ -134,6 +134,7 @@ def open_bench(
             room=str(workspace.room.file),
             drivers={
                 **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE if name in has},
+                **({"voice": _BENCH_VOICE | {"at": at}} if "voice" in has else {}),
                 "laser": {"kind": "scip", "at": bench.wires.scip},
                 **({"screen": {"kind": "page", "port": 0}} if "screen" in has else {}),
             },
@@ -160,8 +161,9 @@ def open_bench(
         bench.close()
 
 
-ROSBRIDGE = ("base", "stop_button", "arms", "voice")
-"""The devices of the bench that are reached by rosbridge."""
+ROSBRIDGE = ("base", "stop_button", "arms")
+"""The devices of the bench that are reached by rosbridge, beside its voice."""
+_BENCH_VOICE = {"kind": "rosbridge", "play": "/voice/play"}
 
 
 @contextmanager

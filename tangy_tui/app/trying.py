@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.speech import media
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
@@ -27,6 +29,8 @@ class TriedStep:
     doing: dict[str, str]
     silent: tuple[str, ...] = ()
     """Who said nothing and was asked again, each time."""
+    media: tuple[str, ...] = ()
+    """The names of the files of what Tangy shows and plays."""
 
 
 def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]:
@@ -59,7 +63,9 @@ def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]
         said, _ = activity.words_of(action, outcome, lambda id: names.get(id, id))
         did = {names.get(id, EVERYBODY): ", ".join(acts) for id, acts in world.happened.items()}
         silent = tuple(names.get(one.person, "") for one in outcome.unclear if one.asked_again)
-        yield TriedStep(number, situation, expected, names.get(whom or "", ""), said, did, silent)
+        person = names.get(whom or "", "")
+        files = (Path(one.path).name for one in media(world.game, expected) if one is not None)
+        yield TriedStep(number, situation, expected, person, said, did, silent, tuple(files))
         if world.over:
             return
     raise TangyError(f"{activity.title}: the game did not end within {MOST_STEPS} steps.")

@@ -14,6 +14,7 @@ from tangy_tui.text.numbers import counted
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.declared.model import Effect, Fact, FactCondition
+    from tangy_tui.app.trying import TriedStep
     from tangy_tui.learning.policy import Policy
 
 
@@ -124,10 +125,12 @@ SAYS_NOTHING = "says nothing and is asked again"
 TRIED = "The game has come to its end."
 
 
-def tried_lines(number: int, situation: str, behaviour: str, whom: str, said: str) -> list[str]:
-    """Tell a step of a game that was tried, in one line or two."""
-    lines = [f"{number}. {situation} -> {behaviour}{f' ({whom})' if whom else ''}"]
-    return [*lines, f"   Tangy says: {said}"] if said else lines
+def tried_lines(step: TriedStep) -> list[str]:
+    """Tell what Tangy does in a step of a game that was tried, in up to three lines."""
+    whom = f" ({step.whom})" if step.whom else ""
+    lines = [f"{step.number}. {step.situation} -> {step.behaviour}{whom}"]
+    lines += [f"   Tangy says: {step.said}"] if step.said else []
+    return [*lines, *(f"   Tangy shows or plays: {name}" for name in step.media)]
 
 
 def people_did(doing: dict[str, str], silent: Sequence[str] = ()) -> str:

@@ -151,8 +151,7 @@ def activity_try(
         if as_json:
             steps.append(asdict(step))
             continue
-        lines = tried_lines(step.number, step.situation, step.behaviour, step.whom, step.said)
-        for line in (*lines, people_did(step.doing, step.silent)):
+        for line in (*tried_lines(step), people_did(step.doing, step.silent)):
             if line:
                 print(plain(line))
     print_json({"steps": steps, "finished": True}) if as_json else print(TRIED)

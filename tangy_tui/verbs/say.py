@@ -50,11 +50,11 @@ def say(
         NoSuchVoice,
         Synthesiser,
         VoiceError,
-        wav_seconds,
     )
     from tangy_profiles.activity import load_activity
     from tangy_profiles.reading import nearest
     from tangy_profiles.voice import VoicePreference
+    from tangy_profiles.wav_length import wav_seconds
 
     synthesiser = Synthesiser()
     if forget:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -94,6 +95,9 @@ class ToldVoice(ToldDevice):
     async def say(self, text: str) -> None:
         self.told.append("say")
         await self.hushed.wait()
+
+    async def play(self, sound: Path) -> None:
+        self.told.append(f"play {sound.name}")
 
     async def hush(self) -> None:
         self.told.append("hush")

@@ -95,7 +95,7 @@ class TestShowing:
         for page in pages:
             assert page.shown[-1] == {
                 "n": 1, "text": "Next number", "number": "B-12", "before": ["N-40", "O-75"],
-                "asks": "Ana",
+                "asks": "Ana", "file": False,
             }  # fmt: skip
             page.go()
 

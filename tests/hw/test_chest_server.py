@@ -28,6 +28,7 @@ from tangy_hw.drivers.chest_pairing import (
 from tangy_hw.drivers.chest_server import ChestServer
 from tests.hw.chest_pages import ask, paired
 from tests.hw.waiting import PATIENCE, until
+from tests.support.media import make_picture
 
 PAIRING = Pairing(bytes(32), "12345678")
 COOKIE = paired(PAIRING)
@@ -113,6 +114,22 @@ class TestRequests:
         answer = await ask(server.port, "POST", "/seen", line)
         assert answer.startswith(b"HTTP/1.1 400 ")
 
+    async def test_the_file_of_a_picture_is_for_paired_tablets_alone(
+        self, server: Served, tmp_path: Path
+    ) -> None:
+        photo = make_picture(tmp_path / "photo.png")
+        server.show(7, {"text": "Who is this?", "file": str(photo)})
+        assert str(tmp_path).encode() not in server.newest and b'"file": true' in server.newest
+        answer = await ask(server.port, "GET", "/file?n=7", COOKIE)
+        head, _, body = answer.partition(b"\r\n\r\n")
+        assert b"Content-Type: image/png" in head and body == photo.read_bytes()
+        assert b" 404 " in await ask(server.port, "GET", "/file?n=7")
+        (tmp_path / "text.png").write_text("no picture")
+        for file in ("", str(tmp_path / "none.png"), str(tmp_path / "text.png"), "/dev/zero"):
+            server.show(8, {"text": "", "file": file})
+            assert b'"file": false' in server.newest
+            assert b" 404 " in await ask(server.port, "GET", "/file?n=8", COOKIE)
+
     async def test_one_connection_serves_many_requests(self, server: Served) -> None:
         reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
         for _ in range(3):
@@ -127,7 +144,7 @@ class TestRequests:
         kind, line, *rest = server.newest.decode().split("\n")
         assert kind == "event: show" and rest == ["", ""]
         assert line.isascii() and line.isprintable()
-        assert json.loads(line.removeprefix("data: ")) == {"n": 7, "text": text}
+        assert json.loads(line.removeprefix("data: ")) == {"n": 7, "text": text, "file": False}
 
 
 class TestStrangers:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, cast
 
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.declared_live_world import PAUSE_SECONDS, DeclaredLiveWorld, Observed
+from tangy_profiles.declared.activity import read_declared
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.typed_observations import TypedObservation
@@ -19,6 +21,7 @@ from tangy_profiles.room import load_room
 from tangy_profiles.state import Outcome
 from tests.hw.links import FakeLink
 from tests.support.declared import DECLARED, declared
+from tests.support.media import guess_the_sound
 
 PEOPLE = ("user1", "user2", "user3")
 NAMES = {"user1": "Ann", "user2": "Ben", "user3": "Cleo"}
@@ -70,6 +73,25 @@ def test_people_are_spoken_to_by_their_names(world: DeclaredLiveWorld, link: Fak
     (picture,) = [w["picture"] for d, w in link.done if d == "perform" and "Ann" in w["text"]]
     assert right(world) in picture["text"] and picture["asks"] == "Seat 1"
     assert "Ann" not in picture["text"]
+
+
+def test_the_robot_gets_the_picture_and_the_sound_of_an_item(
+    link: FakeLink, tmp_path: Path
+) -> None:
+    activity = read_declared(guess_the_sound(tmp_path))
+    world = DeclaredLiveWorld(
+        activity, PEOPLE, cast(RobotLink, link), load_robot(), load_room(), seed=1, names=NAMES
+    )
+    world.begin()
+    do(world, "play a sound", "user1")
+    items, row = activity.declaration.items, world.game.row
+    performed = [what for done, what in link.done if done == "perform"]
+    assert performed[-1]["sound"] == str(tmp_path / items.value(row, "clip"))
+    assert performed[-1]["picture"]["file"] == ""
+    do(world, "show what it was", "user1")
+    shown = [what for done, what in link.done if done == "perform"][-1]["picture"]
+    photo = items.value(row, "photo")
+    assert shown["file"] == (str(tmp_path / photo) if photo else "")
 
 
 def test_what_is_told_counts_with_the_next_look(world: DeclaredLiveWorld) -> None:

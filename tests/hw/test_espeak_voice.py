@@ -15,6 +15,7 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.voice import VoicePreference
 from tests.hw.speakers import Clock, Speaker, program
 from tests.hw.waiting import PATIENCE, until
+from tests.support.media import make_sound
 
 SECONDS = 2.0  # of every line
 
@@ -66,6 +67,32 @@ async def test_saying_ends_when_it_was_heard(scene: Scene) -> None:
     assert "-s 120" in scene.speaker.asked[-1] and "-v en-gb" in scene.speaker.asked[-1]
     assert "1 2" in scene.speaker.heard[-1]  # as a caller says it
     await until(lambda: scene.gate == ["shut", "open"])
+
+
+async def test_a_sound_is_played_to_its_end_with_the_microphone_shut(
+    scene: Scene, tmp_path: Path
+) -> None:
+    voice = await scene.voice()
+    playing = asyncio.create_task(voice.play(make_sound(tmp_path / "bell.wav", 3.0)))
+    async with asyncio.timeout(PATIENCE):
+        await scene.clock.somebody_sleeps()
+    scene.clock.pass_by(2.9)
+    await asyncio.sleep(0)
+    assert not playing.done() and scene.gate == ["shut"]
+    scene.clock.pass_by(0.2)
+    async with asyncio.timeout(PATIENCE):
+        await playing
+    await until(lambda: scene.gate == ["shut", "open"])
+    assert not scene.speaker.heard
+
+
+async def test_a_sound_that_is_gone_is_a_warning_until_the_next_line(
+    scene: Scene, tmp_path: Path
+) -> None:
+    voice = await scene.voice(Broken())
+    with pytest.raises(DeviceError, match=r"bell\.wav is not there any more"):
+        await voice.play(tmp_path / "bell.wav")
+    assert voice.reading().state == "WARN"
 
 
 @pytest.mark.parametrize("by", ["hush", "cancel", "close"])

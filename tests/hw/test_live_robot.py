@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from pathlib import Path
 from time import monotonic
 from unittest.mock import patch
 
@@ -41,6 +42,16 @@ async def living() -> AsyncIterator[tuple[LiveRobot, ToldBody]]:
         yield robot, parts
     finally:
         await robot.close()
+
+
+async def test_a_sound_is_played_after_what_is_said() -> None:
+    async with living() as (robot, parts):
+        doing = asyncio.create_task(robot.perform(text="Hello", sound=Path("bell.wav")))
+        await until(lambda: "say" in parts.told)
+        assert "play bell.wav" not in parts.told
+        parts.voice.hushed.set()  # it has spoken
+        assert (await soon(doing)) == {"said": True, "played": True}
+        assert parts.told.index("play bell.wav") > parts.told.index("say")
 
 
 class TestStop:

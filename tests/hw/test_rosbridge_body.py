@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -23,6 +24,7 @@ from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import Limb
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tests.hw.ros_links import Now, diagnoses, linked, soon
+from tests.support.media import make_sound
 from tests.support.waiting import until
 
 LIMBS = {
@@ -238,6 +240,21 @@ class TestVoice:
             server.publish("/voice/said", "", {"data": "Hello"})
             await soon(saying)
             assert voice.reading().state == OK
+
+    async def test_a_sound_is_over_when_it_was_played(self, tmp_path: Path) -> None:
+        async with linked() as (server, bridge, _):
+            voice, heard = RosVoice(bridge, play="/voice/play"), list[Any]()
+            server.on_message("/voice/play", heard.append)
+            await voice.start()
+            await soon(server.subscribed("/voice/said"))
+            sound = make_sound(tmp_path / "bell.wav")
+            playing = asyncio.ensure_future(voice.play(sound))
+            await until(lambda: bool(heard))
+            assert heard == [{"data": str(sound)}] and not playing.done()
+            server.publish("/voice/said", "", {"data": str(sound)})
+            await soon(playing)
+            with pytest.raises(DeviceError, match="plays no sounds"):
+                await RosVoice(bridge).play(sound)
 
     async def test_hush_ends_what_is_being_said(self) -> None:
         async with linked() as (server, bridge, _):

@@ -16,9 +16,9 @@ from tangy_hw.audio.synthesis import (
     Synthesiser,
     VoiceError,
     examine_voice,
-    wav_seconds,
 )
 from tangy_profiles.voice import VoicePreference
+from tangy_profiles.wav_length import wav_seconds
 from tests.hw.speakers import Speaker, from_pipe, program
 
 TRICKY = "<speak>-v de &lt;b&gt; &amp; \"q\" 'é' 你好</speak>"

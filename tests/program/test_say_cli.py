@@ -9,7 +9,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from tangy_hw.audio.synthesis import wav_seconds
+from tangy_profiles.wav_length import wav_seconds
 from tests.hw.speakers import Speaker, program
 
 Tangy = Callable[..., CompletedProcess[str]]

@@ -15,6 +15,7 @@ from tangy_hw.drivers.chest import WebChestScreen
 from tangy_hw.drivers.chest_pairing import keep_pairing
 from tests.hw.waiting import until
 from tests.real.browser import CHROMIUM, Browser, Tab, chromium
+from tests.support.media import make_picture
 from tests.support.terminal import PATIENCE
 
 pytestmark = [
@@ -154,6 +155,50 @@ async def test_whatever_is_said_is_all_on_the_screen(
         assert await read(tab, "asked") == picture.asks
 
 
+@pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
+@pytest.mark.parametrize("shape", [(300, 900), (900, 300)])
+async def test_a_picture_is_large_and_its_line_is_under_it(
+    screen: WebChestScreen,
+    browser: Browser,
+    tmp_path: Path,
+    size: tuple[int, int],
+    shape: tuple[int, int],
+) -> None:
+    tab = await opened(browser, screen, size)
+    file = make_picture(tmp_path / "photo.png", *shape)
+    for text, asks in (
+        ("", ""),
+        ("Who remembers a steam train?", "Seat 2"),
+        ("on and on " * 12, ""),
+    ):
+        await screen.show(Picture(text, asks=asks, file=str(file)))
+        assert await outside(tab) == ""
+        assert (await read(tab, "text")).split() == text.split()
+        shot = tmp_path / "seen.png"
+        await tab.screenshot(shot)
+        seen = cv2.imread(str(shot))
+        assert seen is not None
+        red = (seen[..., 2] > 180) & (seen[..., 0] < 60) & (seen[..., 1] < 60)
+        high, wide = (red.any(axis=1 - axis).sum() for axis in (0, 1))
+        assert wide / high == pytest.approx(shape[1] / shape[0], rel=0.03)
+        assert max(wide / size[0], high / size[1]) > 0.45
+        assert red.sum() == pytest.approx(wide * high, rel=0.01)  # nothing covers it
+    await screen.show(Picture("Next question"))
+    assert await tab.value("document.getElementById('file').offsetHeight") == 0
+
+
+async def test_a_picture_that_cannot_be_shown_leaves_its_line(
+    screen: WebChestScreen, browser: Browser, tmp_path: Path
+) -> None:
+    tab = await opened(browser, screen, LARGE)
+    broken = tmp_path / "broken.png"
+    broken.write_bytes(b"\x89PNG\r\n\x1a\n and no more")
+    for file in (tmp_path / "none.png", broken):
+        await screen.show(Picture("Who remembers a steam train?", file=str(file)))
+        assert await read(tab, "text") == "Who remembers a steam train?"
+        assert await tab.value("document.getElementById('file').offsetHeight") == 0
+
+
 async def test_what_looks_like_a_page_is_shown_as_it_is_written(
     screen: WebChestScreen, browser: Browser
 ) -> None:
@@ -162,7 +207,7 @@ async def test_what_looks_like_a_page_is_shown_as_it_is_written(
     await screen.show(Picture(wicked, wicked, (wicked,), wicked))
     assert await tab.value("document.getElementById('number').textContent") == wicked
     assert await tab.value("document.getElementById('asked').textContent") == wicked
-    assert await tab.value("document.images.length + document.scripts.length") == 1
+    assert await tab.value("document.images.length + document.scripts.length") == 2  # its own
     assert await tab.value("document.title") == "Chest screen"
 
 

@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 
 from tangy_hw.audio.number_reader import as_called, marked_up
 from tangy_hw.audio.player import PlayerError, examine_output, open_player
-from tangy_hw.audio.synthesis import NoSuchVoice, Synthesiser, examine_voice, wav_seconds
+from tangy_hw.audio.synthesis import NoSuchVoice, Synthesiser, examine_voice
 from tangy_hw.audio.voice import SpeechVoice
 from tangy_profiles.activity import load_activity
 from tangy_profiles.voice import VoicePreference
+from tangy_profiles.wav_length import wav_seconds
 from tests.real.conftest import OpenTerminal
 from tests.support.terminal import PATIENCE, TANGY
 

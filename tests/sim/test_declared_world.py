@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 
+import pytest
+
+from tangy_profiles.declared.activity import read_declared
 from tangy_profiles.declared.checking import expected_moves
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.state import Outcome
 from tangy_sim.worlds.declared_world import DeclaredWorld
 from tests.support.declared import declared
+from tests.support.media import guess_the_sound, make_sound
 
 PEOPLE = ("user1", "user2", "user3")
 
@@ -28,6 +33,22 @@ def games(unclear: float, count: int) -> tuple[list[Outcome], int]:
             found.append(world.execute(action))
         ended += world.over
     return found, ended
+
+
+def test_a_sound_takes_as_long_as_it_lasts(tmp_path: Path) -> None:
+    activity = read_declared(guess_the_sound(tmp_path))
+    seconds = []
+    for long in (0.5, 60.5):
+        for sound in tmp_path.glob("*.wav"):
+            make_sound(sound, long)
+        activity = read_declared(tmp_path / activity.source)
+        world = DeclaredWorld(activity, PEOPLE, seed=1)
+        seconds.append(
+            world.execute(
+                activity.action(activity.behaviour("play a sound"), PEOPLE[0], None)
+            ).seconds
+        )
+    assert seconds[1] - seconds[0] == pytest.approx(60.0)
 
 
 def test_an_unclear_answer_is_asked_for_again_and_games_come_to_their_end() -> None:

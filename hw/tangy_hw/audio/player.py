@@ -15,9 +15,9 @@ from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from tangy_hw.audio.synthesis import wav_seconds
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
+from tangy_profiles.wav_length import wav_seconds
 
 PROGRAMS = {
     "aplay": ("aplay", "-q"),

@@ -298,15 +298,6 @@ def examine_voice(which: Callable[[str], str | None] = shutil.which) -> tuple[st
     return named, ""
 
 
-def wav_seconds(path: Path) -> float:
-    """Return how long a WAV of this room is, in seconds; 0 if it is none."""
-    try:
-        with wave.open(str(path)) as file:
-            return float(file.getnframes() / file.getframerate())
-    except (OSError, EOFError, wave.Error, ZeroDivisionError):
-        return 0.0
-
-
 def _mended(made: bytes) -> bytes:
     """Write the true length into a WAV from a pipe, in which it could not be known."""
     mended = io.BytesIO()

@@ -13,6 +13,7 @@ from tangy_hw.audio.number_reader import as_called, marked_up
 from tangy_hw.audio.player import PlayerError, SoundPlayer
 from tangy_hw.audio.synthesis import USUAL, NoSuchVoice, Synthesiser, VoiceError
 from tangy_profiles.cards import Deck
+from tangy_profiles.plain_text import plain
 from tangy_profiles.voice import VoicePreference
 
 
@@ -30,6 +31,8 @@ class _Line:
     text: str
     preference: VoicePreference
     heard: asyncio.Future[bool]
+    sound: Path | None = None
+    """A WAV file that is played in place of a text."""
 
 
 class SpeechVoice:
@@ -100,14 +103,22 @@ class SpeechVoice:
         """
         if interrupt:
             self.hush()
+        return self._enqueue(text, (preference or self._usual).over(self._usual))
+
+    def play(self, sound: Path) -> asyncio.Future[bool]:
+        """Queue a WAV file, as `say` queues a line."""
+        return self._enqueue("", self._usual, sound)
+
+    def _enqueue(
+        self, text: str, wanted: VoicePreference, sound: Path | None = None
+    ) -> asyncio.Future[bool]:
         heard: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
         if self._closed or self.silent:
             if self._synthesiser.reason:
                 self._tell_once(self._synthesiser.reason)
             heard.set_result(False)
             return heard
-        wanted = (preference or self._usual).over(self._usual)
-        self._queue.append(_Line(text, wanted, heard))
+        self._queue.append(_Line(text, wanted, heard, sound))
         self._quiet.clear()
         self._waiting.set()
         if self._worker is None:
@@ -186,7 +197,7 @@ class SpeechVoice:
         """Speak one line; return whether it was heard to its end."""
         try:
             while self._player is not None:
-                wav = await self._made(line.text, line.preference)
+                wav = line.sound or await self._made(line.text, line.preference)
                 if wav is None:
                     return True
                 self._begin()
@@ -196,6 +207,8 @@ class SpeechVoice:
                 except PlayerError:
                     if wav.exists():
                         raise
+                    if wav == line.sound:
+                        raise VoiceError(f"{plain(wav.name)} is not there any more.") from None
                     # Somebody has just emptied the cache, which is not the player's fault.
         except PlayerError as error:
             self._player = None

@@ -6,7 +6,7 @@
   var SILENT = 2000, AGAIN = 500;  // ms: without an event the link is lost; until it is tried again
   var LOOK = 1000;  // ms: until a tablet that is not paired looks whether it is now
   var page = String(Math.random()).slice(2) + String(Date.now());
-  var source = null, heard = Date.now(), waiting = null, dots = 0, picture = null;
+  var source = null, heard = Date.now(), waiting = null, dots = 0, picture = null, drawn = 0;
 
   function get(id) { return document.getElementById(id); }
 
@@ -54,7 +54,10 @@
     if (document.body.className.indexOf("lost") >= 0) { classes.push("lost"); }
     if (document.body.className.indexOf("unpaired") >= 0) { classes.push("unpaired"); }
     if (document.body.className.indexOf("sleepy") >= 0) { classes.push("sleepy"); }
-    if (shown.number) { classes.push("number"); } else { classes.push(shown.text ? "said" : "idle"); }
+    if (shown.number) { classes.push("number"); }
+    else if (shown.text) { classes.push("said"); }
+    else if (!shown.file) { classes.push("idle"); }
+    if (shown.file) { classes.push("pictured"); }
     if (shown.number && shown.text && shown.text !== shown.number) { classes.push("worded"); }
     if (shown.asks) { classes.push("asked"); }
     if (shown.before.length) { classes.push("followed"); }
@@ -73,6 +76,7 @@
     }
     document.body.className = classes.join(" ");
     get("text").style.fontSize = "";
+    get("file").style.height = (shown.text ? 0.72 : 0.97) * get("main").clientHeight + "px";
     if (shown.asks) { fitLine(get("asked"), get("asks"), get("asks").clientHeight * 0.76); }
     if (shown.before.length) { fitLine(get("before"), get("before"), get("before").clientHeight * 0.68); }
     if (shown.number) { fit(get("call"), get("main"), 20, 2000); }
@@ -165,10 +169,35 @@
     request.send();
   }
 
-  function hear(number) {
+  function hear() {
     heard = Date.now();
     lost(false);
-    answer(number);
+    answer(drawn);
+  }
+
+  function show(shown) {
+    picture = shown;
+    unpaired(false);
+    draw();
+    drawn = shown.n;
+    hear();
+  }
+
+  // Load the file of a picture first; what cannot be loaded is left out.
+  function load(shown) {
+    var file = get("file");
+    file.onload = file.onerror = null;
+    if (!shown.file) {
+      file.removeAttribute("src");
+      show(shown);
+      return;
+    }
+    file.onload = function () { show(shown); };
+    file.onerror = function () {
+      shown.file = false;
+      show(shown);
+    };
+    file.src = "file?n=" + shown.n;
   }
 
   function connect() {
@@ -191,13 +220,11 @@
   function listen() {
     if (source) { source.close(); }
     source = new EventSource("events?page=" + page);
+    drawn = 0;  // another robot may count anew
     source.addEventListener("show", function (event) {
-      picture = JSON.parse(event.data);
-      unpaired(false);
-      draw();
-      hear(picture.n);
+      load(JSON.parse(event.data));
     });
-    source.addEventListener("alive", function (event) { hear(event.data); });
+    source.addEventListener("alive", hear);
     source.onerror = function () {
       this.close();
       soon(AGAIN);

@@ -29,6 +29,7 @@ _LOG = logging.getLogger(__name__)
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.drivers.chest_child")
 PORT = 8765
 SHOW_SECONDS = 1.0  # in which a page must draw a picture; they take 10 to 50 ms
+FILE_SECONDS = 10.0  # in which it must have loaded the file of one
 GONE_SECONDS = 3.0  # without an answer: a page that is not there any more
 START_SECONDS = 20.0  # until its process says whether it listens; 0.2 s when nothing else runs
 AGAIN_SECONDS = 1.0  # until a process that ended is started again
@@ -141,7 +142,7 @@ class WebChestScreen:
         """Show a picture until the next one; a page that opens later shows it, too.
 
         Raises:
-            DeviceError: a page is open, and none has drawn it within a second.
+            DeviceError: a page is open, and none has drawn it in time.
         """
         _LOG.info("shows a picture on the chest screen")
         self._number += 1
@@ -151,12 +152,12 @@ class WebChestScreen:
         if not self.pages:
             return
         try:
-            async with asyncio.timeout(SHOW_SECONDS):
+            async with asyncio.timeout(FILE_SECONDS if picture.file else SHOW_SECONDS):
                 while not any(page.seen >= mine for page in self.windows.values()):
                     self._taken.clear()
                     await self._taken.wait()
         except TimeoutError:
-            raise DeviceError(f"{self.name}: no tablet has shown it within a second.") from None
+            raise DeviceError(f"{self.name}: no tablet has shown it in time.") from None
 
     def reading(self) -> Reading:
         """Return its state, and the age of the newest answer of a page.

@@ -2,7 +2,8 @@
 
 It speaks with `chest.js`. A tablet is paired once (`POST /pair` with the code of the console) and
 keeps a token as a cookie. A paired page gets events, `show` (a number and a picture, as JSON) and
-`alive` (the number again), and answers both with `POST /seen?page=P&number=N`. Other
+`alive` (the number again), and answers both with `POST /seen?page=P&number=N`. What it is told to
+show can have a `file`, which a page asks for as `GET /file?n=N`. Other
 browsers get only the page that asks for the code. A browser paired as a viewer shows the same
 pictures, but only the robot's tablets count as a working chest screen.
 """
@@ -31,9 +32,12 @@ from tangy_hw.drivers.chest_http import (
     stream_head,
 )
 from tangy_hw.drivers.chest_pairing import CodeCheck, Pairing, TooManyCodes
+from tangy_profiles.declared.media import read_picture
+from tangy_profiles.errors import ProfileError
 
 ALIVE_SECONDS = 0.4  # between two events, and so two answers of each page
 SEND_SECONDS = 2.0  # in which a page must take a message
+FILE_SECONDS = 20.0  # in which a paired tablet must take a picture's file of 4 MB at most
 ASK_SECONDS = 3.0  # in which a stranger's request must arrive, from its connection on
 IDLE_SECONDS = 30.0  # for which the connection of a paired tablet is kept between two requests
 GONE_SECONDS = 5.0  # without an answer: a page that makes room for another
@@ -98,6 +102,8 @@ class ChestServer:
         self._connections: dict[_Connection, None] = {}  # the oldest first
         self.windows: dict[str, _Page] = {}
         self._number = -1
+        self._file: tuple[bytes, str] | None = None
+        """What is shown with the picture's line, and its media type."""
         self.newest = b""
 
     async def start(self) -> None:
@@ -125,7 +131,8 @@ class ChestServer:
     def show(self, number: int, picture: Mapping[str, Any]) -> None:
         """Show a picture on all pages, and on those that open later."""
         self._number = number
-        self.newest = event("show", json.dumps({"n": number, **picture}))
+        self._file = _file_of(str(picture.get("file", "")))
+        self.newest = event("show", json.dumps({"n": number, **picture, "file": bool(self._file)}))
         for page in self.windows.values():
             page.changed.set()
 
@@ -187,7 +194,7 @@ class ChestServer:
                 await self._tell_events(request, writer)
                 return
             writer.write(self._answer(request, mine))
-            async with asyncio.timeout(SEND_SECONDS):
+            async with asyncio.timeout(FILE_SECONDS if mine.paired else SEND_SECONDS):
                 await writer.drain()
             if not request.stays:
                 return
@@ -207,10 +214,13 @@ class ChestServer:
             return response(405)
         if request.path in ("/paired", "/events"):
             return response(204 if asker.paired else 403)
-        if request.path not in FILES:
+        if request.path == "/file" and asker.paired and self._file is not None:
+            whole = response(200, *self._file)
+        elif request.path in FILES:
+            file, kind = FILES[request.path]
+            whole = response(200, (Path(__file__).parent / file).read_bytes(), kind)
+        else:
             return response(404, b"There is only one page here: /\n")
-        file, kind = FILES[request.path]
-        whole = response(200, (Path(__file__).parent / file).read_bytes(), kind)
         return whole if request.method == "GET" else whole.partition(b"\r\n\r\n")[0] + b"\r\n\r\n"
 
     def _pair(self, request: Request, asker: _Connection) -> bytes:
@@ -285,3 +295,10 @@ class ChestServer:
                 await writer.drain()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(page.changed.wait(), ALIVE_SECONDS)
+
+
+def _file_of(path: str) -> tuple[bytes, str] | None:
+    """Read a picture's file; None if there is none, or it cannot be shown."""
+    with contextlib.suppress(ProfileError):
+        return read_picture(path) if path else None
+    return None

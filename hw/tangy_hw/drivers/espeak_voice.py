@@ -118,12 +118,26 @@ class SpokenVoice:
             DeviceError: it cannot be heard.
         """
         _LOG.info("says %d characters by espeak-ng", len(text))
+        await self._heard(lambda voice: voice.say(text))
+
+    async def play(self, sound: Path) -> None:
+        """Play a WAV file, and wait until it was heard, or was cut by `hush`.
+
+        Cancelling the wait cuts the sound.
+
+        Raises:
+            DeviceError: it cannot be heard.
+        """
+        _LOG.info("plays a sound")
+        await self._heard(lambda voice: voice.play(sound))
+
+    async def _heard(self, begin: Callable[[SpeechVoice], asyncio.Future[bool]]) -> None:
         voice, hushes = self._voice, self._hushes
         if voice is None or self._dead:
             raise DeviceError(self._dead)
         self._failed = ""
         try:
-            heard = await voice.say(text)
+            heard = await begin(voice)
         except asyncio.CancelledError:
             await self.hush()
             raise

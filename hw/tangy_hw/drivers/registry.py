@@ -167,6 +167,7 @@ def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
                 say=settings.text("say", "/voice/say"),
                 said=settings.text("said", "/voice/said"),
                 hush=settings.text("hush", "/voice/hush"),
+                play=settings.text("play", ""),
                 with_id=settings.flag("with_id", False),
                 diagnostics=diagnostics,
             )

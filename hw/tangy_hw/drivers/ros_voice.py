@@ -7,6 +7,7 @@ import json
 import logging
 from contextlib import suppress
 from itertools import count
+from pathlib import Path
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.ros_messages import Message
@@ -15,6 +16,7 @@ from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, STALE, DeviceState, Reading
 from tangy_profiles.reading import plain
+from tangy_profiles.wav_length import wav_seconds
 
 _LOG = logging.getLogger(__name__)
 
@@ -27,6 +29,7 @@ class RosVoice:
 
     It is acknowledged by its own text. With `with_id` it is sent as JSON, {"id": 7, "text": ...},
     and acknowledged by the id, alone or as JSON: for robots that normalise what they are told.
+    With a topic for sounds it takes the path of a WAV file, and acknowledges that in the same way.
     """
 
     def __init__(
@@ -37,6 +40,7 @@ class RosVoice:
         say: str = "/voice/say",
         said: str = "/voice/said",
         hush: str = "/voice/hush",
+        play: str = "",
         with_id: bool = False,
         patience: float = PATIENCE_SECONDS,
         diagnostics: RosDiagnostics | None = None,
@@ -49,16 +53,17 @@ class RosVoice:
             say: the topic that takes the text to speak.
             said: the topic that reports the end of each text.
             hush: takes std_msgs/Empty, upon which it is quiet.
+            play: the topic that takes the path of a WAV file to play ("": it plays none).
             with_id: whether sentences are sent with an id.
             patience: s beyond what a sentence takes, until the voice is taken to be dead.
             diagnostics: what its server says of its devices, if it does.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics
-        self._say, self._said, self._hush = say, said, hush
+        self._say, self._said, self._hush, self._play = say, said, hush, play
         self._with_id, self._patience = with_id, patience
         self._numbers = count(1)
-        self._waiting: dict[asyncio.Future[None], tuple[str, int]] = {}
+        self._waiting: dict[asyncio.Future[None], tuple[str, float]] = {}
         self._dead = self._begun = False
 
     async def start(self) -> None:
@@ -69,6 +74,8 @@ class RosVoice:
             self._begun = True
             self._bridge.advertise(self._say, "std_msgs/String")
             self._bridge.advertise(self._hush, "std_msgs/Empty")
+            if self._play:
+                self._bridge.advertise(self._play, "std_msgs/String")
             self._bridge.subscribe(self._said, "std_msgs/String", self._hear)
 
     async def close(self) -> None:
@@ -99,17 +106,30 @@ class RosVoice:
             DeviceError: there is no link, or nobody says it.
         """
         text = " ".join(text.split())
-        if not text:
-            return
+        if text:
+            _LOG.info("says %d characters on %s", len(text), self._say)
+            await self._acknowledged(self._say, text, CHARACTER_SECONDS * len(text))
+
+    async def play(self, sound: Path) -> None:
+        """Play a WAV file, and wait until it was played, or until `hush`.
+
+        Raises:
+            DeviceError: there is no link, it plays no sounds, or nobody plays it.
+        """
+        if not self._play:
+            raise DeviceError(f"{self.name} plays no sounds: name its topic in 'play'.")
+        _LOG.info("plays a sound on %s", self._play)
+        await self._acknowledged(self._play, str(sound), wav_seconds(sound))
+
+    async def _acknowledged(self, topic: str, text: str, seconds: float) -> None:
+        """Send a text, and wait for its end, which may take so many s."""
         key = str(next(self._numbers)) if self._with_id else text
         data = json.dumps({"id": int(key), "text": text}) if self._with_id else text
-        _LOG.info("says %d characters on %s", len(text), self._say)
-        self._bridge.publish(self._say, {"data": data})
+        self._bridge.publish(topic, {"data": data})
         over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        before = sum(length for _, length in self._waiting.values())
-        self._waiting[over] = key, len(text)
+        takes = self._patience + seconds + sum(before for _, before in self._waiting.values())
+        self._waiting[over] = key, seconds
         clock = self._bridge.clock
-        takes = self._patience + CHARACTER_SECONDS * (before + len(text))
         try:
             said = await awaited(over, clock() + takes, clock, lambda: self._bridge.connected)
         finally:

@@ -56,11 +56,16 @@ class Commands:
             self._heedless = before
 
     def perform(
-        self, text: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
+        self,
+        text: str,
+        picture: Picture,
+        posture: Mapping[str, Sequence[float]] | None = None,
+        sound: str = "",
     ) -> dict[str, Any]:
-        """Let the robot say, show and gesture (joints in rad); raises as `do`."""
+        """Let the robot say, show, gesture (joints in rad), then play a WAV; raises as `do`."""
         angles = {limb: list(joints) for limb, joints in (posture or {}).items()}
-        return self.do("perform", text=text, picture=picture._asdict(), posture=angles)
+        shown = picture._asdict()
+        return self.do("perform", text=text, picture=shown, posture=angles, sound=sound)
 
     def wait(self, seconds: float, *, asks: bool = False) -> None:
         """Let s pass, with `asks` until somebody else asks; raises as `do`."""

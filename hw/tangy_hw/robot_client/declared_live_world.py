@@ -21,7 +21,7 @@ from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.silence import silence
-from tangy_profiles.declared.speech import again, with_names, words
+from tangy_profiles.declared.speech import again, media, with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.defaults import ASK_AGAIN
@@ -221,10 +221,16 @@ class DeclaredLiveWorld(LiveWorld):
         after.execute(behaviour.name, whom)
         speech, image = words(after, game, behaviour.name, action.strategy, whom)
         asks = "" if behaviour.persuades else self.seat_of(whom)
-        picture = Picture(with_names(image, self.seat_of), asks=asks)
-        posture = self._robot.postures[action.posture]
+        shown, heard = media(after, behaviour.name)
+        picture = Picture(
+            with_names(image, self.seat_of), asks=asks, file=shown.path if shown else ""
+        )
         self.say(
-            with_names(speech, self.name_of), picture, posture, with_names(speech, self.seat_of)
+            with_names(speech, self.name_of),
+            picture,
+            self._robot.postures[action.posture],
+            with_names(speech, self.seat_of),
+            heard.path if heard else "",
         )
         if drives and not self._arrives(after.place):
             raise DeviceError("The robot did not get there.")

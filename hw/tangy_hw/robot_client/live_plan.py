@@ -43,9 +43,14 @@ class LivePlan(PlannedGame):
     _room: Room
 
     def say(
-        self, speech: str, picture: Picture, posture: Posture = None, written: str = ""
+        self,
+        speech: str,
+        picture: Picture,
+        posture: Posture = None,
+        written: str = "",
+        sound: str = "",
     ) -> None:
-        """Speak and show (joints in rad); without a voice the screen shows the speech.
+        """Speak, show (joints in rad), play a WAV; without a voice the screen shows the speech.
 
         What is said is `written` otherwise where all can read it, if that is given.
 
@@ -54,9 +59,9 @@ class LivePlan(PlannedGame):
         """
         in_words = picture._replace(text=written or speech)
         if speech and not self._has_voice:
-            self.commands.perform(speech, in_words, posture)
+            self.commands.perform(speech, in_words, posture, sound)
             return
-        done = self.commands.perform(speech, picture, posture)
+        done = self.commands.perform(speech, picture, posture, sound)
         if speech and not done.get("said"):  # it failed just now, or the robot has no voice
             self.commands.perform("", in_words)
 

@@ -10,10 +10,10 @@ nothing and latches; only whoever asked for it takes it back by `release`.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 
-from tangy_hw.device_protocols import STILL, Clock, Picture, Pose, Twist
+from tangy_hw.device_protocols import STILL, Clock, Pose, Twist
 from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
@@ -90,6 +90,7 @@ class LiveRobot:
         self._alone_since: float | None = None
         self._left_alone = False
         self._performer = Performer(body, self.passing, robot, navigator, lambda: self._halted)
+        self.perform = self._performer.perform
         self._courtesies = Courtesies(courtesies or {}, lambda text: self.perform(text=text))
         self._wanted: Pose | None = None
         self._was = ""  # how the last drive ended
@@ -190,26 +191,6 @@ class LiveRobot:
         return self.stopped or self.alone() or self.watchdogs.hazard() or self.pauses.why
 
     # ------------------------------------------------------------------------ what it does
-
-    async def perform(
-        self,
-        *,
-        text: str = "",
-        picture: Picture | None = None,
-        posture: Mapping[str, Sequence[float]] | None = None,
-        gazes: bool = False,
-    ) -> dict[str, bool]:
-        """Say, show and gesture (joints in rad) at once; return which of it was done.
-
-        What cannot be done is left out: its device says so in its reading. With an arm that has
-        an error there are no gestures; the eyes are still turned, which `gazes` says this is for.
-
-        Raises:
-            BrokenOff: it was stopped meanwhile.
-        """
-        return await self._performer.perform(
-            text=text, picture=picture, posture=posture, gazes=gazes
-        )
 
     async def go(self, goal: Pose, name: str = "") -> bool:
         """Drive somewhere; return whether it has arrived (no: there is no way, or it is stuck).

@@ -6,15 +6,17 @@ import asyncio
 import logging
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from math import hypot
+from pathlib import Path
 from typing import Any
 
-from tangy_hw.device_protocols import Arms, Picture
+from tangy_hw.device_protocols import Arms, Picture, Voice
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.control_loop import ControlLoop
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import ERROR
 from tangy_profiles.robot import Robot
+from tangy_profiles.wav_length import wav_seconds
 
 SPEECH_SECONDS = 60.0  # for one line
 POSE_SECONDS = 1.5  # in which arms are where they should be
@@ -61,8 +63,16 @@ class Performer:
         picture: Picture | None = None,
         posture: Angles | None = None,
         gazes: bool = False,
+        sound: Path | None = None,
     ) -> dict[str, bool]:
-        """Say, show and gesture (joints in rad)."""
+        """Say, show and gesture (joints in rad) at once, then play a sound; return what was done.
+
+        What cannot be done is left out: its device says so in its reading. With an arm that has
+        an error there are no gestures; the eyes are still turned, which `gazes` says this is for.
+
+        Raises:
+            BrokenOff: it was stopped meanwhile.
+        """
         doing: dict[str, Coroutine[Any, Any, None]] = {}
         if self._body.voice is not None and text:
             doing["said"] = self._body.voice.say(text)
@@ -72,10 +82,15 @@ class Performer:
         if arms is not None and posture and (gazes or self._may_gesture(arms, posture)):
             doing["posed"], self._gaze = self._pose(arms, posture), ""
         tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
+        seconds = SPEECH_SECONDS
+        if self._body.voice is not None and sound is not None:
+            playing = _play_after(tasks.get("said"), self._body.voice, sound)
+            tasks["played"] = asyncio.create_task(playing)
+            seconds += wav_seconds(sound)
         try:
             await self._passing.until(
                 lambda: bool(self._halted()) or all(task.done() for task in tasks.values()),
-                SPEECH_SECONDS,
+                seconds,
             )
         finally:
             for task in tasks.values():
@@ -135,3 +150,10 @@ class Performer:
 def _listed(angles: Angles) -> dict[str, list[float]]:
     """Return angles as they come over a pipe."""
     return {limb: [float(joint) for joint in joints] for limb, joints in angles.items()}
+
+
+async def _play_after(saying: asyncio.Task[None] | None, voice: Voice, sound: Path) -> None:
+    """Play a sound after what is being said, which may fail."""
+    if saying is not None:
+        await asyncio.wait({saying})
+    await voice.play(sound)

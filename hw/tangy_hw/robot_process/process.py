@@ -20,6 +20,7 @@ import signal
 import sys
 import time
 from collections.abc import Awaitable, Callable
+from pathlib import Path
 from typing import Any, assert_never
 
 from tangy_hw.device_protocols import Twist
@@ -251,12 +252,13 @@ class RobotProcess:
     # ---------------------------------------------------------------------- what it does
 
     async def _perform(self, asked: Asked) -> Answer:
-        picture = asked.get("picture")
+        picture, sound = asked.get("picture"), text_of(asked, "sound", "")
         return dict(
             await self.robot.perform(
                 text=text_of(asked, "text", ""),
                 picture=None if picture is None else picture_of(picture),
                 posture=asked.get("posture"),
+                sound=Path(sound) if sound else None,
             )
         )
 

@@ -89,6 +89,7 @@ def picture_of(told: Mapping[str, Any]) -> Picture:
         str(told.get("number", "")),
         tuple(map(str, told.get("before", ()))),
         str(told.get("asks", "")),
+        str(told.get("file", "")),
     )
 
 

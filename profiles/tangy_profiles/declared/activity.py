@@ -21,8 +21,8 @@ from tangy_profiles.declared.situations import (
     situations,
     told,
 )
-from tangy_profiles.declared.speech import SLOT, with_names
-from tangy_profiles.declared.vocabulary import Selector
+from tangy_profiles.declared.speech import with_names
+from tangy_profiles.declared.vocabulary import SLOT, Selector
 from tangy_profiles.effects import Effect
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.state import EVERYBODY, Outcome, Situation

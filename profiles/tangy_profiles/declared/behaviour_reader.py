@@ -12,7 +12,7 @@ from tangy_profiles.declared.conditions import Facts, Phrasing
 from tangy_profiles.declared.items import read_csv
 from tangy_profiles.declared.model import DeclaredBehaviour
 from tangy_profiles.declared.section import Section
-from tangy_profiles.declared.vocabulary import SELECTORS, Selector
+from tangy_profiles.declared.vocabulary import SELECTORS, SLOT, Selector
 from tangy_profiles.reading import nearest
 
 KEYS = (
@@ -26,9 +26,10 @@ KEYS = (
     "posture",
     "image",
     "again",
+    "picture",
+    "sound",
 )
 POSTURE = "rest"
-SLOT = re.compile(r"\{([^{}]*)\}")
 PHRASE = re.compile(r"[a-z']+( [a-z']+)*")
 OF_EACH = " of each"
 """Behind the name of a count in a slot: the count of every player."""
@@ -75,9 +76,11 @@ def read_behaviours(
             _read_phrases(one, name, said),
             one.text("question", name),
             one.text("posture", POSTURE),
-            _text(one, "image", one.text("image", title), slots),
+            _text(one, "image", one.text("image", "" if "picture" in one else title), slots),
             _read_wordings(one, name, said),
             tuple(_text(one, "again", text, slots) for text in one.texts("again", single=True)),
+            one.text("picture", ""),
+            one.text("sound", ""),
         )
         if behaviour.again and not any(who != "group" for who in behaviour.to):
             one.wrong("again", "needs a person in 'to': it is a person who is asked again")

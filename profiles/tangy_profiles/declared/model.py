@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 from tangy_profiles.declared.vocabulary import (
     ADDRESSED,
@@ -82,6 +83,13 @@ class Stage:
     """What is going on, for people; {name} is the person of the stage ("": the name tells it)."""
 
 
+class MediaFile(NamedTuple):
+    """A picture, or a sound that lasts for so many s: the path of its file."""
+
+    path: str
+    seconds: float = 0.0
+
+
 @dataclass(frozen=True, slots=True)
 class DeclaredBehaviour:
     """A declared behaviour: its effects, its persons, and its texts."""
@@ -100,6 +108,10 @@ class DeclaredBehaviour:
     """Other ways to ask for it: the understanding learns from them, nothing listens for them."""
     again: tuple[str, ...] = ()
     """What a person is told, one text after another, who says nothing to it."""
+    picture: str = ""
+    """The name of a picture's file, perhaps with columns of the items as slots ("": none)."""
+    sound: str = ""
+    """The name of a sound's file, likewise."""
 
     @property
     def invites(self) -> bool:
@@ -163,6 +175,8 @@ class Declaration:
     patience: float = 10.0
     summary: str = ""
     """For how many people it is, how long it takes, and what they need."""
+    media: Mapping[str, MediaFile] = field(default_factory=dict)
+    """The pictures and sounds, by the names of their files."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def bounds_of(self, fact: Fact) -> tuple[int, ...]:

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import cast
 
-from tangy_profiles.declared.behaviour_reader import SLOT, read_behaviours
+from tangy_profiles.declared.behaviour_reader import read_behaviours
 from tangy_profiles.declared.conditions import Phrasing
 from tangy_profiles.declared.facts_reader import read_facts, read_words
 from tangy_profiles.declared.items import read_csv, with_right_options
+from tangy_profiles.declared.media import read_media
 from tangy_profiles.declared.model import (
     Declaration,
     DeclaredBehaviour,
@@ -21,7 +22,14 @@ from tangy_profiles.declared.model import (
 )
 from tangy_profiles.declared.section import Section
 from tangy_profiles.declared.source import SourceText
-from tangy_profiles.declared.vocabulary import ASKING, ORDERS, SELECTORS, Order, Selector
+from tangy_profiles.declared.vocabulary import (
+    ASKING,
+    ORDERS,
+    SELECTORS,
+    SLOT,
+    Order,
+    Selector,
+)
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.given_file import lines_of, read_given
 from tangy_profiles.phones import read_phones
@@ -89,6 +97,7 @@ def _read(top: Section, path: Path) -> Declaration:
         summary=top.text("summary", ""),
         patience=top.number("patience", 0.1, 600, 10.0),
         pronunciations=_read_pronunciations(top.table("pronunciations")),
+        media=read_media(top, behaviours, items, path.parent),
     )
 
 

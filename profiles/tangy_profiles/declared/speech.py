@@ -6,8 +6,10 @@ import re
 from collections.abc import Callable
 
 from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.media import file_name
+from tangy_profiles.declared.model import MediaFile
+from tangy_profiles.declared.vocabulary import SLOT
 
-SLOT = re.compile(r"\{([^{}]*)\}")
 PERSON = re.compile(r"\x02([^\x03]*)\x03")
 """A person in a filled text, by the id: the worlds do not know what people are called."""
 OF_EACH = " of each"
@@ -55,6 +57,17 @@ def words(
     in_turn = [texts[(times + n) % len(texts)] for n in range(len(texts))]
     spoken = (filled(game, text, whom) for text in in_turn)
     return next((text for text in spoken if text), ""), filled(game, declared.image, whom)
+
+
+def media(game: DeclaredGame, behaviour: str) -> tuple[MediaFile | None, MediaFile | None]:
+    """Return the picture and the sound of a behaviour, by the facts that it leaves."""
+    declaration = game.declaration
+    declared = declaration.behaviours[behaviour]
+    names = (
+        file_name(text, declaration.items, game.row) for text in (declared.picture, declared.sound)
+    )
+    picture, sound = (declaration.media.get(name) for name in names)
+    return picture, sound
 
 
 def again(game: DeclaredGame, behaviour: str, whom: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Literal, get_args
 
@@ -61,6 +62,9 @@ BUILT_IN: dict[str, tuple[str, ...]] = {
 """The facts that every activity has, with their values; all but the items are a player's."""
 
 NO, YES = "no", "yes"
+
+SLOT = re.compile(r"\{([^{}]*)\}")
+"""A slot of a text, as `{name}`."""
 
 MARKS = ("facts", "flags", "items", "people")
 """Keys by which the file of an activity declared by facts is known."""

@@ -44,6 +44,8 @@ class DeclaredPeople(People):
         super().begin(now)
         self._began = now
         self._unheard: dict[str, Act] = {}  # what each answered that was not clear
+        self.perceived: tuple[int, ...] = ()
+        """The rows of the items whose picture or sound comes with the next sentence."""
         self.known = DeclaredGame(self._declaration, self.ids)
         """The game as the people at the table understand it."""
 
@@ -86,9 +88,10 @@ class DeclaredPeople(People):
         whom = heard.person or next((one for one in named if one is not None), None)
         whom = None if not heard.person and "group" in declared.to[:1] else whom
         done = game.execute(behaviour.name, whom)
-        if heard.rows and game.row not in heard.rows and game.row >= 0:
+        rows, self.perceived = heard.rows or self.perceived, ()
+        if rows and game.row not in rows and game.row >= 0:
             order = list(game.order)
-            order[game.round - 1] = heard.rows[0]
+            order[game.round - 1] = rows[0]
             game.order = tuple(order)
         self.game.opened = True
         self.game.over = game.over

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.model import Items
-from tangy_profiles.declared.speech import SLOT
+from tangy_profiles.declared.vocabulary import SLOT
 from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.person import Person
 from tangy_profiles.room import SEAT

@@ -67,6 +67,7 @@ class DeviceServers:
         ros.on_message("/cmd_vel", self._driven)
         ros.on_message("/joint_trajectory", self._posed)
         ros.on_message("/voice/say", lambda told: self.world.say(str(told["data"])))
+        ros.on_message("/voice/play", lambda told: self.world.play(str(told["data"])))
         ros.on_message("/voice/hush", lambda _: self.world.hush())
         if self.stepped:
             ros.provide("/bench/advance", self._advance)

@@ -23,7 +23,8 @@ def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
         people: the group.
         told: `patterns` and `together` of what wins; `done`, whose sign comes down; `away`, who is
             not here; `taken_back`, a number that counts as not called; `memory`, where an
-            interrupted game by facts goes on. Each may be left out.
+            interrupted game by facts goes on; `rows`, the rows of the items whose picture or sound
+            they see or hear with the next sentence. Each may be left out.
 
     Raises:
         KeyError: somebody or some pattern is not known.
@@ -31,6 +32,8 @@ def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
     """
     if "memory" in told and isinstance(people, DeclaredPeople):
         people.remember(read(GameMemory, told["memory"]))
+    if "rows" in told and isinstance(people, DeclaredPeople):
+        people.perceived = tuple(map(int, told["rows"]))
     if "patterns" in told:
         _play_for(people, tuple(map(str, told["patterns"])), int(told["together"]))
     if "done" in told:

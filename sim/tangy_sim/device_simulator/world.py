@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import hypot, pi
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import SEAT, Room
 from tangy_profiles.state import FRONT
+from tangy_profiles.wav_length import wav_seconds
 from tangy_sim.device_simulator.declared_people import DeclaredPeople
 from tangy_sim.device_simulator.declared_reception import DeclaredReception
 from tangy_sim.device_simulator.drive import RADIUS, Odometer, SimulatedWheels, moved
@@ -96,7 +98,7 @@ class BenchWorld:
         else:
             self.people = People(activity, people, self.faults, seed=seed, users=users)
             self._hearing = SpeechReception(activity, robot, people, room.seat_word or SEAT)
-        self._speech: deque[str] = deque()
+        self._speech: deque[tuple[str, float]] = deque()
         self._silent_from = 0.0  # time at which the current speech ends
         self.said: list[str] = []
         """What was said to its end since somebody last looked; who acts on it empties it."""
@@ -146,11 +148,18 @@ class BenchWorld:
 
     def say(self, text: str) -> None:
         """Begin to say something, after whatever is being said."""
+        self._utter(text, speaking_seconds(text))
+
+    def play(self, sound: str) -> None:
+        """Begin to play the WAV file at a path, after whatever is being said."""
+        self._utter(sound, wav_seconds(Path(sound)))
+
+    def _utter(self, text: str, seconds: float) -> None:
         if "voice-dead" in self.faults:
             return
         if not self._speech:
-            self._silent_from = self.now + speaking_seconds(text)
-        self._speech.append(text)
+            self._silent_from = self.now + seconds
+        self._speech.append((text, seconds))
 
     def read(self, text: str) -> None:
         """Let people read what the screen shows, which says as much as a voice that is dead."""
@@ -163,13 +172,13 @@ class BenchWorld:
 
     def _speak(self) -> None:
         while self._speech and self.now >= self._silent_from:
-            text = self._speech.popleft()
+            text, _ = self._speech.popleft()
             if "voice-dead" in self.faults:
                 continue
             self.said.append(text)
             self._understood(text)
             if self._speech:
-                self._silent_from = self.now + speaking_seconds(self._speech[0])
+                self._silent_from = self.now + self._speech[0][1]
 
     def _understood(self, text: str) -> None:
         heard = self._hearing.hear(text)

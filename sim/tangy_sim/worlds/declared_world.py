@@ -18,7 +18,7 @@ from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.silence import silence
-from tangy_profiles.declared.speech import again, words
+from tangy_profiles.declared.speech import again, media, words
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
@@ -123,7 +123,8 @@ class DeclaredWorld:
             if done.completed
             else ("", "")
         )
-        seconds = 1.0 + SECONDS_A_WORD * len(speech.split())
+        _, sound = media(game, behaviour) if done.completed else (None, None)
+        seconds = 1.0 + SECONDS_A_WORD * len(speech.split()) + (sound.seconds if sound else 0.0)
         self.happened.clear()
         self._not_clear.clear()
         response = self._respond(done, action)
