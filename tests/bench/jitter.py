@@ -97,7 +97,7 @@ def busy(count: int) -> Iterator[None]:
             loop.wait()
 
 
-def _drive(world: LiveWorld, over: threading.Event) -> None:
+def drive_on(world: LiveWorld, over: threading.Event) -> None:
     places = (*world.people, FRONT)
     while not over.is_set():
         for place in places:
@@ -130,7 +130,7 @@ def record(path: Path, seconds: float, load: int, holds: Sequence[float]) -> Non
         rows = csv.writer(file)
         rows.writerow(["at", *DRIVES_BY])
         beside = [
-            threading.Thread(target=_drive, args=(world, over)),
+            threading.Thread(target=drive_on, args=(world, over)),
             threading.Thread(target=_hold, args=(world, holds, over)),
         ]
         for thread in beside:

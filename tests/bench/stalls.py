@@ -1,9 +1,10 @@
 """What becomes of a robot process that is stopped in a game: dialogs, their causes, and the base.
 
-Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]...`. Games are played on the
-bench in real time, with staff who clear what halts the robot. Its process is stopped for so many s
-in each stage in turn, N times for each length: while a number is due, while it drives to a person
-who asks, and beside that person. A dialog is a critical fault.
+Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]... [--stage S]... [--load N]`.
+Games are played on the bench in real time, with staff who clear what halts the robot, and with N
+busy processes beside them. The robot's process is stopped for so many s in each stage in turn, N
+times for each length: while a number is due, while it drives to a person who asks, and beside that
+person. A dialog is a critical fault.
 """
 
 from __future__ import annotations
@@ -14,11 +15,13 @@ import signal
 import threading
 import time
 from collections import Counter
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
 from random import Random
+from statistics import quantiles
 from tempfile import TemporaryDirectory
 
 from tangy_profiles.fault_file import load_faults
@@ -31,6 +34,7 @@ from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.fault import Diagnosed
 from tests.bench.fault_latency import teach
+from tests.bench.jitter import busy
 
 RESTS = (2.0, 6.0)  # s between two stalls, by chance
 STAGES = ("facilitate", "navigate", "help")
@@ -40,12 +44,24 @@ SETTLES = 4.0  # s after a stall in which what comes of it is told
 
 @dataclass
 class Stall:
-    """One stall: how long it was, in which stage, the dialogs after it, and when the base stood."""
+    """One stall: how long it was, in which stage, the dialogs after it, and what the base did.
+
+    If it drove, `told` is after how many s it was told to stand, and `stood` after how many it did.
+    """
 
     seconds: float
     stage: str
     dialogs: list[str] = field(default_factory=list)
+    told: float | None = None
     stood: float | None = None
+
+    def look(self, world: BenchedWorld, after: float) -> None:
+        """Note what the base does so many s after the stall began."""
+        truth = world.truth()
+        if self.told is None and not any(truth["commanded"]):
+            self.told = after
+        if self.stood is None and not truth["moving"]:
+            self.stood = after
 
 
 def play(
@@ -88,21 +104,21 @@ def stall(world: BenchedWorld, seconds: float, held: threading.Event, dialogs: l
     assert pid is not None
     one = Stall(seconds, world.tracker.state().situation.stage)
     before = len(dialogs)
-    moving = world.truth()["moving"]
+    moving = any(world.truth()["commanded"])
     held.set()
     os.kill(pid, signal.SIGSTOP)
     began = time.monotonic()
     try:
         while (now := time.monotonic()) < began + seconds:
-            if moving and one.stood is None and not world.truth()["moving"]:
-                one.stood = now - began
+            if moving:
+                one.look(world, now - began)
             time.sleep(0.01)
     finally:
         os.kill(pid, signal.SIGCONT)
     until = time.monotonic() + SETTLES
     while time.monotonic() < until:
-        if moving and one.stood is None and not world.truth()["moving"]:
-            one.stood = time.monotonic() - began
+        if moving:
+            one.look(world, time.monotonic() - began)
         time.sleep(0.02)
         if time.monotonic() > until - SETTLES / 2:
             held.clear()
@@ -110,11 +126,22 @@ def stall(world: BenchedWorld, seconds: float, held: threading.Event, dialogs: l
     return one
 
 
+def spread(found: Sequence[float | None]) -> str:
+    """Return how many there are, their median, 95th percentile, and most, in s."""
+    there = sorted(one for one in found if one is not None)
+    if len(there) < 2:
+        return f"{there} s"
+    cuts = quantiles(there, n=20, method="inclusive")
+    return f"p50 {cuts[9]:.2f} p95 {cuts[18]:.2f} most {there[-1]:.2f} s ({len(there)} times)"
+
+
 def main() -> None:
     """Play, stop, and print what came of it."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--times", type=int, default=3)
     parser.add_argument("--seconds", type=float, action="append")
+    parser.add_argument("--stage", choices=STAGES, action="append")
+    parser.add_argument("--load", type=int, default=0, help="busy processes beside it")
     given = parser.parse_args()
     lengths = given.seconds or [0.3, 1.0, 4.0, 10.0]
     chance, dialogs = Random(1), list[str]()
@@ -123,15 +150,18 @@ def main() -> None:
         teach(workspace)
         policy, _ = load_policy(workspace.store, workspace.activity)
         book = load_faults(workspace.robot)
-        with open_bench(
-            workspace, seed=1, stepped=False, pace=1.0, book=book, kind=BenchedWorld
-        ) as world:
+        with (
+            open_bench(
+                workspace, seed=1, stepped=False, pace=1.0, book=book, kind=BenchedWorld
+            ) as world,
+            busy(given.load),
+        ):
             supervision = workspace.supervision(policy, 1, asks=True, world=world)
             control = GameController(supervision, SCRIPTED, robot=world, paced=False)
             game = threading.Thread(target=play, args=(control, over, held, dialogs))
             game.start()
             found: list[Stall] = []
-            for stage, seconds in product(STAGES, lengths * given.times):
+            for stage, seconds in product(given.stage or STAGES, lengths * given.times):
                 time.sleep(chance.uniform(*RESTS))
                 come_to(world, stage, chance)
                 found.append(stall(world, seconds, held, dialogs))
@@ -143,12 +173,13 @@ def main() -> None:
     for seconds in lengths:
         those = [one for one in found if one.seconds == seconds]
         codes = Counter(code for one in those for code in one.dialogs)
-        stood = sorted(one.stood for one in those if one.stood is not None)
         print(
             f"{seconds:g} s x {len(those)}: {sum(bool(o.dialogs) for o in those)} with a dialog, "
-            f"{max(len(o.dialogs) for o in those)} at most, {dict(codes)}; base stood after "
-            f"{[round(s, 2) for s in stood]} s; stages {dict(Counter(o.stage for o in those))}"
+            f"{max(len(o.dialogs) for o in those)} at most, {dict(codes)}; "
+            f"stages {dict(Counter(o.stage for o in those))}"
         )
+    print("base told to stand after", spread([one.told for one in found]))
+    print("base stood after", spread([one.stood for one in found]))
     print("pauses", pauses)
 
 

@@ -125,7 +125,6 @@ Opens = Callable[[Wiring, DriverSettings], Device]
 
 def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
     from tangy_hw.drivers.ros_arms import RosArms
-    from tangy_hw.drivers.ros_base import REPEAT_SECONDS, RosBase
     from tangy_hw.drivers.ros_battery import RosBattery
     from tangy_hw.drivers.ros_laser import RosLaser
     from tangy_hw.drivers.ros_navigator import RosNavigator
@@ -137,15 +136,7 @@ def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
     diagnostics = wiring.diagnostics(at)
     match settings.device:
         case "base":
-            return RosBase(
-                link,
-                drive=settings.text("drive", "/cmd_vel"),
-                odometry=settings.text("odometry", "/odom"),
-                stamped=settings.flag("stamped", False),
-                # A fast bench uses its own time; the machine's would make runs differ.
-                repeat=0.0 if isinstance(wiring.clock, SteppedClock) else REPEAT_SECONDS,
-                diagnostics=diagnostics,
-            )
+            return _ros_base(wiring, settings, link, diagnostics)
         case "laser":
             return RosLaser(
                 link,
@@ -187,6 +178,32 @@ def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
         states=settings.text("states", "/joint_states"),
         torque=settings.text("torque", "/joint_torque"),
         names=settings.joints("names"),
+        diagnostics=diagnostics,
+    )
+
+
+def _ros_base(
+    wiring: Wiring, settings: DriverSettings, link: Rosbridge, diagnostics: RosDiagnostics
+) -> Device:
+    from tangy_hw.drivers.ros_base import LIVES_SECONDS, MOST_SECONDS, REPEAT_SECONDS, RosBase
+    from tangy_hw.drivers.velocity_watchdog import VelocityWatchdog
+
+    # A fast bench uses its own time; the machine's would make runs differ.
+    stepped = isinstance(wiring.clock, SteppedClock)
+    drive, stamped = settings.text("drive", "/cmd_vel"), settings.flag("stamped", False)
+    lives = settings.number("lives", LIVES_SECONDS)
+    if not REPEAT_SECONDS < lives <= MOST_SECONDS:
+        raise settings.wrong(f"lives must be above {REPEAT_SECONDS:g} s, up to {MOST_SECONDS:g}.")
+    return RosBase(
+        link,
+        drive=drive,
+        odometry=settings.text("odometry", "/odom"),
+        stamped=stamped,
+        lives=lives,
+        repeat=0.0 if stepped else REPEAT_SECONDS,
+        watchdog=None
+        if stepped
+        else VelocityWatchdog(link.url, ros=link.ros, drive=drive, stamped=stamped, lives=lives),
         diagnostics=diagnostics,
     )
 

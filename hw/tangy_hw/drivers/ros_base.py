@@ -8,15 +8,18 @@ import math
 from contextlib import suppress
 
 from tangy_hw.device_protocols import STILL, DeviceError, Odometry, Stamped, Twist
-from tangy_hw.drivers.ros_messages import Message, header, odometry_of, twist_message
+from tangy_hw.drivers.ros_messages import Message, odometry_of
 from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
+from tangy_hw.drivers.ros_velocity import VelocityTopic
 from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.drivers.velocity_watchdog import VelocityWatchdog
 from tangy_profiles.health import Reading
 
 _LOG = logging.getLogger(__name__)
 
-HOLDS_SECONDS = 0.5  # for which a command holds; so long bases hold one themselves
+LIVES_SECONDS = 0.2  # a command's time to live; see docs/decisions/faults.md
+MOST_SECONDS = 1.0  # that it may be set to
 REPEAT_SECONDS = 0.1  # between two of the same command; bases want 10 a second
 
 
@@ -31,7 +34,9 @@ class RosBase:
         drive: str = "/cmd_vel",
         odometry: str = "/odom",
         stamped: bool = False,
+        lives: float = LIVES_SECONDS,
         repeat: float = REPEAT_SECONDS,
+        watchdog: VelocityWatchdog | None = None,
         diagnostics: RosDiagnostics | None = None,
     ) -> None:
         """Name its topics.
@@ -42,13 +47,16 @@ class RosBase:
             drive: the topic that takes how fast it is to drive.
             odometry: the topic on which it tells how far it has driven.
             stamped: it takes geometry_msgs/TwistStamped, as some of ROS 2 do.
-            repeat: s between repetitions of a command that still holds; 0: the caller repeats.
+            lives: a command's time to live in s.
+            repeat: s between repetitions of a command that still lives; 0: the caller repeats.
+            watchdog: stops the base if this process does not.
             diagnostics: the server's reports about its devices, if it sends any.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics
-        self._drive_topic, self._odometry_topic = drive, odometry
-        self._stamped, self._repeat = stamped, repeat
+        self._velocity = VelocityTopic(bridge, drive, stamped=stamped)
+        self._odometry_topic = odometry
+        self._lives, self._repeat, self._watchdog = lives, repeat, watchdog
         self._newest: Newest[Odometry] = Newest(bridge.clock)
         self._twist, self._since = STILL, -math.inf
         self._moved = asyncio.Event()
@@ -65,8 +73,9 @@ class RosBase:
         await self._bridge.start()
         if self._repeating is None:
             self._newest.restart()
-            kind = "geometry_msgs/TwistStamped" if self._stamped else "geometry_msgs/Twist"
-            self._bridge.advertise(self._drive_topic, kind)
+            self._velocity.advertise()
+            if self._watchdog is not None:
+                self._watchdog.start()
             self._bridge.subscribe(self._odometry_topic, "nav_msgs/Odometry", self._hear)
             self._repeating = asyncio.create_task(self._repeat_on())
 
@@ -78,13 +87,15 @@ class RosBase:
             self._bridge.unsubscribe(self._odometry_topic, self._hear)
             task.cancel()
             await asyncio.wait({task})
+        if self._watchdog is not None:
+            await self._watchdog.close()
 
     def reading(self) -> Reading:
         """Return the age of the odometry, and what the diagnostics say of the base."""
         return self._newest.reading(self.name, state_told(self._diagnostics, self.name))
 
     async def drive(self, twist: Twist) -> None:
-        """Drive so until the next command, for half a second at most.
+        """Drive so until the next command, or until this one has expired.
 
         Raises:
             DeviceError: there is no link, or it is no twist.
@@ -105,10 +116,9 @@ class RosBase:
             self._say(STILL)
 
     def _say(self, twist: Twist) -> None:
-        message: Message = twist_message(twist)
-        if self._stamped:
-            message = {"header": header("base_link", self._bridge.ros), "twist": message}
-        self._bridge.publish(self._drive_topic, message, urgent=True)
+        if self._watchdog is not None:
+            self._watchdog.note(drives=twist != STILL)
+        self._velocity.say(twist)
 
     def _connected(self) -> None:
         """Stop at a new connection: the last command of the old one is unknown."""
@@ -125,8 +135,8 @@ class RosBase:
             self._moved.clear()
             while self._repeat and self._twist != STILL:
                 await asyncio.sleep(self._repeat)
-                if self._bridge.clock() - self._since > HOLDS_SECONDS:
+                if self._bridge.clock() - self._since > self._lives:
                     await self.stop()
                 elif self._twist != STILL:
                     with suppress(DeviceError):
-                        self._say(self._twist)
+                        self._velocity.say(self._twist)

@@ -1,0 +1,126 @@
+"""A base whose robot process hangs or ends: another process tells it to stand."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from typing import Any
+
+import pytest
+
+from tangy_hw.drivers.velocity_watchdog_child import Watchdog
+from tangy_profiles.worker_lines import LineError
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
+from tests.support.waiting import until
+
+DRIVES = """
+import asyncio, sys
+from tangy_hw.device_protocols import Twist
+from tangy_hw.drivers.ros_base import RosBase
+from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.drivers.velocity_watchdog import VelocityWatchdog
+
+async def drive():
+    bridge = Rosbridge(sys.argv[1])
+    watchdog = VelocityWatchdog(sys.argv[1], lives=0.2)
+    base = RosBase(bridge, watchdog=watchdog)
+    await base.start()
+    await bridge.wait_connected(5)
+    for _ in range(100_000):
+        await base.drive(Twist(0.3, 0.0))
+        await asyncio.sleep(0.05)
+
+asyncio.run(drive())
+"""
+
+
+@asynccontextmanager
+async def listening() -> AsyncIterator[tuple[RosbridgeServer, list[float]]]:
+    """Open a base that keeps how fast it was told to drive, in m/s."""
+    server, told = RosbridgeServer(), list[float]()
+    server.on_message("/cmd_vel", lambda message: told.append(message["linear"]["x"]))
+    await server.start()
+    try:
+        yield server, told
+    finally:
+        await server.close()
+
+
+@asynccontextmanager
+async def watched(
+    server: RosbridgeServer, lives: float
+) -> AsyncIterator[tuple[Watchdog, list[Any]]]:
+    """Have a watchdog watch a base; return what it says as well."""
+    said: list[Any] = []
+    watchdog = Watchdog(said.append)
+    base = {"at": server.url, "ros": 1, "drive": "/cmd_vel", "stamped": False, "lives": lives}
+    await watchdog.take(base)
+    try:
+        yield watchdog, said
+    finally:
+        await watchdog.close()
+
+
+async def test_a_command_to_drive_that_is_not_followed_is_followed_by_one_to_stand() -> None:
+    async with listening() as (server, told), watched(server, 0.05) as (watchdog, said):
+        await until(lambda: told == [0.0])  # a new connection
+        await watchdog.take({"drives": True})
+        await until(lambda: told == [0.0, 0.0])
+        assert [list(one) for one in said] == [["stopped"]]
+        assert said[0]["stopped"] >= 0.05
+
+
+async def test_a_command_to_stand_is_not_waited_on() -> None:
+    async with listening() as (server, told), watched(server, 0.05) as (watchdog, said):
+        await until(lambda: told == [0.0])
+        await watchdog.take({"drives": True})
+        await watchdog.take({"drives": False})
+        loop = asyncio.get_running_loop()
+        passed = loop.create_future()
+        loop.call_later(0.15, passed.set_result, None)
+        await passed
+        assert (told, said) == ([0.0], [])
+
+
+async def test_the_base_is_told_to_stand_when_the_watchdog_ends() -> None:
+    async with listening() as (server, told):
+        async with watched(server, 60.0) as (watchdog, said):
+            await until(lambda: told == [0.0])
+            await watchdog.take({"drives": True})
+        await until(lambda: told == [0.0, 0.0])
+        assert said == []
+
+
+async def test_a_base_that_was_out_of_reach_is_told_when_it_is_back() -> None:
+    async with listening() as (server, told), watched(server, 0.05) as (watchdog, said):
+        await until(lambda: told == [0.0])
+        await watchdog.take({"drives": True})
+        await until(lambda: told == [0.0, 0.0] and bool(said))
+        server.drop()
+        await until(lambda: told == [0.0, 0.0, 0.0])
+
+
+async def test_a_line_that_is_neither_is_refused() -> None:
+    with pytest.raises(LineError):
+        await Watchdog(list[Any]().append).take({"drives": True})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", [signal.SIGSTOP, signal.SIGKILL])
+async def test_a_robot_process_that_is_frozen_or_killed_drives_no_further(
+    how: signal.Signals,
+) -> None:
+    async with listening() as (server, told):
+        process = await asyncio.create_subprocess_exec(sys.executable, "-c", DRIVES, server.url)
+        try:
+            await until(lambda: told[-5:] == [0.3] * 5, 30)
+            os.kill(process.pid, how)
+            await until(lambda: told[-1] == 0.0, 10)
+        finally:
+            with suppress(ProcessLookupError):  # it was killed already
+                process.kill()
+            await process.wait()
