@@ -13,7 +13,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar, runtime_checkable
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import Reading
@@ -203,6 +203,18 @@ class ChestScreen(Device, Protocol):
         Raises:
             DeviceError: nobody took it.
         """
+        ...
+
+
+@runtime_checkable
+class AnswersCalls(Protocol):
+    """A chest screen at which people can say that they come when staff are called."""
+
+    answered: tuple[str, ...]
+    """The keys of the open calls that were answered at it."""
+
+    def offer(self, calls: Mapping[str, str]) -> None:
+        """Show a button for each open call, and none for any other: who is called, by its key."""
         ...
 
 

@@ -202,6 +202,7 @@ class Workspace(Participants):
         Raises:
             TangyError: one of the injections is none, or the fault rules have a mistake.
         """
+        from tangy_hw.robot_client.live_world import LiveWorld
         from tangy_profiles.fault_file import load_faults
         from tangy_profiles.game_world import LIVE
         from tangy_sim.worlds.injection import read_injection
@@ -224,7 +225,8 @@ class Workspace(Participants):
             [str(one) for one in to_come],
         )
         if world.played_in == LIVE:
-            supervision.call_by(Calls(self.robot, self.store.append))
+            buttons = world.link if isinstance(world, LiveWorld) else None
+            supervision.call_by(Calls(self.robot, self.store.append, buttons=buttons))
         return supervision
 
     def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:

@@ -1,6 +1,7 @@
 """Calling the expert, and staff, about what halts the robot: who was tried, and who answered.
 
-A person counts as reached only when they have answered. Every try, and what came of it, is logged.
+A person counts as reached only when they have answered: by what called them, or by a button on the
+robot's chest screen. Every try, and what came of it, is logged.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from tangy_hw.calling import CallNews, call
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact, Role
@@ -27,17 +28,33 @@ FIRST_SECONDS = 3.0
 Way = Callable[[Contact, Mapping[str, Any], float, Callable[[CallNews], None]], None]
 
 
+AT_ROBOT = "chest screen"
+"""The way by which a call is answered at the robot."""
+
+
+class CallButtons(Protocol):
+    """Buttons on a robot's chest screen, by which people say that they come."""
+
+    on_answer: Callable[[str], object]
+    """Is called with the key of a button that was pressed, on any thread."""
+
+    def offer_calls(self, calls: Mapping[str, str]) -> None:
+        """Show a button for each open call: who is called, by its key."""
+
+
 @dataclass(frozen=True, slots=True)
 class CallState:
     """How a call stands: whom it is for, and what they said, or why it failed.
 
-    If the person was reached by other means, `said` is who says so.
+    If the person was reached by other means, `said` is who says so. `way` is how they answered, if
+    it was not what called them.
     """
 
     role: Role
     contact: Contact
     stage: CallStage
     said: str = ""
+    way: str = ""
 
     @property
     def over(self) -> bool:
@@ -48,21 +65,32 @@ class CallState:
 class Calls:
     """The calls about what halts a robot in the present game."""
 
-    def __init__(self, robot: Robot, log: Callable[[EventRecord], object], way: Way = call) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        log: Callable[[EventRecord], object],
+        way: Way = call,
+        *,
+        buttons: CallButtons | None = None,
+    ) -> None:
         """Prepare.
 
         Args:
             robot: whose file names whom to call.
             log: keeps what was tried.
             way: sends a message and waits for an answer.
+            buttons: those of the robot's chest screen, if it has one.
         """
         self._contacts = {EXPERT: robot.expert, STAFF_ROLE: robot.staff}
         self._title = robot.title
         self._log = log
         self._way = way
         self._states: dict[Role, CallState] = {}
-        self._fault = ""
+        self._fault: Fault | None = None
         self._lock = threading.Lock()
+        self._buttons = buttons
+        if buttons is not None:
+            buttons.on_answer = self._answered_at_robot
 
     def state(self, role: Role) -> CallState | None:
         """Return how the call to somebody about the present fault stands, None if none was made."""
@@ -78,9 +106,16 @@ class Calls:
     def begin(self, fault: Fault) -> None:
         """Take it that another fault halts the robot: staff are called, if that can be done."""
         with self._lock:
-            self._fault = fault.id
+            self._fault = fault
             self._states.clear()
         self.call(STAFF_ROLE, fault)
+
+    def end(self) -> None:
+        """Take it that nothing halts the robot any more: nobody needs to answer."""
+        with self._lock:
+            self._fault = None
+            self._states.clear()
+        self._offer()
 
     def call(self, role: Role, fault: Fault, wait: float = 0.0) -> CallState | None:
         """Call somebody about a fault, unless that is under way or was answered.
@@ -98,11 +133,12 @@ class Calls:
             return None
         with self._lock:
             there = self._states.get(role)
-            if there is not None and self._fault == fault.id and there.stage != "failed":
+            if there is not None and self._fault is fault and there.stage != "failed":
                 return there
-            self._fault = fault.id
+            self._fault = fault
             self._states[role] = CallState(role, contact, "tried")
         self._keep(fault, self._states[role])
+        self._offer()
         first = threading.Event()
 
         def told(news: CallNews) -> None:
@@ -134,19 +170,39 @@ class Calls:
     def _take(self, fault: Fault, state: CallState) -> None:
         with self._lock:
             before = self._states.get(state.role)
-            current = self._fault == fault.id
+            current = self._fault is fault
             if current and before is not None and before.over:
                 return
             if current:
                 self._states[state.role] = state
+        self._offer()
         self._keep(fault, state)
+
+    def _offer(self) -> None:
+        """Show a button for each call that nobody has answered."""
+        if self._buttons is not None:
+            with self._lock:
+                waits = [one for one in self._states.values() if not one.over]
+                offered = {self._key(one.role): one.contact.name for one in waits}
+            self._buttons.offer_calls(offered)
+
+    def _key(self, role: Role) -> str:
+        """Return the key of the button for a call about the present fault."""
+        return role if self._fault is None else f"{role} {self._fault.id}"
+
+    def _answered_at_robot(self, key: str) -> None:
+        with self._lock:
+            fault = self._fault
+            there = next((s for role, s in self._states.items() if self._key(role) == key), None)
+        if fault is not None and there is not None:
+            self._take(fault, CallState(there.role, there.contact, "answered", way=AT_ROBOT))
 
     def _keep(self, fault: Fault, state: CallState) -> None:
         made = CallMade(
             game=fault.game,
             fault=fault.id,
             role=state.role,
-            way="key" if state.stage == "reached" else _way_of(state.contact),
+            way=state.way or ("key" if state.stage == "reached" else _way_of(state.contact)),
             stage=state.stage,
             said=state.said,
         )

@@ -72,6 +72,8 @@ class Recovery:
         """The time in the present game, in s."""
         self.on_halt: Callable[[Fault], None] = lambda fault: None
         """Called with the fault that halts the robot."""
+        self.on_release: Callable[[], None] = lambda: None
+        """Called when it halts the robot no longer, or the game has ended."""
         self.hides_cards: Callable[[], bool] = lambda: False
         """Returns whether a fault of a device hides the cards now."""
         self._game = game
@@ -309,8 +311,14 @@ class Recovery:
         rule, object = self._rules[fault.id], self._game.world.activity.object
         return rule.fill(text, name=NAME, object=object, why=fault.why)
 
+    def release(self) -> None:
+        """Take it that no fault halts the robot any more."""
+        self.halted = None
+        self.on_release()
+
     def leave_open(self) -> list[Event]:
         """Say of the faults that nobody has dealt with that the game ended before."""
+        self.on_release()
         told: list[Event] = []
         for fault in list(self._there):
             if fault.status == OPEN and not any(m.kind == "given up" for m in fault.moves):

@@ -265,7 +265,7 @@ class Supervision:
     def call_by(self, calls: Calls) -> None:
         """Have people called when the robot halts, and when staff turn to the expert."""
         self.calls = calls
-        self.recovery.on_halt = calls.begin
+        self.recovery.on_halt, self.recovery.on_release = calls.begin, calls.end
 
     def clear(self, by: str) -> list[Event]:
         """Let the robot move again, if what halted it was seen and is gone.
@@ -284,7 +284,7 @@ class Supervision:
         told += self.watch.look_after(fault)
         told += self.recovery.move(fault, RecoveryEvent("cleared", self.seconds, by=by))
         self.recovery.remedy(fault, "resume")
-        self.recovery.halted = None
+        self.recovery.release()
         self._clearings[fault.code] += 1
         told += self.recovery.halt_if_critical()
         return told + self._end_if_hopeless()

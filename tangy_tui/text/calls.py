@@ -47,6 +47,8 @@ def call_words(state: CallState) -> str:
             words = f"Tangy has sent a message to {contact.name}. {then}"
         case "failed":
             words = f"Tangy cannot reach {contact.name} ({state.said}). {then}"
+        case "answered" if state.way:
+            words = f"{contact.name} has answered on the {state.way}."
         case "answered":
             said = f": {state.said.rstrip('.')}" if state.said else ""
             words = f"{contact.name} has answered{said}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from typing import Any
@@ -67,6 +67,9 @@ class FakeLink:
         self._called_off = ""
         self.meanwhile: Callable[[str, float], None] = lambda do, time: None
         """Is called with what was asked for when it is done: people do something then."""
+        self.offered: dict[str, str] = {}
+        """The buttons of its chest screen for open calls: who is called, by their keys."""
+        self.on_answer: Callable[[str], object] = lambda key: None
 
     @property
     def said(self) -> list[str]:
@@ -122,6 +125,9 @@ class FakeLink:
 
     def tell(self, do: str, **_: Any) -> None:
         self.told.append(do)
+
+    def offer_calls(self, calls: Mapping[str, str]) -> None:
+        self.offered = dict(calls)
 
     def stop(self, why: str, by: str = "staff") -> None:
         self.told.append(f"stop: {why}")

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tangy_hw.device_protocols import DeviceError, Picture
+from tangy_hw.device_protocols import AnswersCalls, DeviceError, Picture
 from tangy_hw.drivers import chest
 from tangy_hw.drivers.chest import WebChestScreen
 from tests.hw.chest_pages import ask, paired
@@ -28,6 +28,7 @@ class Page:
         self._screen, self.name, self.answers = screen, name, answers
         self.shown: list[dict[str, Any]] = []
         self.alive = 0
+        self.calls: dict[str, str] = {}
         self.head = b""
         self._task = asyncio.create_task(self._look())
         self._writer: asyncio.StreamWriter | None = None
@@ -41,6 +42,9 @@ class Page:
             kind, said = (await reader.readuntil(b"\n\n")).decode().strip().split("\n")
             line = said.removeprefix("data: ")
             number = line
+            if kind == "event: calls":
+                self.calls = json.loads(line)
+                continue
             if kind == "event: show":
                 self.shown.append(json.loads(line))
                 number = self.shown[-1]["n"]
@@ -83,6 +87,53 @@ async def opened(screen: WebChestScreen, *names: str) -> list[Page]:
     pages = [Page(screen, name) for name in names]
     await until(lambda: screen.pages == len(names))
     return pages
+
+
+class TestAnsweringCalls:
+    async def test_a_press_on_the_button_of_an_open_call_answers_it(
+        self, screen: WebChestScreen
+    ) -> None:
+        (page,) = await opened(screen, "one")
+        satisfied: AnswersCalls = screen
+        satisfied.offer({"staff 7": "Station 2", "expert 7": "Anna"})
+        await until(lambda: len(page.calls) == 2)
+        late = Page(screen, "two")
+        await until(lambda: late.calls == page.calls)
+        cookie = paired(screen.pairing)
+        pressed = await ask(screen.port, "POST", "/answer?call=staff%207", cookie)
+        assert pressed.startswith(b"HTTP/1.1 204")
+        await until(lambda: screen.answered == ("staff 7",))
+        screen.offer({})
+        assert screen.answered == ()
+        await until(lambda: page.calls == {})
+        pressed = await ask(screen.port, "POST", "/answer?call=staff%207", cookie)
+        assert pressed.startswith(b"HTTP/1.1 404")
+        page.go()
+        late.go()
+
+    async def test_a_colleague_who_looks_on_may_answer_and_a_stranger_may_not(
+        self, screen: WebChestScreen
+    ) -> None:
+        screen.offer({"staff": "Station 2"})
+        pairing = screen.pairing
+        looks_on = f"Cookie: {pairing.cookie}={pairing.token(viewer=True)}\r\n".encode()
+        pressed = await ask(screen.port, "POST", "/answer?call=staff")
+        assert pressed.startswith(b"HTTP/1.1 403") and screen.answered == ()
+        pressed = await ask(screen.port, "POST", "/answer?call=staff", looks_on)
+        assert pressed.startswith(b"HTTP/1.1 204")
+        await until(lambda: screen.answered == ("staff",))
+
+    async def test_a_process_that_is_started_again_shows_the_buttons_again(
+        self, screen: WebChestScreen
+    ) -> None:
+        screen.offer({"staff": "Station 2"})
+        assert screen.pid is not None
+        os.kill(screen.pid, signal.SIGKILL)
+        await until(lambda: screen.pid is None)
+        await until(lambda: screen.pid is not None and not screen.why.startswith("screen: the"))
+        (page,) = await opened(screen, "one")
+        await until(lambda: page.calls == {"staff": "Station 2"})
+        page.go()
 
 
 class TestShowing:

@@ -94,6 +94,7 @@ class TestRequests:
             ("GET", "/../devices.py", 404), ("GET", "/seen?page=x&number=1", 405),
             ("POST", "/seen?page=nobody&number=1", 404), ("POST", "/seen", 404),
             ("POST", "/", 405), ("PUT", "/seen", 405), ("GET", "/events", 503),
+            ("GET", "/answer?call=staff", 405), ("POST", "/answer?call=nobody", 404),
             ("GET", "/pair", 405), ("POST", "/paired", 405), ("GET", "/paired", 204),
             ("GET", "/events?page=" + "x" * 41, 503), ("GET", "/?" + "&" * 20, 400),
             ("GET", "/" + "x" * 9000, 400), ("GET", "http://[", 400),

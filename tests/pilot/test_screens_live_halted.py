@@ -9,7 +9,7 @@ import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import FAULT, STAFF
-from tangy_profiles.contacts import EXPERT
+from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import CallMade
 from tangy_profiles.health import ERROR, STALE, DeviceState
@@ -21,7 +21,7 @@ from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
 from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
-from tests.support.telephone import ANNA, Line
+from tests.support.telephone import ANNA, STATION, Line
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
@@ -175,13 +175,18 @@ async def test_a_lost_link_that_was_a_freeze_is_called_what_it_is_as_soon_as_tha
 
 
 async def halted_with_an_expert(
-    pilot: TangyPilot, link: HeldLink, workspace: Workspace, line: Line
+    pilot: TangyPilot,
+    link: HeldLink,
+    workspace: Workspace,
+    line: Line,
+    staff: Contact | None = None,
 ) -> None:
-    """Let the stop button halt a game in which Tangy itself can call the expert."""
+    """Let the stop button halt a game in which Tangy itself can call the expert, and staff."""
     await paused_after(pilot, link, 2)
     supervision = live(pilot).control.supervision
-    supervision.robot = replace(workspace.robot, expert=ANNA)
-    supervision.call_by(Calls(supervision.robot, workspace.store.append, line))
+    supervision.robot = replace(workspace.robot, expert=ANNA, staff=staff)
+    calls = Calls(supervision.robot, workspace.store.append, line, buttons=link)
+    supervision.call_by(calls)
     await halting(pilot, link, "stop_button")
 
 
@@ -217,6 +222,37 @@ async def test_the_dialog_says_what_came_of_each_call_and_calls_again_after_one_
         ("tried", ""),
         ("sent", ""),
         ("answered", "I am on my way"),
+    ]
+
+
+async def test_the_dialog_says_who_answered_on_the_chest_screen(
+    run: Run,
+    program: Program,
+    link: HeldLink,
+    workspace: Workspace,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("tangy_tui.monitoring.supervision.FIRST_SECONDS", 0.0)
+    line = Line()
+    async with run(app=program, size=(120, 40)) as pilot:
+        await halted_with_an_expert(pilot, link, workspace, line, STATION)
+        await until_shown(pilot, lambda: "sending a message to Station 2" in seen(pilot))
+        assert list(link.offered.values()) == ["Station 2"]
+        (staff,) = link.offered
+        await pilot.press("e")
+        await until_shown(pilot, lambda: len(link.offered) == 2)
+        link.on_answer(staff)
+        told = "! Station 2 has answered on the chest screen."
+        await until_shown(pilot, lambda: told in seen(pilot))
+        assert list(link.offered.values()) == ["Anna Berg"]
+        link.ail("stop_button")
+        await pilot.press("a", "r")
+        await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
+        assert link.offered == {}  # nobody needs to come any more
+    calls = [e.record for e in workspace.store.events(CallMade) if e.record.role == STAFF_ROLE]
+    assert [(call.stage, call.way) for call in calls] == [
+        ("tried", "command"),
+        ("answered", "chest screen"),
     ]
 
 

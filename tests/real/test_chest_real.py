@@ -309,3 +309,25 @@ async def test_the_question_for_the_code_is_all_on_the_screen(
         assert await tab.value(f"{box}.bottom <= innerHeight && {box}.right <= innerWidth")
     high = "document.getElementById('code').getBoundingClientRect().height"
     assert await tab.value(high) >= 44  # a finger finds it
+
+
+async def test_a_press_on_the_button_of_an_open_call_is_thanked_for(
+    browser: Browser, screen: WebChestScreen
+) -> None:
+    await screen.show(CALL)
+    tab = await opened(browser, screen, SMALL)
+    screen.offer({"staff 1": "Station 2", "expert 1": "Anna Berg"})
+    await tab.until("document.querySelectorAll('#calls button').length === 2")
+    words = await tab.value("document.querySelector('#calls button').textContent")
+    assert words == "Station 2: I am coming"
+    high = await tab.value("document.querySelector('#calls button').offsetHeight")
+    assert high >= 44  # CSS pixels: as large as a finger
+    inside = "document.getElementById('calls').getBoundingClientRect().bottom <= innerHeight + 1"
+    assert await tab.value(inside)
+    assert not await tab.value("document.body.scrollHeight > innerHeight + 1")
+    await tab.value("document.querySelector('#calls button').click()")
+    await until(lambda: screen.answered == ("staff 1",), PATIENCE)
+    await tab.until("document.getElementById('calls').textContent.indexOf('Thank you') >= 0")
+    assert await tab.value("document.querySelectorAll('#calls button').length") == 1
+    screen.offer({})
+    await tab.until("document.querySelectorAll('#calls button').length === 0")

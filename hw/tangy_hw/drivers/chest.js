@@ -4,8 +4,10 @@
 (function () {
   "use strict";
   var SILENT = 2000, AGAIN = 500;  // ms: without an event the link is lost; until it is tried again
+  var THANKS = 8000;  // ms: for which it is said that somebody comes
   var LOOK = 1000;  // ms: until a tablet that is not paired looks whether it is now
   var page = String(Math.random()).slice(2) + String(Date.now());
+  var calls = {}, thanks = "";  // who is called, by the key of the call; what is said after a press
   var source = null, heard = Date.now(), waiting = null, dots = 0, picture = null, drawn = 0;
 
   function get(id) { return document.getElementById(id); }
@@ -54,6 +56,7 @@
     if (document.body.className.indexOf("lost") >= 0) { classes.push("lost"); }
     if (document.body.className.indexOf("unpaired") >= 0) { classes.push("unpaired"); }
     if (document.body.className.indexOf("sleepy") >= 0) { classes.push("sleepy"); }
+    if (document.body.className.indexOf("calling") >= 0) { classes.push("calling"); }
     if (shown.number) { classes.push("number"); }
     else if (shown.text) { classes.push("said"); }
     else if (!shown.file) { classes.push("idle"); }
@@ -169,6 +172,34 @@
     request.send();
   }
 
+  // Put a button for each call that is open, and what was said about a press.
+  function drawCalls() {
+    var box = get("calls"), key, button;
+    box.textContent = "";
+    for (key in calls) {
+      button = box.appendChild(document.createElement("button"));
+      button.textContent = calls[key] + ": I am coming";
+      button.onclick = comes(key);
+    }
+    if (thanks) { box.appendChild(document.createElement("div")).textContent = thanks; }
+    if (!mark("calling", box.children.length > 0) && picture) { draw(); }
+  }
+
+  // Return what a press on the button of a call does.
+  function comes(key) {
+    return function () {
+      this.disabled = true;
+      ask("POST", "answer?call=" + encodeURIComponent(key), null, function (status) {
+        thanks = status === 204 ? "Thank you. The console shows it." :
+          status === 404 ? "Somebody is coming already." :
+          "The robot does not answer. Please go to the console.";
+        if (status === 204 || status === 404) { delete calls[key]; }
+        drawCalls();
+        window.setTimeout(function () { thanks = ""; drawCalls(); }, THANKS);
+      });
+    };
+  }
+
   function hear() {
     heard = Date.now();
     lost(false);
@@ -223,6 +254,10 @@
     drawn = 0;  // another robot may count anew
     source.addEventListener("show", function (event) {
       load(JSON.parse(event.data));
+    });
+    source.addEventListener("calls", function (event) {
+      calls = JSON.parse(event.data);
+      drawCalls();
     });
     source.addEventListener("alive", hear);
     source.onerror = function () {

@@ -12,7 +12,7 @@ import math
 import socket
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -86,6 +86,9 @@ class WebChestScreen:
         self.windows: dict[str, _Page] = {}
         self._number = 0
         self._picture = Picture("")
+        self.answered: tuple[str, ...] = ()
+        """The keys of the open calls that were answered at it."""
+        self._calls: dict[str, str] = {}
         self._heard = -math.inf
         self._arrivals = RateEstimator()
         self._taken = asyncio.Event()
@@ -159,6 +162,12 @@ class WebChestScreen:
         except TimeoutError:
             raise DeviceError(f"{self.name}: no tablet has shown it in time.") from None
 
+    def offer(self, calls: Mapping[str, str]) -> None:
+        """Show a button for each open call, and none for any other: who is called, by its key."""
+        self._calls = dict(calls)
+        self.answered = tuple(key for key in self.answered if key in calls)
+        self._send_calls()
+
     def reading(self) -> Reading:
         """Return its state, and the age of the newest answer of a page.
 
@@ -200,6 +209,7 @@ class WebChestScreen:
         place = {"host": self.host, "port": self.port, "names": self._names}
         worker.tell({**place, "pairing": pairing})
         self._send_picture()
+        self._send_calls()
         return worker
 
     def _take(self, said: dict[str, Any], _: bytes) -> None:
@@ -219,10 +229,17 @@ class WebChestScreen:
                 self._taken.set()
             case {"gone": str(name)}:
                 self.windows.pop(name, None)
+            case {"answered": str(key)} if key in self._calls and key not in self.answered:
+                _LOG.info("a call was answered at the chest screen: %s", key)
+                self.answered += (key,)
 
     def _send_picture(self) -> None:
         if self._worker is not None:  # otherwise it is sent when the process runs
             self._worker.tell({"show": self._number, "picture": self._picture._asdict()})
+
+    def _send_calls(self) -> None:
+        if self._worker is not None:
+            self._worker.tell({"calls": self._calls})
 
 
 def _reached_at(host: str) -> str:

@@ -4,10 +4,12 @@ Run as `python -m tangy_hw.drivers.chest_child`, spoken to by JSON, one object a
 
     {"host": "0.0.0.0", "port": 8765, "names": [], "pairing": {...}}   where, and who is paired
     {"show": 7, "picture": {...}}              what pages show from now on, and its number
+    {"calls": {"staff": "Station 2"}}          for whom pages show a button from now on, by a key
     {"port": 8765}                             it listens there
     {"error": "Address already in use"}        it cannot; it tries again every second
     {"page": "17", "seen": 7}                  a page of a paired tablet has drawn it
     {"gone": "17"}                             that page is not connected any more
+    {"answered": "staff"}                      somebody has pressed that button
     {"failed": "That line is too long."}       a line cannot be heeded, and nothing comes of it
 
 The first comes once, the second any number of times; the others are what it says. It ends when its
@@ -42,7 +44,7 @@ class PageChild:
         self._listening: asyncio.Task[None] | None = None
 
     def take(self, told: Asked) -> None:
-        """Take the setup, or what pages show from now on.
+        """Take the setup, or what pages show or offer from now on.
 
         Raises:
             LineError: it is neither.
@@ -61,8 +63,12 @@ class PageChild:
                 self._server.show(number, picture)
                 if self._listening is None:  # there is something to show from the first page on
                     self._listening = asyncio.create_task(self._listen(self._server))
+            case {"calls": dict(calls)} if self._server is not None:
+                self._server.offer(calls)
             case _:
-                raise LineError("A line must hold the setup, once, or then show and picture.")
+                raise LineError(
+                    "A line must hold the setup, once, or then show and picture, or calls."
+                )
 
     async def _listen(self, server: ChestServer) -> None:
         """Begin to listen, as soon as that can be."""

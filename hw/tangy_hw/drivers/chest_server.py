@@ -3,9 +3,10 @@
 It speaks with `chest.js`. A tablet is paired once (`POST /pair` with the code of the console) and
 keeps a token as a cookie. A paired page gets events, `show` (a number and a picture, as JSON) and
 `alive` (the number again), and answers both with `POST /seen?page=P&number=N`. What it is told to
-show can have a `file`, which a page asks for as `GET /file?n=N`. Other
-browsers get only the page that asks for the code. A browser paired as a viewer shows the same
-pictures, but only the robot's tablets count as a working chest screen.
+show can have a `file`, which a page asks for as `GET /file?n=N`. While staff are called, `calls`
+tells it which buttons to show; a press is `POST /answer?call=KEY`. Other browsers get only the page
+that asks for the code. A browser paired as a viewer shows the same, but only the robot's tablets
+count as a working chest screen.
 """
 
 from __future__ import annotations
@@ -80,7 +81,7 @@ class _Page:
 class ChestServer:
     """Serves the page; `tell` hears of what pages have drawn, and of those that have gone.
 
-    It tells {"page": its name, "seen": the number} and {"gone": its name}.
+    It tells {"page": its name, "seen": the number}, {"gone": its name} and {"answered": a key}.
     """
 
     def __init__(
@@ -105,6 +106,7 @@ class ChestServer:
         self._file: tuple[bytes, str] | None = None
         """What is shown with the picture's line, and its media type."""
         self.newest = b""
+        self._calls: dict[str, str] = {}
 
     async def start(self) -> None:
         """Begin to listen.
@@ -133,6 +135,12 @@ class ChestServer:
         self._number = number
         self._file = _file_of(str(picture.get("file", "")))
         self.newest = event("show", json.dumps({"n": number, **picture, "file": bool(self._file)}))
+        for page in self.windows.values():
+            page.changed.set()
+
+    def offer(self, calls: Mapping[str, str]) -> None:
+        """Show a button for each open call on all pages: who is called, by its key."""
+        self._calls = dict(calls)
         for page in self.windows.values():
             page.changed.set()
 
@@ -202,13 +210,10 @@ class ChestServer:
     # ------------------------------------------------------------------------- requests
 
     def _answer(self, request: Request, asker: _Connection) -> bytes:
-        if request.path in ("/seen", "/pair"):
-            if request.method != "POST":
-                return response(405)
+        posts = {"/seen": self._seen, "/pair": self._pair, "/answer": self._answered}
+        if request.path in posts:
             return (
-                self._seen(request, asker)
-                if request.path == "/seen"
-                else self._pair(request, asker)
+                posts[request.path](request, asker) if request.method == "POST" else response(405)
             )
         if request.method not in ("GET", "HEAD"):
             return response(405)
@@ -245,6 +250,16 @@ class ChestServer:
         page.heard = time.monotonic()
         if not asker.viewer:
             self._tell({"page": name, "seen": min(int(number), self._number)})
+        return response(204)
+
+    def _answered(self, request: Request, asker: _Connection) -> bytes:
+        """Take it from a paired page, a viewer's too, that somebody answers an open call."""
+        if not asker.paired:
+            return response(403)
+        key = request.query.get("call", "")
+        if key not in self._calls:
+            return response(404)
+        self._tell({"answered": key})
         return response(204)
 
     # ------------------------------------------------------------------------- events
@@ -286,11 +301,14 @@ class ChestServer:
                 self._tell({"gone": name})
 
     async def _events(self, page: _Page, writer: asyncio.StreamWriter) -> None:
-        sent = -2
+        sent, offered = -2, dict[str, str]()
         while not page.over:
             page.changed.clear()
             writer.write(self.newest if sent != self._number else event("alive", str(sent)))
             sent = self._number
+            if offered != self._calls:
+                offered = dict(self._calls)
+                writer.write(event("calls", json.dumps(offered)))
             async with asyncio.timeout(SEND_SECONDS):
                 await writer.drain()
             with contextlib.suppress(TimeoutError):

@@ -13,6 +13,7 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Callable, Mapping
 from concurrent.futures import CancelledError, Future
 from concurrent.futures import TimeoutError as TooLate
 from contextlib import suppress
@@ -88,6 +89,9 @@ class RobotLink:
         self._starting = threading.Lock()
         self._over = False  # it is closed for good
         self.worker: WorkerProcess | None = None
+        self.on_answer: Callable[[str], object] = _nothing
+        """Is called, on a thread of its own, with the key of each call answered at the robot."""
+        self._calls: dict[str, str] = {}
         self._told = _Told()
         self._said = threading.Condition()
         self._closing = threading.Event()
@@ -133,6 +137,8 @@ class RobotLink:
         except WorkerError as error:
             raise DeviceError(f"The robot process cannot be started ({error}).") from None
         worker.tell(self.setup.to_json())
+        if self._calls:
+            worker.tell({**self._command("show calls"), "calls": self._calls})
         self.beating = threading.Thread(target=self._beat, args=(worker,), daemon=True)
         self.beating.start()
         return worker
@@ -282,6 +288,11 @@ class RobotLink:
         _LOG.log(level, "asks the robot to %s", do)
         return {"do": do} if command == NO_COMMAND else {"do": do, "command": command}
 
+    def offer_calls(self, calls: Mapping[str, str]) -> None:
+        """Show a button at the robot for each open call: who is called, by its key."""
+        self._calls = dict(calls)
+        self.tell("show calls", calls=self._calls)
+
     def stop(self, why: str, by: str = STAFF) -> None:
         """Stop the robot now; it waits behind nothing, and latches until `by` releases it."""
         self.tell("stop", why=why, by=by)
@@ -313,11 +324,18 @@ class RobotLink:
         self._told.time = max(self._told.time, said.get("at", 0.0))
         if "beat" not in said:
             return False
-        self._told.state = RobotState.from_json(said["beat"])
+        before, self._told.state = self._told.state, RobotState.from_json(said["beat"])
         self._told.time = max(self._told.time, self._told.state.time)
         with self._said:
             self._said.notify_all()
+        for key in self._told.state.answered:
+            if key not in before.answered:
+                threading.Thread(target=self.on_answer, args=(key,), daemon=True).start()
         return True
+
+
+def _nothing(_: str) -> None:
+    """Take an answer for which nobody waits."""
 
 
 def _ended(how: str) -> str:

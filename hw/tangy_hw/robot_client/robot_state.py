@@ -21,6 +21,7 @@ class RobotState:
     about who drives it by hand: "" as told, "slow", or "stands". `waits` says which data is late,
     while it stands for that; `pauses` is how often it has, and for how many s. `lets` is for whom
     it stands on its way: "walking" for somebody who passes, "standing" for somebody in the way.
+    `answered` are the keys of the calls that were answered at the chest screen.
     """
 
     number: int = 0
@@ -40,6 +41,7 @@ class RobotState:
     waits: str = ""
     pauses: tuple[int, float] = (0, 0.0)
     lets: str = ""
+    answered: tuple[str, ...] = ()
 
     @classmethod
     def from_json(cls, body: dict[str, Any]) -> RobotState:
@@ -62,6 +64,7 @@ class RobotState:
             body["waits"],
             (body["pauses"][0], body["pauses"][1]),
             body["lets"],
+            tuple(map(str, body["answered"])),
         )
 
 

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tangy_hw.device_protocols import Arms, Base, ChestScreen, Device, Laser, StopButton, Voice
+from tangy_hw.device_protocols import (
+    AnswersCalls,
+    Arms,
+    Base,
+    ChestScreen,
+    Device,
+    Laser,
+    StopButton,
+    Voice,
+)
 
 
 @dataclass(frozen=True)
@@ -45,3 +55,13 @@ class Body:
         Both are "" where the chest screen is no page.
         """
         return {"screen": getattr(self.screen, "url", ""), "code": getattr(self.screen, "code", "")}
+
+    @property
+    def calls_answered(self) -> tuple[str, ...]:
+        """The keys of the open calls that were answered at the chest screen."""
+        return self.screen.answered if isinstance(self.screen, AnswersCalls) else ()
+
+    def offer_calls(self, calls: Mapping[str, str]) -> None:
+        """Show a button for each open call, if the chest screen can: who is called, by its key."""
+        if isinstance(self.screen, AnswersCalls):
+            self.screen.offer(calls)

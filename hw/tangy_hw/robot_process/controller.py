@@ -81,7 +81,9 @@ class LiveRobot:
         self.going = ""
         """Where it is driving to."""
         self.passing = ControlLoop(clock, self.tick, stepped=stepped)
-        self._body, self._clock, self.stepped = body, clock, stepped
+        self.body = body
+        """Its devices."""
+        self._clock, self.stepped = clock, stepped
         limits = MotionLimits.of(robot)
         self.hand = HandDrive(limits, laser_of(robot))
         self.watch = TickWatch(late=robot.liveness.fault_after)
@@ -117,7 +119,7 @@ class LiveRobot:
 
     async def start(self) -> None:
         """Switch its devices on."""
-        for device in self._body.all:
+        for device in self.body.all:
             await device.start()
         if self.requests is not None:
             await self.requests.start()
@@ -144,7 +146,7 @@ class LiveRobot:
             await asyncio.wait(self._tasks)
         if self.requests is not None:
             await self.requests.close()
-        for device in reversed(self._body.all):
+        for device in reversed(self.body.all):
             with suppress(Exception):  # the others are to be closed as well
                 await device.close()
 
@@ -153,11 +155,6 @@ class LiveRobot:
     def health(self) -> Health:
         """Return the newest reading of every device."""
         return self.watchdogs.health()
-
-    @property
-    def at_hand(self) -> dict[str, str]:
-        """What staff need once it is on: see `Body`."""
-        return self._body.at_hand
 
     @property
     def pose(self) -> Pose:
@@ -285,11 +282,11 @@ class LiveRobot:
 
     async def restart(self, device: str) -> None:
         """Switch a device off and on again."""
-        await self._body.restart(device)
+        await self.body.restart(device)
 
     async def relax(self) -> None:
         """Let the arms hang without torque."""
-        await self._body.relax()
+        await self.body.relax()
 
     # ------------------------------------------------------------------------ in each tick
 
@@ -321,7 +318,7 @@ class LiveRobot:
 
     def tick(self) -> bool:
         """Look, decide, and tell the base; say whether it drives, or is about to."""
-        base, laser = self._body.base, self._body.laser
+        base, laser = self.body.base, self.body.laser
         now = self._clock.now()
         passed, self._ticked = now - self._ticked, now
         self._ticks.count(now)

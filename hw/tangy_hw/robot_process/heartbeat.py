@@ -34,6 +34,7 @@ def beat_of(robot: LiveRobot, number: int) -> dict[str, Any]:
         "waits": robot.pauses.why,
         "pauses": [robot.pauses.count, round(robot.pauses.seconds, 2)],
         "lets": navigator.lets,
+        "answered": list(robot.body.calls_answered),
     }
 
 

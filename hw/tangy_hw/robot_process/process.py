@@ -30,6 +30,7 @@ from tangy_hw.robot_process.heartbeat import beat_of
 from tangy_hw.robot_process.looks import Looks
 from tangy_hw.robot_process.program_pipe import AnswerPipe, end_with
 from tangy_hw.robot_process.protocol import (
+    calls_of,
     id_of,
     level_of,
     number_of,
@@ -81,7 +82,7 @@ class RobotProcess:
 
     async def live(self, said: list[bytes], lines: asyncio.StreamReader) -> None:
         """Do what the program says and has said until it ends, and stop the robot then."""
-        self._say({"ready": True, "done": self.robot.at_hand})
+        self._say({"ready": True, "done": self.robot.body.at_hand})
         beating = asyncio.create_task(self.beat())
         try:
             for line in said:
@@ -165,6 +166,8 @@ class RobotProcess:
             case "drive":
                 twist = Twist(number_of(asked, "forward"), number_of(asked, "turn"))
                 self.robot.drive_by_hand(twist, overrides=asked.get("overrides") is True)
+            case "show calls":
+                self.robot.body.offer_calls(calls_of(asked))
             case forgotten:
                 assert_never(forgotten)
         self._answer(asked, done={})

@@ -18,6 +18,8 @@ from tangy_profiles.worker_lines import Asked, LineError
 OFTEN = frozenset(("drive", "picture", "settle", "sights", "wait"))
 """What is asked for so often that it is only logged where everything is wanted."""
 
+MOST_CALLS = 4  # of people that are open at a time
+
 
 def level_of(do: object) -> int:
     """Return the level at which it is logged that something is asked for, or was done."""
@@ -91,6 +93,18 @@ def picture_of(told: Mapping[str, Any]) -> Picture:
         str(told.get("asks", "")),
         str(told.get("file", "")),
     )
+
+
+def calls_of(told: Mapping[str, Any]) -> dict[str, str]:
+    """Return the open calls that the chest screen may answer: who is called, by a key.
+
+    Raises:
+        LineError: they are none.
+    """
+    calls = told.get("calls")
+    if not isinstance(calls, dict) or len(calls) > MOST_CALLS:
+        raise LineError(f"Calls are up to {MOST_CALLS} people by their keys.")
+    return {str(key): str(words) for key, words in calls.items()}
 
 
 def _finite(value: object) -> float | None:

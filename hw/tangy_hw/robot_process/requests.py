@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Literal, TypeAlias, get_args
 
-AtOnce = Literal["stop", "release", "seen to", "cancel", "drive"]
+AtOnce = Literal["stop", "release", "seen to", "cancel", "drive", "show calls"]
 AT_ONCE: tuple[AtOnce, ...] = get_args(AtOnce)
 
 Deed = Literal[

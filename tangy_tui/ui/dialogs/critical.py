@@ -119,6 +119,7 @@ class CriticalDialog(Dialog[None]):
         """What is being done, which takes its time; keys wait for it."""
         self._done = False
         self._call = self._call_state()  # how the call to the expert stood when it was said last
+        self._staff = staff_words(desk.supervision)  # how the call to staff did
 
     @property
     def fault(self) -> Fault:
@@ -171,6 +172,11 @@ class CriticalDialog(Dialog[None]):
         if self._call != self._call_state() is not None:
             self.say(self._whom_to_call(False))
             self._show_keys()
+        if self._staff != (staff := staff_words(self._desk.supervision)):
+            self._staff = staff
+            self.say(staff)
+            for page in self.query(Page):
+                page.show(self._write, None)
         before = self._now
         words = self._is_there()
         if words != before:
