@@ -131,6 +131,12 @@ class PastGame:
                 self._change(world.change, beginning.game, number)
         return world.observe()
 
+    @property
+    def since_step(self) -> list[GameChange]:
+        """The changes after the last step, in their order."""
+        last = self.beginning.game, len(self.steps)
+        return [one for one in self.changes if (one.game, one.steps) == last]
+
     def _change(self, change: Callable[[GameChange], object], game: str, steps: int) -> None:
         """Let change what did in a game after so many steps."""
         for one in self.changes:

@@ -288,6 +288,8 @@ NoteKind = Literal[
     "no visits",
     "here before",
     "away before",
+    "last one",
+    "not playing",
     "comes",
     "goes",
     "asked for",

@@ -51,6 +51,8 @@ class GamePlanControls:
         Raises:
             TangyError: it cannot be done, or not be logged.
         """
+        if isinstance(command, ComesIn | GoesAway):
+            return [self._move(command)]
         world = self.world
         if world is None:
             return [StaffNote("no cards")]
@@ -67,14 +69,6 @@ class GamePlanControls:
                 return self._choose(world, names)
             case LetWin(several, visits):
                 return self._let_win(world, several, visits)
-            case ComesIn(person):
-                if person not in (world.plan_away if self._idle else world.away):
-                    return [StaffNote("here before", person)]
-                return self._moved(world, person, here=True)
-            case GoesAway(person):
-                if person in (world.plan_away if self._idle else world.away):
-                    return [StaffNote("away before", person)]
-                return self._moved(world, person, here=False)
             case forgotten:
                 assert_never(forgotten)
 
@@ -156,11 +150,21 @@ class GamePlanControls:
         self._note(f"staff chose: {', '.join(changes)}")
         return told
 
-    def _moved(self, world: PlannedGame, person: str, *, here: bool) -> list[Result]:
+    def _move(self, command: ComesIn | GoesAway) -> StaffNote:
+        """Let somebody come or leave, in the present game or before the next one."""
+        changes = self._supervision.game.changes
+        gathering, person, here = changes.gathering, command.person, isinstance(command, ComesIn)
+        if gathering is None or person not in gathering.people:
+            return StaffNote("not playing", person)
+        away = frozenset(changes.plan.absent) if self._idle else gathering.away
+        if here is (person not in away):
+            return StaffNote("here before" if here else "away before", person)
+        if changes.world is None and not here and not set(gathering.people) - away - {person}:
+            return StaffNote("last one", person)
         if self._idle:
-            away = world.plan_away - {person} if here else world.plan_away | {person}
-            world.choose(replace(world.game_plan, absent=tuple(sorted(away))))
+            absent = away - {person} if here else away | {person}
+            gathering.choose(replace(changes.plan, absent=tuple(sorted(absent))))
         else:
             self._supervision.game.change("came" if here else "left", person=person, by=self._by)
         self._note(f"staff: {person} {'is here' if here else 'has left'}")
-        return [StaffNote("comes" if here else "goes", person)]
+        return StaffNote("comes" if here else "goes", person)

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from tangy_profiles.gathering import as_gathering
 from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_profiles.state import FRONT, ActivityState
 
@@ -88,7 +89,8 @@ class StaffWatch:
         there = planned is None or planned.arrived
         if scene.place != FRONT and there:
             self._visited[scene.place] = now
-        away = frozenset[str]() if planned is None else planned.away
+        gathering = as_gathering(world)
+        away = frozenset[str]() if gathering is None else gathering.away
         robot = scene.place if there else "", "" if planned is None else planned.bound_for
         return StaffView(
             0.0 if self._began is None else max(0.0, now - self._began),

@@ -8,6 +8,7 @@ from typing import Any
 
 from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_profiles.game_rules import GamePlan
+from tangy_profiles.gathering import as_gathering
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.planned_game import as_planned
 from tangy_profiles.state import ActivityState
@@ -17,11 +18,13 @@ from tangy_tui.world import World
 
 
 class GameChanges:
-    """The changes of one world's games; other worlds than those with cards have none."""
+    """The changes of one world's games; without cards, people can only leave and come."""
 
     def __init__(self, world: World, store: Store) -> None:
         """Take the world and the log."""
         self.world = as_planned(world)
+        """The world, where staff can plan more than who is here."""
+        self.gathering = as_gathering(world)
         self.on_change: Callable[[ActivityState], object] = lambda now: None
         """Is told the state after each change: who asks no more by it is nobody's fault."""
         self._store = store
@@ -29,7 +32,7 @@ class GameChanges:
     @property
     def plan(self) -> GamePlan:
         """What staff chose for the game."""
-        return GamePlan() if self.world is None else self.world.game_plan
+        return GamePlan() if self.gathering is None else self.gathering.game_plan
 
     @property
     def logged(self) -> dict[str, Any]:
@@ -45,8 +48,8 @@ class GameChanges:
 
     def resume(self, past: PastGame) -> None:
         """Play on by the plan of a game that was interrupted."""
-        if self.world is not None:
-            self.world.choose(past.beginning.plan)
+        if self.gathering is not None:
+            self.gathering.choose(past.beginning.plan)
 
     def due(self, game: str, steps: int) -> list[GameChanged]:
         """Make the change that is due before the next behaviour, if one is."""
@@ -64,6 +67,9 @@ class GameChanges:
             self.on_change(self.world.tracker.state())
             if said := self._said(change):
                 self.world.announce(said)
+        elif self.gathering is not None:
+            self.gathering.change(change)
+            self.on_change(self.gathering.observe())
         return GameChanged(what, change.person, change.number, change.patterns, said)
 
     def _said(self, change: GameChange) -> str:

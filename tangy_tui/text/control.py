@@ -148,6 +148,10 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"{name(about)} is here already."
         case "away before":
             return f"{name(about)} has left already."
+        case "last one":
+            return f"{name(about)} is the only one left: end the game instead."
+        case "not playing":
+            return f"{name(about)} is not among the people of this game."
         case "no cards":
             return "This activity has no cards and no pace."
         case "no such card":

@@ -15,7 +15,7 @@ from tangy_profiles.codec import read, written
 from tangy_profiles.declared.acts import acts, raw
 from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.declared.whom import first_addressee
-from tangy_profiles.game_records import GameBeginning, GameStep
+from tangy_profiles.game_records import GameBeginning, GameChange, GameStep
 from tangy_profiles.game_world import LIVE
 from tangy_profiles.past_game import NotResumable, PastGame
 from tangy_profiles.robot import load_robot
@@ -27,6 +27,8 @@ from tests.support.declared import DECLARED, declared
 
 PEOPLE = ("user1", "user2", "user3")
 SEED = 4
+LEFT = ((4, "user1"), (7, "user3"))
+"""After how many steps who left."""
 
 
 def live(name: str) -> DeclaredLiveWorld:
@@ -97,6 +99,27 @@ def test_a_simulated_game_goes_on_as_the_one_that_nobody_killed(name: str) -> No
     resumed = DeclaredWorld(declared(name), PEOPLE, seed=SEED)
     assert resumed.resume(past_of(name, before)) == before[-1].after
     assert states(play(resumed, 15)) == states(play(whole, 15))
+
+
+@pytest.mark.parametrize("of", ["live", "simulated"])
+def test_who_has_left_is_still_away(of: str) -> None:
+    name, live_world = "trivia", of == "live"
+
+    def made() -> DeclaredWorld | DeclaredLiveWorld:
+        return live(name) if live_world else DeclaredWorld(declared(name), PEOPLE, seed=SEED)
+
+    whole = made()
+    whole.begin() if live_world else None
+    left = [GameChange(game="g", steps=n, what="left", person=who) for n, who in LEFT]
+    before = play(whole, 4)
+    whole.change(left[0])
+    before += play(whole, 3, since=4)
+    whole.change(left[1])
+    resumed = made()
+    resumed.resume(replace(past_of(name, before), changes=tuple(left)))
+    assert resumed.away == whole.away == {who for _, who in LEFT}
+    assert resumed.game.here == whole.game.here == ("user2",)
+    assert states(play(resumed, 9, since=7)) == states(play(whole, 9, since=7))
 
 
 def test_who_asked_before_it_was_killed_is_not_forgotten_although_no_sign_is_up() -> None:

@@ -16,6 +16,7 @@ from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.defaults import ASK_AGAIN
+from tangy_profiles.game_records import GameChange
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import Outcome
@@ -220,6 +221,10 @@ def test_the_same_observations_give_the_same_facts_as_in_the_simulated_room(
         do(world, chosen, selector)
         game.execute(chosen, selector)
         game.now = world.game.now
+        if data.draw(st.booleans(), "moves"):
+            who, here = data.draw(st.sampled_from(PEOPLE), "who"), data.draw(st.booleans(), "here")
+            world.change(GameChange(game="g", steps=0, what="came" if here else "left", person=who))
+            game.observe("here", who, "yes" if here else "no")
         could = list(acts(game.copy()))
         if could and not world.over:
             act: Act = data.draw(st.sampled_from(could), "act")
@@ -228,4 +233,4 @@ def test_the_same_observations_give_the_same_facts_as_in_the_simulated_room(
             world.take(Observed(TypedObservation(act.fact, act.who, said), 1.0, "staff"))
         world.observe()
         assert (world.game.values, world.game.seen()) == (game.values, game.seen())
-        assert world.game.queue == game.queue
+        assert (world.game.queue, world.game.here) == (game.queue, game.here)

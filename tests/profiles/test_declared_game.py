@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from random import Random
+
 import pytest
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.checking import expected_moves
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.joint_state import joint_state
+from tangy_profiles.declared.model import FactCondition
+from tangy_profiles.declared.speech import filled
+from tangy_profiles.game_records import ChangeKind, GameChange
+from tangy_sim.worlds.declared_world import DeclaredWorld
 from tests.support.declared import DECLARED, declared
 
 PLAYERS = ("ann", "ben", "cat")
@@ -101,3 +108,55 @@ def test_every_text_can_be_prepared_before_there_is_a_game(name: str) -> None:
             text = activity.fill(template, "Rosa", ())
             assert "{" not in text
             assert bool(text) is ("{" not in template.replace("{name}", ""))
+
+
+def test_a_turn_goes_on_when_its_player_leaves_and_skips_who_is_away(game: DeclaredGame) -> None:
+    assert game.observe("here", "ann", "no")
+    assert (game.whom("whose turn"), game.here) == ("ben", ("ben", "cat"))
+    game.execute("tell answer", "ben")
+    game.execute("tell answer", "cat")
+    assert game.whom("whose turn") == "ben"
+    assert game.observe("here", "ann", "yes")
+    game.execute("tell answer", "cat")
+    assert game.whom("whose turn") == "cat"
+    game.execute("tell answer", "cat")
+    assert game.whom("whose turn") == "ann"
+
+
+def test_nobody_who_is_away_asks_answers_or_counts(game: DeclaredGame) -> None:
+    game.observe("asking", "ben", "yes")
+    game.observe("here", "ben", "no")
+    assert game.queue == [] and not game.observe("asking", "ben", "yes")
+    assert not game.observe("answer", "ben", "eight")
+    scores = "The scores: {score of each}."
+    assert filled(game, scores, None) == "The scores: \x02ann\x03 0 and \x02cat\x03 0."
+    every = FactCondition("every", "answer", "is", "right")
+    for one in ("ann", "cat"):
+        assert not game.holds(every, None)
+        game.observe("answer", one, "eight")
+    assert game.holds(every, None)
+
+
+def test_the_last_player_cannot_leave(game: DeclaredGame) -> None:
+    for one in ("cat", "ann"):
+        assert game.observe("here", one, "no")
+    assert not game.observe("here", "ben", "no")
+    assert not game.observe("here", "dora", "no")
+    assert game.here == ("ben",)
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_games_end_whoever_leaves_and_comes_back(name: str) -> None:
+    activity, draw = declared(name), Random(f"{name}/leaving")
+    players = activity.teams or PLAYERS
+    for seed in range(5):
+        world = DeclaredWorld(activity, players, seed=seed)
+        shown, steps = expected_moves(activity), 0
+        while not world.over and steps < 300:
+            what: ChangeKind = "left" if draw.random() < 0.4 else "came"
+            world.change(GameChange(game="g", steps=0, what=what, person=draw.choice(players)))
+            move = shown.move(world.game)
+            assert move is not None and move[1] not in world.away
+            steps += 1
+            world.execute(activity.action(activity.behaviours[move[0]], move[1], None))
+        assert world.over

@@ -23,7 +23,7 @@ from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.speech import again, media, with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
-from tangy_profiles.declared.vocabulary import ASKING
+from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.past_game import (
     FACTS_UNKNOWN,
@@ -37,6 +37,8 @@ from tangy_profiles.state import EVERYBODY, FRONT, ActivityState, Outcome, Respo
 
 if TYPE_CHECKING:
     from typing import Any
+
+    from tangy_profiles.game_records import GameChange
 
 PAUSE_SECONDS = 8.0
 """After a behaviour, in which people can act: the next one follows as soon as somebody does."""
@@ -72,6 +74,8 @@ class DeclaredLiveWorld(LiveWorld):
         declaration = self.activity.declaration
         order = order_of(declaration.items, self._order.random)
         self.game = DeclaredGame(declaration, self.people, order)
+        for person in sorted(self.away):
+            self.game.observe(HERE, person, NO)
         self.tracker = DeclaredTracker(self.activity, self.game)
         self._started = self.link.time
         self._did: dict[str, list[str]] = {}
@@ -100,13 +104,23 @@ class DeclaredLiveWorld(LiveWorld):
         for _ in range(past.beginning.number):
             self._begin()  # the items of each game of the run come in an order of their own
         self.game = game
+        self.away = frozenset(self.people) - frozenset(game.here)
+        self._plan_without(self.away)
         self.tracker = DeclaredTracker(self.activity, game)
+        for change in past.since_step:
+            self.change(change)
         self._started = self.link.time - game.now
         for person in game.queue:
             self.requests.ask_for(person)
         self.over = False
         self.commands.settle()
         return self.observe()
+
+    def change(self, change: GameChange) -> None:
+        """Let somebody leave or come back, in this game and in the next."""
+        super().change(change)
+        if change.what in ("left", "came"):
+            self.game.observe(HERE, change.person, YES if change.what == "came" else NO)
 
     @property
     def memory(self) -> GameMemory:

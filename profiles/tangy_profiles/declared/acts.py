@@ -33,7 +33,7 @@ def acts(game: DeclaredGame, *, drawn: Callable[[], float] | None = None) -> Ite
         return
     for habit in game.declaration.habits:
         fact = game.declaration.facts[habit.fact]
-        for who in game.players if fact.per_player else (None,):
+        for who in game.here if fact.per_player else (None,):
             able = habit.chance > 0 and all(game.holds(one, who) for one in habit.when)
             chance, share = drawn(), drawn()  # two numbers, whatever comes of them
             if able and chance < habit.chance:
@@ -47,7 +47,7 @@ def _possible(game: DeclaredGame) -> Iterator[Act]:
             continue
         fact = game.declaration.facts[habit.fact]
         values = [value for value, weight in habit.weights if weight > 0]
-        for who in game.players if fact.per_player else (None,):
+        for who in game.here if fact.per_player else (None,):
             if all(game.holds(one, who) for one in own):
                 now = game.value(fact.name, who)
                 yield from (Act(fact.name, who, value) for value in values if value != now)

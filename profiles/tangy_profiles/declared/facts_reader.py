@@ -12,6 +12,7 @@ from tangy_profiles.declared.model import Fact, FactCondition
 from tangy_profiles.declared.section import Section
 from tangy_profiles.declared.vocabulary import (
     BUILT_IN,
+    HERE,
     ITEMS,
     KINDS,
     NO,
@@ -78,6 +79,9 @@ def _free(section: Section, key: str, name: str, facts: dict[str, Fact]) -> bool
         section.wrong(key, f"the fact {name!r} {built}", name)
         return False
     words = name.split()
+    if name == HERE:
+        section.wrong(key, f"the fact {name!r} is built in", name)
+        return False
     if " ".join(words) != name or not words or words[0] in ("any", "every", "nobody", "most"):
         section.wrong(key, f"{name!r} cannot be the name of a fact", name)
         return False

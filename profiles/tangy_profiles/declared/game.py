@@ -13,6 +13,7 @@ from tangy_profiles.declared.judging import judged
 from tangy_profiles.declared.model import Declaration, Effect, Fact, FactCondition, Stage
 from tangy_profiles.declared.vocabulary import (
     ASKING,
+    HERE,
     ITEMS,
     NO,
     PLACE,
@@ -55,6 +56,8 @@ class DeclaredGame:
         self.counts: dict[Key, float] = {}
         self.round = 0
         """How many items have been put to the group."""
+        self.here = self.players
+        """The players who have not left, in their order; at least one."""
         self.turn = 0
         self.queue: list[str] = []
         """Those who ask, first come first."""
@@ -135,14 +138,14 @@ class DeclaredGame:
             case "":
                 return self._holds_for(condition, player)
             case "any":
-                return any(self._holds_for(condition, one) for one in self.players)
+                return any(self._holds_for(condition, one) for one in self.here)
             case "every":
-                return all(self._holds_for(condition, one) for one in self.players)
+                return all(self._holds_for(condition, one) for one in self.here)
             case "nobody":
-                return not any(self._holds_for(condition, one) for one in self.players)
+                return not any(self._holds_for(condition, one) for one in self.here)
             case "most":
-                many = sum(self._holds_for(condition, one) for one in self.players)
-                return 2 * many > len(self.players)
+                many = sum(self._holds_for(condition, one) for one in self.here)
+                return 2 * many > len(self.here)
 
     def _holds_for(self, condition: FactCondition, player: str | None) -> bool:
         if condition.comparison == "is":
@@ -163,18 +166,16 @@ class DeclaredGame:
             case "whose turn":
                 return self.players[self.turn]
             case "next in circle":
-                if self.addressed is None:
-                    return self.players[0]
-                place = self.players.index(self.addressed) + 1
-                return self.players[place % len(self.players)]
+                last = -1 if self.addressed is None else self.players.index(self.addressed)
+                return self.players[self._next_here(last)]
             case "quietest":
-                return min(self.players, key=lambda one: self.acts[one])
+                return min(self.here, key=lambda one: self.acts[one])
             case "last to act":
-                return self.actor
+                return self.actor if self.actor in self.here else None
             case "addressed":
-                return self.addressed
+                return self.addressed if self.addressed in self.here else None
             case "beside":
-                return self.place if self.place != FRONT else None
+                return self.place if self.place in self.here else None
 
     def stage(self) -> tuple[Stage, str | None]:
         """Return the present stage, and whom it is about."""
@@ -203,7 +204,7 @@ class DeclaredGame:
         """Take in something that was observed.
 
         Args:
-            name: the fact that it is about.
+            name: the fact that it is about; `HERE` if a player leaves or comes back.
             who: the player, None if it is of the group.
             raw: a value, or the answer that a person gave.
             certainty: how sure it is, as a probability.
@@ -211,10 +212,12 @@ class DeclaredGame:
         Returns:
             Whether it says anything that was not so.
         """
+        if name == HERE:
+            return self._moved(who, raw)
         fact = self.declaration.facts[name]
         if name == ASKING:
             return self._ask(who, raw)
-        if fact.kind == "test" or fact.built_in or (fact.per_player and who not in self.players):
+        if fact.kind == "test" or fact.built_in or (fact.per_player and who not in self.here):
             return False
         if fact.kind == "count":
             key = _key(fact, who)
@@ -230,13 +233,33 @@ class DeclaredGame:
         return True
 
     def _ask(self, who: str | None, raw: str) -> bool:
-        if who not in self.players or (who in self.queue) == (raw == YES):
+        if who not in self.here or (who in self.queue) == (raw == YES):
             return False
         if raw == YES:
             self.queue.append(who)
         else:
             self.queue.remove(who)
         return True
+
+    def _moved(self, who: str | None, raw: str) -> bool:
+        """Let a player leave or come back; the last one stays, and a turn goes to the next."""
+        if who not in self.players or (who in self.here) == (raw == YES):
+            return False
+        stay = {*self.here, who} if raw == YES else {*self.here} - {who}
+        if not stay:
+            return False
+        self.here = tuple(one for one in self.players if one in stay)
+        if who in self.queue:
+            self.queue.remove(who)
+        if self.players[self.turn] not in self.here:
+            self.turn = self._next_here(self.turn)
+        return True
+
+    def _next_here(self, place: int) -> int:
+        """Return the place of the next player who is here, after a place in the circle."""
+        count = len(self.players)
+        after = ((place + n) % count for n in range(1, count + 1))
+        return next(one for one in after if self.players[one] in self.here)
 
     def execute(self, name: str, whom: str | None) -> Execution:
         """Do a behaviour, for a player or (None) the group."""
@@ -266,12 +289,13 @@ class DeclaredGame:
         match effect.does:
             case "set" | "add" | "clear" | "start":
                 fact = self.declaration.facts[effect.fact]
-                for key in self._keys(fact, whom):
+                everybody = self.here if effect.does == "add" else self.players
+                for key in _keys(fact, whom, everybody):
                     self._assign(effect, fact, key)
             case "next item":
                 self.round = min(self.round + 1, len(self.order))
             case "next turn":
-                self.turn = (self.turn + 1) % len(self.players)
+                self.turn = self._next_here(self.turn)
             case "go to front":
                 self.place = FRONT
             case "go to whom":
@@ -286,12 +310,6 @@ class DeclaredGame:
             case "finish":
                 self.over = True
 
-    def _keys(self, fact: Fact, whom: str | None) -> list[Key]:
-        """Return what a change is of: the group's fact, a player's, or that of every player."""
-        if not fact.per_player:
-            return [(fact.name, "")]
-        return [(fact.name, one) for one in ([whom] if whom is not None else self.players)]
-
     def _assign(self, effect: Effect, fact: Fact, key: Key) -> None:
         if effect.does == "set":
             self.values[key] = effect.value
@@ -302,6 +320,13 @@ class DeclaredGame:
         else:
             self.values.pop(key, None)
             self.counts.pop(key, None)
+
+
+def _keys(fact: Fact, whom: str | None, everybody: Sequence[str]) -> list[Key]:
+    """Return what a change is of: the group's fact, a player's, or that of everybody."""
+    if not fact.per_player:
+        return [(fact.name, "")]
+    return [(fact.name, one) for one in ([whom] if whom is not None else everybody)]
 
 
 def _key(fact: Fact, player: str | None) -> Key:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tangy_profiles.codec import Count
+from tangy_profiles.codec import Count, Sparse
 from tangy_profiles.state import FRONT
 
 if TYPE_CHECKING:
@@ -40,6 +40,8 @@ class GameMemory:
     closed: str | None
     executed: tuple[tuple[str, Count], ...]
     """How often each behaviour was carried out."""
+    away: Sparse[tuple[str, ...]] = ()
+    """The players who have left."""
 
 
 def memory_of(game: DeclaredGame) -> GameMemory:
@@ -59,6 +61,7 @@ def memory_of(game: DeclaredGame) -> GameMemory:
         step=game.step,
         closed=game.closed,
         executed=tuple(sorted(game.executed.items())),
+        away=tuple(one for one in game.players if one not in game.here),
     )
 
 
@@ -79,6 +82,7 @@ def game_from(
     game.acts = dict(memory.acts)
     game.now, game.step, game.closed = memory.now, memory.step, memory.closed
     game.executed = dict(memory.executed)
+    game.here = tuple(one for one in players if one not in memory.away)
     return game
 
 
@@ -89,6 +93,7 @@ def _fits(declaration: Declaration, players: tuple[str, ...], memory: GameMemory
     return (
         {who for who, _ in memory.acts} == set(players) >= named
         and memory.place in {FRONT, *players}
+        and bool(set(players) - set(memory.away))
         and memory.turn < len(players)
         and memory.round <= len(memory.order)
         and len(memory.order) == declaration.items.rounds

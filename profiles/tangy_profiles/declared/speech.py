@@ -96,7 +96,7 @@ def _value(game: DeclaredGame, slot: str, whom: str | None) -> str:
         return str(game.round) if game.round else ""
     if slot.endswith(OF_EACH) and slot[: -len(OF_EACH)] in declaration.facts:
         fact = declaration.facts[slot[: -len(OF_EACH)]]
-        parts = [f"{_person(one)} {game.number(fact, one):.0f}" for one in game.players]
+        parts = [f"{_person(one)} {game.number(fact, one):.0f}" for one in game.here]
         *others, last = parts
         return f"{', '.join(others)} and {last}" if others else last
     if slot in declaration.items.columns:

@@ -63,6 +63,9 @@ BUILT_IN: dict[str, tuple[str, ...]] = {
 
 NO, YES = "no", "yes"
 
+HERE = "here"
+"""What is observed of a player who leaves (no) or comes back (yes); no condition looks at it."""
+
 SLOT = re.compile(r"\{([^{}]*)\}")
 """A slot of a text, as `{name}`."""
 

@@ -16,7 +16,7 @@ from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.memory import GameMemory, game_from
-from tangy_profiles.declared.vocabulary import ASKING, NO, YES
+from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.person import Person
 from tangy_sim.device_simulator.faults import Faults
 from tangy_sim.device_simulator.people import CLEAR, TURNS_DOWN, People, Sitter
@@ -56,6 +56,11 @@ class DeclaredPeople(People):
             self.known = game
             self._began = self.now - game.now
             self.game.opened = True
+
+    def notice_away(self) -> None:
+        """Know who has left, and who has come back."""
+        for person in self.ids:
+            self.known.observe(HERE, person, NO if person in self.away else YES)
 
     def _seat(self) -> dict[str, Sitter]:
         deck = self.activity.deck
@@ -99,7 +104,7 @@ class DeclaredPeople(People):
             if person not in game.queue:
                 self._after(TURNS_DOWN, partial(self._closed, self.sitters[person]))
         for who, fact, value in done.invited:
-            for one in (who,) if who else self.ids:
+            for one in (who,) if who else game.here:
                 self._invited(Act(fact, one, value), heard.strategy)
         if not game.over:
             for act in acts(game, drawn=self._draw):

@@ -42,6 +42,8 @@ def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
         people.away = {people.sitters[str(person)].id for person in told["away"]}
         for person in people.away:
             people.sitters[person].asks_since = None
+        if isinstance(people, DeclaredPeople):
+            people.notice_away()
     if "taken_back" in told:
         _take_back(people, int(told["taken_back"]))
     return {}

@@ -7,6 +7,7 @@ act. Streams for items, people and compliance are seeded apart; only `Random.ran
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from random import Random
 
 from tangy_profiles.activity import Activity
@@ -19,7 +20,7 @@ from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.speech import again, media, words
-from tangy_profiles.declared.vocabulary import ASKING
+from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_rules import GamePlan
@@ -44,6 +45,7 @@ class DeclaredWorld:
     """
 
     played_in: GameWorld = SIMULATED
+    game_plan = GamePlan()
 
     def __init__(
         self,
@@ -89,6 +91,8 @@ class DeclaredWorld:
         """Begin a new game, its items in a new order, and return its first state."""
         order = order_of(self._declaration.items, self._items)
         self.game = DeclaredGame(self._declaration, self.people, order)
+        for person in self.game_plan.absent:
+            self.game.observe(HERE, person, NO)
         self.over = False
         self.happened: dict[str, list[str]] = {}
         """What people did after the last behaviour, in order; "" is the whole group."""
@@ -100,11 +104,20 @@ class DeclaredWorld:
         """Go on where a game was interrupted, or raise NotResumable."""
         return past.replay(self)
 
+    @property
+    def away(self) -> frozenset[str]:
+        """Who has left, or has not come yet."""
+        return frozenset(self.people) - frozenset(self.game.here)
+
     def choose(self, plan: GamePlan) -> None:
-        """Play the next game as ever: here is nothing to choose."""
+        """Play the next game with the people whom a plan has; nothing else can be chosen."""
+        self.game_plan = plan
 
     def change(self, change: GameChange) -> None:
-        """Let nothing change beside the behaviours."""
+        """Let somebody leave or come back, in this game and in the next."""
+        if change.what in ("left", "came"):
+            self.game.observe(HERE, change.person, YES if change.what == "came" else NO)
+            self.game_plan = replace(self.game_plan, absent=tuple(sorted(self.away)))
 
     def observe(self) -> ActivityState:
         """Return the joint state as it is now."""
@@ -149,7 +162,7 @@ class DeclaredWorld:
             or ("asks for help" if one in game.queue else "watches")
             for one in self.people
         }
-        return Scene(game.place, tuple(game.queue), doing, (), None)
+        return Scene(game.place, tuple(game.queue), doing, (), None, self.away)
 
     def health(self) -> Health:
         """Return the readings of devices of which none has a fault."""
@@ -164,7 +177,7 @@ class DeclaredWorld:
         response: Response | None = None
         patience = self.activity.patience
         for person, fact, value in done.invited:
-            for one in (person,) if person else self.people:
+            for one in (person,) if person else self.game.here:
                 reply = respond(self.preferences, one, action.strategy, patience, self._compliance)
                 if person or reply.complied:
                     self._take_in(Act(fact, one, value))
