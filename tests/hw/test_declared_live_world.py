@@ -10,17 +10,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.declared_live_world import PAUSE_SECONDS, DeclaredLiveWorld, Observed
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
 from tangy_profiles.declared.activity import read_declared
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import Outcome
-from tests.hw.links import FakeLink
+from tangy_sim.worlds.declared_world import DeclaredWorld
+from tests.hw.links import SECONDS, FakeLink
+from tests.support.changed import changed_trivia
 from tests.support.declared import DECLARED, declared
 from tests.support.media import guess_the_sound
 
@@ -153,6 +156,21 @@ def test_the_pause_ends_when_somebody_answers(world: DeclaredLiveWorld, link: Fa
     link.meanwhile, began = meanwhile, link.time
     do(world, "allow time")
     assert link.time - began < PAUSE_SECONDS
+
+
+def test_the_pause_is_as_long_as_the_file_says(link: FakeLink, tmp_path: Path) -> None:
+    longer = ('[behaviours."allow time"]\n', '[behaviours."allow time"]\npause = 45\n')
+    activity = changed_trivia(tmp_path, longer)
+    world = DeclaredLiveWorld(
+        activity, PEOPLE, cast(RobotLink, link), load_robot(), load_room(), seed=1, names=NAMES
+    )
+    world.begin()
+    simulated = DeclaredWorld(activity, PEOPLE, seed=1)
+    for name, pause in (("welcome everyone", PAUSE_SECONDS), ("allow time", 45.0)):
+        action = activity.action(activity.behaviour(name), None, None)
+        words = len(activity.behaviours[name].speech["plain"].split())
+        assert world.execute(action).seconds - SECONDS["perform"] == pytest.approx(pause, abs=0.5)
+        assert simulated.execute(action).seconds == pytest.approx(1.0 + 0.4 * words + pause)
 
 
 def test_a_sign_that_is_up_asks_and_comes_down_when_it_was_answered(

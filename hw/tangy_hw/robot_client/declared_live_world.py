@@ -20,6 +20,7 @@ from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
+from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.speech import again, media, with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
 
     from tangy_profiles.game_records import GameChange
 
-PAUSE_SECONDS = 8.0
-"""After a behaviour, in which people can act: the next one follows as soon as somebody does."""
 LOOK_SECONDS = 0.5  # between two looks at what people do
 PATIENCES = 2.0  # windows of patience after which it is taken that a person does not do it
 
@@ -301,7 +300,9 @@ class DeclaredLiveWorld(LiveWorld):
         A person for whom the behaviour was, and who does nothing in the pause, is asked again in
         the words of the file, and given another pause.
         """
-        seen, until = self.game.seen(), self.link.time + PAUSE_SECONDS
+        declared = self.activity.declaration.behaviours.get(behaviour)
+        pause = PAUSE_SECONDS if declared is None else declared.pause
+        seen, until = self.game.seen(), self.link.time + pause
         words = again(self.game, behaviour, whom) if behaviour and whom is not None else []
         silent = not self._did.get(whom or "")
         try:
@@ -311,7 +312,7 @@ class DeclaredLiveWorld(LiveWorld):
                 silent = silent and self.unsure is None and not self._did.get(whom or "")
                 until += self._ask_again()
                 if whom and words and silent and self.link.time >= until:
-                    until = self._ask_silent(words, whom)
+                    until = self.link.time + self._ask_silent(words, whom, pause)
         except DeviceError:  # what keeps it from waiting is seen by what devices report
             return
 
@@ -349,8 +350,8 @@ class DeclaredLiveWorld(LiveWorld):
         self.say(text, Picture(text, asks=name))
         return self.link.time - began
 
-    def _ask_silent(self, words: list[str], who: str) -> float:
-        """Ask a person again who said nothing, if they may be; return until when to wait, in s.
+    def _ask_silent(self, words: list[str], who: str, pause: float) -> float:
+        """Ask a person again who said nothing, if they may be; return how long to wait, in s.
 
         Raises:
             DeviceError: it could not be said or shown.
@@ -360,11 +361,11 @@ class DeclaredLiveWorld(LiveWorld):
         text = words.pop(0)
         if not asks:
             words.clear()
-            return self.link.time
+            return 0.0
         self._asked_again[who] = self._asked_again.get(who, 0) + 1
         shown = Picture(with_names(text, self.seat_of), asks=self.seat_of(who))
         self.say(with_names(text, self.name_of), shown)
-        return self.link.time + PAUSE_SECONDS
+        return pause
 
     def _hear(self) -> None:
         """See what people do now, where the robot's time stands still meanwhile as well."""

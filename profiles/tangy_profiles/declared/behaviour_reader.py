@@ -10,7 +10,7 @@ from typing import cast
 
 from tangy_profiles.declared.conditions import Facts, Phrasing
 from tangy_profiles.declared.items import read_csv
-from tangy_profiles.declared.model import DeclaredBehaviour
+from tangy_profiles.declared.model import PAUSE_SECONDS, DeclaredBehaviour
 from tangy_profiles.declared.section import Section
 from tangy_profiles.declared.vocabulary import SELECTORS, SLOT, Selector
 from tangy_profiles.reading import nearest
@@ -28,7 +28,9 @@ KEYS = (
     "again",
     "picture",
     "sound",
+    "pause",
 )
+LONGEST_PAUSE = 300.0  # s
 POSTURE = "rest"
 PHRASE = re.compile(r"[a-z']+( [a-z']+)*")
 OF_EACH = " of each"
@@ -81,6 +83,7 @@ def read_behaviours(
             tuple(_text(one, "again", text, slots) for text in one.texts("again", single=True)),
             one.text("picture", ""),
             one.text("sound", ""),
+            one.number("pause", 0.0, LONGEST_PAUSE, PAUSE_SECONDS),
         )
         if behaviour.again and not any(who != "group" for who in behaviour.to):
             one.wrong("again", "needs a person in 'to': it is a person who is asked again")

@@ -18,6 +18,9 @@ from tangy_profiles.declared.vocabulary import (
     Source,
 )
 
+PAUSE_SECONDS = 8.0
+"""After a behaviour, in which people can act."""
+
 
 @dataclass(frozen=True, slots=True)
 class FactCondition:
@@ -112,6 +115,8 @@ class DeclaredBehaviour:
     """The name of a picture's file, perhaps with columns of the items as slots ("": none)."""
     sound: str = ""
     """The name of a sound's file, likewise."""
+    pause: float = PAUSE_SECONDS
+    """For how many s Tangy waits after it, unless people do something that counts."""
 
     @property
     def invites(self) -> bool:

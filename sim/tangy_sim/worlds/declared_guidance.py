@@ -62,7 +62,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
     def _pass(self, seconds: float) -> None:
         """Let no time pass in the game while the robot speaks: it passes when that is needed."""
 
-    def _let_people_act(self) -> None:
+    def _let_people_act(self, pause: float) -> None:
         self._moments.append(self.game.copy())
         event = None if self.covered else self._next()
         if event is not None:
@@ -71,7 +71,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
             self._go_back()
         else:
             self.covered = True
-            super()._let_people_act()
+            super()._let_people_act(pause)
 
     def _ask_silent(self, behaviour: str, who: str) -> None:
         """Ask nobody again: in a guided game the silence of a person is to be shown, too."""

@@ -34,7 +34,7 @@ from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respon
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.users import load_users
 
-SECONDS_A_WORD, PAUSE = 0.4, 8.0  # s
+SECONDS_A_WORD = 0.4  # s
 ASKING_AGAIN = 6.0  # s until a person has answered once more
 
 
@@ -129,6 +129,7 @@ class DeclaredWorld:
         if game.over:
             return Outcome(False, 0.0, (), None)
         before, behaviour = game.copy(), action.behaviour.name
+        pause = self._declaration.behaviours[behaviour].pause
         whom = None if action.target in (None, EVERYBODY) else action.target
         done = game.execute(behaviour, whom)
         speech, image = (
@@ -144,10 +145,10 @@ class DeclaredWorld:
         self._pass(seconds)
         self.over = game.over
         if not game.over:
-            self._let_people_act()
+            self._let_people_act(pause)
             if done.completed and whom is not None:
                 self._ask_silent(behaviour, whom)
-        seconds += PAUSE + ASKING_AGAIN * sum(one.asked_again for one in self._not_clear)
+        seconds += pause + ASKING_AGAIN * sum(one.asked_again for one in self._not_clear)
         return Outcome(done.completed, seconds, (), response, speech, image, tuple(self._not_clear))
 
     def who(self, place: str) -> str:
@@ -188,8 +189,9 @@ class DeclaredWorld:
         """Let time pass while the robot speaks, in s."""
         self.game.now += seconds
 
-    def _let_people_act(self) -> None:
-        self.game.now += PAUSE
+    def _let_people_act(self, pause: float) -> None:
+        """Let people act in a pause of so many s."""
+        self.game.now += pause
         for act in acts(self.game, drawn=self._people_draw):
             if self._understood(act):
                 self._take_in(act)
