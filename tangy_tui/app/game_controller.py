@@ -18,6 +18,7 @@ from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
 from tangy_tui.app.answers import Answers
 from tangy_tui.app.autonomy import AutonomyDial
+from tangy_tui.app.ending_games import EndingGames
 from tangy_tui.app.fault_commands import Result, attend
 from tangy_tui.app.game_commands import (
     AT_ONCE,
@@ -49,7 +50,8 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.plan_controls import GamePlanControls
-from tangy_tui.app.robot_controls import ENDED, RobotControls
+from tangy_tui.app.robot_controls import RobotControls
+from tangy_tui.app.staff_view import StaffView, StaffWatch
 from tangy_tui.learning.verification import Verification
 from tangy_tui.monitoring.supervision import Event, Supervision
 
@@ -58,10 +60,9 @@ if TYPE_CHECKING:
 
 Told: TypeAlias = Result | Verification
 TOOK_OVER = "You say what Tangy does next."
-LEAVES_SECONDS = 1.0  # in which what is being done is broken off
 
 
-class GameController:
+class GameController(EndingGames):
     """Games with staff who can step in. `begin` each, then call `next` until it is over."""
 
     def __init__(
@@ -104,6 +105,7 @@ class GameController:
         """Whether the game pauses after the next thing."""
         self._turn = threading.RLock()
         """Whoever has it has the supervision, and the robot."""
+        self._watch = StaffWatch()
         supervision.game.permits = self.autonomy.permits
 
     # ----------------------------------------------------------------------------- the game
@@ -147,7 +149,10 @@ class GameController:
                 self.robot.stop()
                 return []
             past, self.past = self.past, None
-            return self.supervision.begin(past, self.by)
+            events = self.supervision.begin(past, self.by)
+            now = self.supervision.world.seconds
+            self._watch.begin(now) if past is None else self._watch.resume(now, past)
+            return events
 
     def next(self) -> list[Event]:
         """Do the next thing if it may be done now; else only look at the devices."""
@@ -171,6 +176,14 @@ class GameController:
                 return game.step()
             finally:
                 self.autonomy.done()
+                self.view()
+
+    def view(self) -> StaffView:
+        """Return what staff have to see of the game now; by any thread, at any time."""
+        world = self.supervision.world
+        if self.supervision.over:
+            self._watch.end(world.seconds)
+        return self._watch.look(world.scene(), world.people, world.seconds, world)
 
     def look(self) -> list[Event] | None:
         """Check the devices and return new events; None while a behaviour is being carried out."""
@@ -279,18 +292,6 @@ class GameController:
             self.note("staff drove the robot by keys")
             self._tell_all()
 
-    def wait_for_turn(self, seconds: float) -> bool:
-        """Wait up to so many s for the current behaviour to end; return whether it has."""
-        if self._turn.acquire(timeout=seconds):
-            self._turn.release()
-            return True
-        return False
-
-    def break_off(self) -> None:
-        """Stop the robot in the midst of what it does, because the game ends."""
-        self.supervision.stopped_by_staff()
-        self.robot.stop(ENDED)
-
     def _stop(self, by: str) -> list[Result]:
         before, self.stopped, self.going = self.stopped, True, False
         self.supervision.stopped_by_staff()
@@ -346,26 +347,6 @@ class GameController:
         self.note(f"staff: the last response of {person} does not count")
         return StaffNote("voided", person)
 
-    def _end(self) -> list[Result]:
-        self.note("staff ended the game")
-        game = self.supervision
-        asked = game.question is not None and game.question.fault != TAKEN_OVER
-        events = game.give_up() if asked or game.halted is not None else game.leave()
-        return [StaffNote("ended"), *events]
-
-    def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
-        """Stop the robot, wait up to `patience` s for that, and log that the game was left."""
-        self.stopped = True
-        self.break_off()
-        if not self._turn.acquire(timeout=patience):
-            return []
-        try:
-            with suppress(TangyError):  # who leaves is not held up by a log that is full
-                return self.supervision.leave()
-        finally:
-            self._turn.release()
-        return []
-
     def refuses(self, command: GameCommand) -> StaffNote | None:
         """Say whether a command that moves the robot is refused already as it is given."""
         return self.refusal(asking=False) if isinstance(command, CallAgain | Drive) else None
@@ -393,8 +374,3 @@ class GameController:
                 return list(self.supervision.answer(behaviour, target, self.by))
             finally:
                 self._tell_all()
-
-    def give_up(self) -> list[Event]:
-        """End a game in which Tangy asks or is halted, and nobody is there."""
-        with self._turn, serving():
-            return self.supervision.give_up()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tangy_profiles.codec import Count, Sparse
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.scene import Scene
 from tangy_tui.app.game_commands import Phase
+from tangy_tui.app.staff_view import PersonNow
 
 if TYPE_CHECKING:
     from tangy_tui.app.game_controller import GameController
@@ -36,6 +37,12 @@ class GameView:
     pose: Sparse[tuple[float, float] | None] = None
     room: Sparse[str] = ""
     """As in `GameBeginning`."""
+    seconds: Sparse[Count] = 0
+    """Since the game began; not rounded up."""
+    minutes: Sparse[Count] = 0
+    """For how long the session is planned; 0: it is left open."""
+    people: Sparse[tuple[PersonNow, ...]] = ()
+    """How each person is, their times in whole s."""
 
 
 def view_of(control: GameController) -> GameView | None:
@@ -48,6 +55,7 @@ def view_of(control: GameController) -> GameView | None:
             return None
         robot, cause = supervision.status
         pose = link.state.pose if link is not None and link.state.number else None
+        seen = control.view()
         return GameView(
             driver=control.by,
             game=supervision.game.game,
@@ -61,5 +69,18 @@ def view_of(control: GameController) -> GameView | None:
             scene=world.scene(),
             pose=None if pose is None else (round(pose.x, 2), round(pose.y, 2)),
             room=supervision.game.room,
+            seconds=int(seen.seconds),
+            minutes=supervision.game.changes.plan.minutes,
+            people=tuple(_in_whole_seconds(person) for person in seen.people),
         )
     return None
+
+
+def _in_whole_seconds(person: PersonNow) -> PersonNow:
+    """Round a person's times down, so that what is shown changes once a second at most."""
+    waits, unvisited = person.waits, person.unvisited
+    return replace(
+        person,
+        waits=None if waits is None else float(int(waits)),
+        unvisited=None if unvisited is None else float(int(unvisited)),
+    )

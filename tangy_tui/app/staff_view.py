@@ -6,6 +6,7 @@ looked at as often as one likes while the game goes on beside it.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -51,6 +52,8 @@ class StaffWatch:
     """Keeps since when people ask and when they were visited, from one look to the next."""
 
     def __init__(self) -> None:
+        self._looks = threading.Lock()
+        """More than one thread looks: that of the game, of the screen, of those who look on."""
         self._clear()
 
     def _clear(self) -> None:
@@ -65,8 +68,9 @@ class StaffWatch:
         self._began = now
 
     def end(self, now: float) -> None:
-        """Let the clock stand from a time in s on: the game is over."""
-        self._ended = now
+        """Let the clock stand from a time in s on: the game is over; the first time counts."""
+        if self._ended is None:
+            self._ended = now
 
     def resume(self, now: float, past: PastGame) -> None:
         """Go on with a game at a time in s, by when its steps were over and whom they were for."""
@@ -80,6 +84,10 @@ class StaffWatch:
 
     def look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
         """Take a look at a time in s, and return what there is to see."""
+        with self._looks:
+            return self._look(scene, people, now, world)
+
+    def _look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
         now = now if self._ended is None else min(now, self._ended)
         for person in [one for one in self._asks if one not in scene.requests]:
             del self._asks[person]

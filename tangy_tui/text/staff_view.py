@@ -26,12 +26,12 @@ def clock_words(seconds: float) -> str:
     return f"{whole // 60}:{whole % 60:02}"
 
 
-def time_words(view: StaffView, minutes: int) -> str:
-    """Say how long the game has lasted, and how much of the planned time is left."""
-    gone = f"{clock_words(view.seconds)} so far"
+def time_words(seconds: float, minutes: int) -> str:
+    """Say how long the game has lasted (s), and how much of the planned time is left."""
+    gone = f"{clock_words(seconds)} so far"
     if not minutes:
         return gone
-    left = minutes * 60 - view.seconds
+    left = minutes * 60 - seconds
     return f"{gone}, {clock_words(left)} left" if left > 0 else f"{gone}, time is up"
 
 

@@ -7,6 +7,7 @@ from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.game_commands import Phase
 from tangy_tui.app.game_view import GameView
 from tangy_tui.text.situations import Name
+from tangy_tui.text.staff_view import clock_words, time_words
 
 WORLDS: dict[GameWorld, str] = {
     UNKNOWN: "world unknown",
@@ -55,6 +56,16 @@ def driver_words(view: GameView) -> str:
     return f"{view.driver} drives, {WORLDS[view.world]}"
 
 
+def waiting_words(view: GameView, name: Name) -> str:
+    """Say who waits for help, since when; "" if nobody does."""
+    waits = {one.id: one.waits for one in view.people if one.waits is not None}
+    told = [
+        f"{name(one)} {clock_words(waits[one])}" if one in waits else name(one)
+        for one in view.scene.requests
+    ]
+    return f"Waiting for help: {', '.join(told)}" if told else ""
+
+
 def called_words(view: GameView, activity: Activity | None) -> str:
     """Say how many calls there were, and the last ones; "" if there were none."""
     called = view.scene.called
@@ -68,13 +79,21 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
     """Describe in lines how a game stands."""
     if view is None:
         return [NO_GAME]
-    scene = view.scene
     lines = [
         f"{driver_words(view)}. Game {view.number}, step {view.step}: {PHASES[view.phase]}, "
         f"robot {view.robot}{f' ({view.cause})' if view.cause else ''}."
     ]
-    if scene.called:
-        lines.append(called_words(view, activity))
-    if scene.requests:
-        lines.append(f"Waiting for help: {', '.join(map(name, scene.requests))}.")
-    return lines
+    return [*lines, *now_lines(view, activity, name)]
+
+
+def now_lines(view: GameView, activity: Activity | None, name: Name) -> list[str]:
+    """Describe the time, who waits for help, and what was called."""
+    waits, called = waiting_words(view, name), called_words(view, activity)
+    now = f"{time_words(view.seconds, view.minutes)}{f'. {waits}' if waits else ''}."
+    return [now, called] if called else [now]
+
+
+def facts(view: GameView) -> list[str]:
+    """Say what stands beside the call."""
+    called = len(view.scene.called)
+    return [time_words(view.seconds, view.minutes), f"{called} called" if called else ""]

@@ -14,12 +14,13 @@ from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.text.staff_view import clock_words, time_words
 from tangy_tui.ui.screens.watch import WatchScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.pilot.conftest import LARGE, SMALL, Run
-from tests.support.waiting import until
+from tests.support.waiting import until, until_shown
 
 
 @pytest.fixture
@@ -59,6 +60,25 @@ async def test_it_shows_the_room_the_calls_and_who_drives(
         assert "scripted" in screen.query_one(StatusLine).status.note
         label = control.supervision.world.activity.deck.label(scene.called[-1])
         assert label in pilot.text()
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE])
+async def test_it_shows_the_time_and_who_waits_how_long_as_staff_see_it(
+    control: GameController, screen: WatchScreen, run: Run, size: tuple[int, int]
+) -> None:
+    world = control.supervision.world
+    while not world.scene().requests:
+        go_on_by_script(control, expert=False)
+    async with run(screen, size=size) as pilot:
+        await until(lambda: screen.query(RoomView))
+        seen = control.view()
+        waits = {one.id: one.waits for one in seen.people if one.waits is not None}
+        (first, *_), words = world.scene().requests, clock_words(waits[world.scene().requests[0]])
+        assert clock_words(seen.seconds) != "0:00"
+        await until_shown(pilot, lambda: time_words(seen.seconds, 0) in pilot.text())
+        name = f"User {first.removeprefix('user')}"
+        told = f"{name} {words}" if size == SMALL else f"asks {words}"
+        assert told in pilot.text()
 
 
 async def test_it_follows_the_game(control: GameController, screen: WatchScreen, run: Run) -> None:

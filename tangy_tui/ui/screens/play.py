@@ -19,7 +19,7 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.game_events import GameBegun, GameEnded, ResumedGame
+from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.interaction.voiding import void_last
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -342,17 +342,10 @@ class PlayScreen(PlayStaff):
         self.picture.tell(events, 0 if self.skipping else self._speed)
         if not self.skipping:
             self._voice.tell(events, self._speed if self.control.going else 0)
-        seconds = self._supervision.world.seconds
         for event in events:
-            if isinstance(event, GameBegun):
-                self._watch.begin(seconds)
-            elif isinstance(event, ResumedGame) and self._past is not None:
-                self._watch.resume(seconds, self._past)
-            elif isinstance(event, GameEnded):
-                self._watch.end(seconds)
-                if event.stopped is not None and not known:
-                    self._halted = True
-                    self.run_worker(self._say_why(event.stopped, text.LEADS_HOME), name="why")
+            if isinstance(event, GameEnded) and event.stopped is not None and not known:
+                self._halted = True
+                self.run_worker(self._say_why(event.stopped, text.LEADS_HOME), name="why")
         if events and (not self.skipping or self._supervision.over):
             self.show_staff()
         self.show_status()

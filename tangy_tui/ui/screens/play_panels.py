@@ -11,7 +11,6 @@ from textual.screen import Screen
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event
@@ -64,7 +63,6 @@ class PlayPanels(TangyScreen[Tally]):
         self._supervision = control.supervision
         self.minutes = 0
         """How long the session is planned to take; 0: it is left open."""
-        self._watch = StaffWatch()
         self.picture = GamePicture(self, workspace, control.supervision)
         self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
 
@@ -123,8 +121,7 @@ class PlayPanels(TangyScreen[Tally]):
     def show_staff(self) -> None:
         """Show what staff have to see now."""
         world, name = self._supervision.world, staff_names(self._workspace.name)
-        scene = world.scene()
-        view = self._watch.look(scene, tuple(self._workspace.names), world.seconds, world)
+        view = self.control.view()
         show_view(
             self.query_one(StaffPanel),
             self.query_one(CallBoard),

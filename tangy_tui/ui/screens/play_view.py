@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tangy_profiles.planned_game import PlannedGame, as_planned
@@ -43,7 +43,7 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
         call,
         _next(shown),
         _facts(view, shown, last=not columns),
-        [_person(person, shown.name) for person in _in_order(view.people)],
+        person_lines(view.people, shown.name),
         [column_row(column, view.called, BOARD) for column in columns],
     )
 
@@ -72,7 +72,7 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
     before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1] if last)
     if not world.activity.deck.columns:  # nothing is called
         return [
-            text.time_words(view, shown.minutes),
+            text.time_words(view.seconds, shown.minutes),
             text.tangy_words(shown.control.autonomy.level, battery_of(world)),
         ]
     count = f"{len(view.called)} called" if view.called else text.NOTHING_CALLED
@@ -80,16 +80,17 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
     patterns = getattr(planned, "patterns", None)
     return [
         f"{count}   {before}".rstrip(),
-        text.time_words(view, shown.minutes),
+        text.time_words(view.seconds, shown.minutes),
         text.pace_words(view),
         text.played_words(patterns),
         text.tangy_words(shown.control.autonomy.level, battery_of(world)),
     ]
 
 
-def _in_order(people: tuple[PersonNow, ...]) -> list[PersonNow]:
-    """Return people in order; in a large group those who ask come first."""
-    return sorted(people, key=lambda person: (not person.turn, person.turn, person.state == "away"))
+def person_lines(people: Sequence[PersonNow], name: Callable[[str], str]) -> list[PersonLine]:
+    """Write a line for each person; those who ask come first, those who are away last."""
+    ordered = sorted(people, key=lambda one: (not one.turn, one.turn, one.state == "away"))
+    return [_person(person, name) for person in ordered]
 
 
 def _person(person: PersonNow, name: Callable[[str], str]) -> PersonLine:

@@ -8,6 +8,7 @@ from typing import ClassVar
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
+from textual.content import Content
 from textual.widgets import Static
 
 from tangy_profiles.activity import Activity
@@ -23,11 +24,14 @@ from tangy_tui.text import watching as text
 from tangy_tui.text.log import game_words, moment_lines
 from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel
+from tangy_tui.ui.screens.play_view import person_lines
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 ALARMS = ("stopped", "halted")
@@ -155,7 +159,16 @@ class WatchScreen(TangyScreen[None]):
                 room.track(Point(*view.pose), "", ())
         for board in self.query(CallBoard):
             board.show(view.scene.called)
-        self.query_one("#called", Static).update(text.called_words(view, self._activity))
+        now = text.now_lines(view, self._activity, self._called)
+        self.query_one("#called", Static).update(Content("\n".join(map(clean, now))))
+        for staff in self.query(StaffPanel):
+            lines = person_lines(view.people, self._called)
+            staff.show(self._call(view), "", text.facts(view), lines)
+
+    def _call(self, view: GameView) -> str:
+        """Return the last call in short, "" if there is none."""
+        called, activity = view.scene.called, self._activity
+        return activity.deck.label(called[-1]).replace("-", "") if called and activity else ""
 
     def _lay_out(self, view: GameView, people: tuple[str, ...]) -> None:
         """Make the room and the board anew, for the people and the activity of a game."""
@@ -166,6 +179,7 @@ class WatchScreen(TangyScreen[None]):
         seated = room.placed([Person(one, self._called(one)) for one in people])
         label = str if self._activity is None else self._activity.deck.label
         left.mount(panel(RoomView(room, seated, label=label)), before="#called")
+        left.mount(panel(StaffPanel()))
         if self._activity is not None and self._activity.deck.columns:
             left.mount(panel(CallBoard(self._activity.deck)))
 

@@ -1,0 +1,65 @@
+"""How staff end a game: it is given up, broken off, or left."""
+
+from __future__ import annotations
+
+import threading
+from contextlib import suppress
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.process_log import serving
+from tangy_tui.app.fault_commands import Result
+from tangy_tui.app.game_commands import TAKEN_OVER, StaffNote
+from tangy_tui.app.robot_controls import ENDED, RobotControls
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+LEAVES_SECONDS = 1.0  # in which what is being done is broken off
+
+
+class EndingGames:
+    """The part of a controller by which games end."""
+
+    supervision: Supervision
+    robot: RobotControls
+    stopped: bool
+    _turn: threading.RLock
+
+    def note(self, what: str, taken_back: int = 0, by: str = "") -> None:
+        """Log what staff did."""
+        raise NotImplementedError
+
+    def wait_for_turn(self, seconds: float) -> bool:
+        """Wait up to so many s for the current behaviour to end; return whether it has."""
+        if self._turn.acquire(timeout=seconds):
+            self._turn.release()
+            return True
+        return False
+
+    def break_off(self) -> None:
+        """Stop the robot in the midst of what it does, because the game ends."""
+        self.supervision.stopped_by_staff()
+        self.robot.stop(ENDED)
+
+    def _end(self) -> list[Result]:
+        self.note("staff ended the game")
+        game = self.supervision
+        asked = game.question is not None and game.question.fault != TAKEN_OVER
+        events = game.give_up() if asked or game.halted is not None else game.leave()
+        return [StaffNote("ended"), *events]
+
+    def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
+        """Stop the robot, wait up to `patience` s for that, and log that the game was left."""
+        self.stopped = True
+        self.break_off()
+        if not self._turn.acquire(timeout=patience):
+            return []
+        try:
+            with suppress(TangyError):  # who leaves is not held up by a log that is full
+                return self.supervision.leave()
+        finally:
+            self._turn.release()
+        return []
+
+    def give_up(self) -> list[Event]:
+        """End a game in which Tangy asks or is halted, and nobody is there."""
+        with self._turn, serving():
+            return self.supervision.give_up()
