@@ -12,7 +12,9 @@ from typing import Literal, TypeAlias
 
 from tangy_tui.language.words import Words, bare, words_of
 
-Steering: TypeAlias = Literal["undo", "redo", "phrases", "help", "pause", "go on", "call again"]
+Steering: TypeAlias = Literal[
+    "undo", "redo", "phrases", "help", "pause", "go on", "call again", "faster", "slower"
+]
 
 WAYS: dict[Steering, tuple[str, ...]] = {
     "undo": (
@@ -60,10 +62,21 @@ WAYS: dict[Steering, tuple[str, ...]] = {
         *("call again", "say it again", "say that again", "repeat that", "repeat it", "repeat"),
         *("repeat the number", "what was that", "what did you say", "once more", "pardon"),
     ),
+    "faster": (
+        *("faster", "go faster", "call faster", "a bit faster", "a little faster", "play faster"),
+        *("go a bit faster", "go a little faster", "call the numbers faster", "speed up"),
+        *("that is too slow", "that's too slow", "this is too slow", "it is too slow"),
+    ),
+    "slower": (
+        *("slower", "go slower", "call slower", "a bit slower", "a little slower", "play slower"),
+        *("go a bit slower", "go a little slower", "call the numbers slower", "slow down"),
+        *("not so fast", "that is too fast", "that's too fast", "this is too fast"),
+        *("it is too fast", "more slowly", "call more slowly"),
+    ),
 }
 WHILE_TEACHING: tuple[Steering, ...] = ("undo", "redo", "phrases", "help")
 """Requests of a teacher to the program while showing a game."""
-IN_GAMES: tuple[Steering, ...] = ("pause", "go on", "call again")
+IN_GAMES: tuple[Steering, ...] = ("pause", "go on", "call again", "faster", "slower")
 """Requests of staff to the program while Tangy plays."""
 
 

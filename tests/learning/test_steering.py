@@ -7,7 +7,7 @@ import pytest
 from tangy_profiles.activity import load_activity, shipped_activities
 from tangy_profiles.person import load_people
 from tangy_tui.app.command_grammar import read_command, read_teaching
-from tangy_tui.app.game_commands import CallAgain, GoOn, Pause
+from tangy_tui.app.game_commands import CallAgain, ChangePace, GoOn, Pause
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.steering import WAYS, steering_of
 from tangy_tui.learning.teaching_events import Redo, Undo
@@ -34,6 +34,8 @@ def test_other_words_steer_as_well() -> None:
     assert read_command("let's take a break", nobody) == Pause()
     assert read_command("please carry on", nobody) == GoOn()
     assert read_command("what was that?", nobody) == CallAgain()
+    assert read_command("That's too fast.", nobody) == ChangePace(-1)
+    assert read_command("please go a little faster", nobody) == ChangePace(1)
 
 
 @pytest.mark.parametrize("name", list(shipped_activities()))

@@ -73,6 +73,8 @@ def test_a_phrase_that_was_heard_well_is_no_stop() -> None:
     [
         ("let's take a break", -0.2, True),
         ("carry on", -0.2, True),
+        ("slow down", -0.2, True),
+        ("too fast for the car", 0.2, False),
         ("carry on", -1.5, False),  # the sound was hardly that
         ("undo that", 0.2, False),  # which no game has
         ("carry on with the bag", 0.2, False),

@@ -111,6 +111,22 @@ async def test_a_game_is_paused_and_goes_on_by_voice(
             await pilot.pause(0.02)
 
 
+@pytest.mark.slow
+async def test_the_pace_is_changed_by_voice(run: Run, workspace: Workspace, whole: Policy) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=playing(workspace, whole, ears, speed=1)) as pilot:
+        screen = await played(pilot)
+        world = screen.control.plan.world
+        assert world is not None
+        before = world.pace
+        ears.hear(Say("slow down", 1.0, None))
+        while world.pace <= before:
+            await pilot.pause(0.02)
+        ears.hear(Say("that's too slow", 1.0, None))
+        while world.pace > before:
+            await pilot.pause(0.02)
+
+
 async def test_after_a_stop_no_voice_lets_the_robot_go_on(
     run: Run, workspace: Workspace, whole: Policy
 ) -> None:

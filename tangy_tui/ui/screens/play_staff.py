@@ -14,6 +14,7 @@ from tangy_tui.app.freeze_watch import LOOK_SECONDS, FreezeGuard
 from tangy_tui.app.game_commands import (
     Accept,
     CallAgain,
+    ChangePace,
     ComesIn,
     Confirm,
     GameCommand,
@@ -130,7 +131,7 @@ class PlayStaff(PlayPanels):
         self._pace_told = self.set_timer(PACE_SECONDS, lambda: self._tell_now(said, "dim"))
 
     def steer(self, text: str, sure: float) -> None:
-        """Pause, go on or call again, or take an answer, as somebody said.
+        """Pause, go on, call again or change the pace, or take an answer, as somebody said.
 
         After a STOP only a key goes on. `sure` is the likelihood that it was said.
         """
@@ -141,7 +142,7 @@ class PlayStaff(PlayPanels):
         if isinstance(command, GoOn) and not self.control.going:
             if not self._refused():
                 self.action_pause()
-        elif isinstance(command, Pause | CallAgain):
+        elif isinstance(command, Pause | CallAgain | ChangePace):
             self._do(command)
 
     def action_type(self, begun: str = "") -> None:
