@@ -1,4 +1,4 @@
-"""Cancelling the start of a robot from another thread.
+"""The start of a robot, as another thread sees it: what starts now, and cancelling that.
 
 Opening takes seconds and starts processes. Each step looks first whether it was called off, and
 each process, as soon as it is started, names what ends it.
@@ -10,6 +10,13 @@ import threading
 from collections.abc import Callable
 
 from tangy_profiles.errors import TangyError
+
+PARTS = ("bench", "faces", "program", "senses", "first words")
+"""What is started beside devices.
+
+The simulated devices, the pictures of faces, the process in the robot, what reads cards and faces;
+the last one waits for each device to have said something.
+"""
 
 
 class Cancelled(TangyError):
@@ -27,6 +34,16 @@ class Cancellation:
         self._lock = threading.Lock()
         self._ends: list[Callable[[], None]] = []
         self._cancelled = self._complete = False
+        self.parts: tuple[str, ...] = ()
+        """What was started so far: names of devices and of `PARTS`; the last is being started."""
+        self.done: tuple[int, int] | None = None
+        """How many pieces of the last part are done, of how many; None: it has none."""
+
+    def starts(self, part: str, done: int = 0, of: int = 0) -> None:
+        """Say what is being started now, and how many of its pieces are done."""
+        self.done = (done, of) if of else None
+        if self.parts[-1:] != (part,):
+            self.parts = (*self.parts, part)
 
     @property
     def cancelled(self) -> bool:

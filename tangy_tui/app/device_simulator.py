@@ -76,6 +76,7 @@ class DeviceSimulator:
         """
         cancellation = cancellation or Cancellation()
         cancellation.check()
+        cancellation.starts("bench")
         command = [*CHILD, "--seed", str(seed), "--room", room]
         command += [f"--person={id}={name}" for id, name in people.items()]
         command += ["--activity", activity, "--robot", robot, *(["--stepped"] if stepped else [])]

@@ -340,7 +340,8 @@ def _drawn_people(
 
     reader = HaarReader()
     known: dict[str, list[list[float]]] = {}
-    for person, number in faces.items():
+    for place, (person, number) in enumerate(faces.items()):
+        cancellation.starts("faces", place, len(faces))
         vectors = []
         for one in range(PICTURES):
             cancellation.check()

@@ -53,6 +53,16 @@ class SwitchingOn(Generic[Opened]):
             self._opened = opened.pop_all()
         return world
 
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """What was started so far; the last one is being started."""
+        return self._cancellation.parts
+
+    @property
+    def done(self) -> tuple[int, int] | None:
+        """How many pieces of the last part are done, of how many; None: it has none."""
+        return self._cancellation.done
+
     def cancel(self) -> None:
         """Call it off, from any thread and without waiting; where it is on it stays on."""
         self._cancellation.cancel()
@@ -63,8 +73,15 @@ class SwitchingOn(Generic[Opened]):
 
 
 @contextmanager
-def switched_on(opening: Opening[Opened], *, stepped: bool) -> Iterator[Opened]:
+def switched_on(
+    opening: Opening[Opened], *, stepped: bool, tell: Callable[[str], object] = lambda part: None
+) -> Iterator[Opened]:
     """Switch a robot on for a program without a screen, and off again however that ends.
+
+    Args:
+        opening: opens the robot, or its bench.
+        stepped: in a hurry, where that can be.
+        tell: is told what is being started.
 
     Raises:
         TangyError: it cannot be switched on.
@@ -76,8 +93,11 @@ def switched_on(opening: Opening[Opened], *, stepped: bool) -> Iterator[Opened]:
         try:
             with ThreadPoolExecutor(1, "opening") as thread:
                 opened = thread.submit(robot.open)
+                told = 0
                 while not wait([opened], HEARD_AFTER).done:
-                    pass
+                    for part in robot.parts[told:]:
+                        tell(part)
+                        told += 1
             signals.raise_from_now_on()
             yield opened.result()
         finally:

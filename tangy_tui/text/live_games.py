@@ -2,11 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from tangy_profiles.robot import Robot
+
 STARTING = "Its devices are being started. It stands still until the game begins."
+READY, NOW = "Ready: {}.", "Starting now: {} ..."
+PARTS = {
+    "bench": "simulated devices and people",
+    "faces": "pictures of people's faces",
+    "program": "the program in the robot",
+    "senses": "what reads cards and faces",
+    "first words": "every device reports",
+    "requests": "who asks for help",
+}
 CALLED_OFF = "It is being switched off again."
 
 LOOKS_ROUND = "Tangy does not know where it is: it turns on the spot, then drives to the front."
 MAY_MOVE = "Tangy may move again."
+
+
+def part_words(part: str, robot: Robot) -> str:
+    """Name what is being started of a robot: a device, or another part."""
+    device = robot.devices.get(part)
+    return PARTS.get(part) or (part if device is None else device.label)
+
+
+def parts_lines(parts: Sequence[str], done: tuple[int, int] | None, robot: Robot) -> list[str]:
+    """Say what was started, and what is being started: the last part, of which so much is done."""
+    if not parts:
+        return []
+    *before, now = (part_words(part, robot) for part in dict.fromkeys(parts))
+    count = "" if done is None else f" ({done[0]} of {done[1]})"
+    return [*([READY.format(", ".join(before))] if before else []), NOW.format(f"{now}{count}")]
 
 
 def frozen_words(seconds: float) -> str:

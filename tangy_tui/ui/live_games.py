@@ -10,7 +10,7 @@ from textual.constants import ESCAPE_DELAY
 from tangy_profiles import game_world
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import USUAL_PACE
-from tangy_tui.text.live_games import SWITCH_ON_DETAIL, switch_on_words
+from tangy_tui.text.live_games import SWITCH_ON_DETAIL, parts_lines, switch_on_words
 from tangy_tui.ui.interruption import ask_about_interrupted
 
 if TYPE_CHECKING:
@@ -126,7 +126,10 @@ async def _switch_on(program: Program, robot: SwitchingOn[LiveWorld]) -> LiveWor
     from tangy_tui.ui.dialogs.message import MessageDialog
     from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 
-    dialog = SwitchingOnDialog(program.workspace.robot.title, robot.cancel)
+    profile = program.workspace.robot
+    dialog = SwitchingOnDialog(
+        profile.title, robot.cancel, lambda: parts_lines(robot.parts, robot.done, profile)
+    )
     program.push_screen(dialog)
     await dialog.shown()
     await asyncio.sleep(TYPED_AHEAD_SECONDS)

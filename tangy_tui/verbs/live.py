@@ -15,6 +15,7 @@ from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import SWITCHING_ON
+from tangy_tui.text.live_games import part_words
 from tangy_tui.text.outcomes import faults_logged, score_lines
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.verbs import common
@@ -229,7 +230,11 @@ def live(
         from tangy_tui.app.live_games import LiveGames
         from tangy_tui.app.switching_on import switched_on
 
-        with switched_on(switched, stepped=bench and not plain_lines) as there:
+        def tell(part: str) -> None:
+            if plain_lines:
+                print(plain(f"  {part_words(part, workspace.robot)} ..."), file=sys.stderr)
+
+        with switched_on(switched, stepped=bench and not plain_lines, tell=tell) as there:
             if not as_json and (plain_lines or not bench) and there.link.screen:
                 print(plain(screen_words(there.link.screen, there.link.code)), file=sys.stderr)
             told_missing = missing_words(workspace.robot, workspace.activity)

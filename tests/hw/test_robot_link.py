@@ -226,6 +226,16 @@ class TestCalledOff:
             link.restart()
         assert link.pid is None
 
+    def test_it_says_what_is_being_started(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        does = "import sys, time; " + "".join(
+            f'print(\'{{"starts": "{part}"}}\'); ' for part in ("laser", "voice", "voice")
+        )
+        _, cancellation, done = self.opening(monkeypatch, does + "print('{}', flush=True)")
+        done.result(20)
+        assert cancellation.parts == ("program", "laser", "voice")
+        cancellation.starts("voice", 1, 4)
+        assert (cancellation.parts[-1], cancellation.done) == ("voice", (1, 4))
+
     def test_one_that_is_on_is_not_called_off(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(client, "CHILD", (sys.executable, "-c", READY + "time.sleep(60)"))
         cancellation = Cancellation()

@@ -38,6 +38,8 @@ class Robot:
 
     @contextmanager
     def __call__(self, stepped: bool, cancellation: Cancellation) -> Iterator[LiveWorld]:
+        cancellation.starts("bench")
+        cancellation.starts("faces", 3, 12)
         self.did.append("begins")
         cancellation.register(self.answers.set)
         try:
@@ -60,9 +62,7 @@ def program(workspace: Workspace, policy: Policy, robot: Robot) -> Program:
 
 
 async def switching(pilot: TangyPilot, robot: Robot) -> None:
-    await until_shown(
-        pilot, lambda: "Switching Tangy on" in pilot.text() and robot.did == ["begins"]
-    )
+    await until_shown(pilot, lambda: "Starting now" in pilot.text() and robot.did == ["begins"])
 
 
 @pytest.mark.slow
@@ -77,6 +77,8 @@ async def test_it_says_what_goes_on_and_how_to_leave_it_off(
     robot = Robot(workspace)
     async with run(app=program(workspace, policy, robot), size=size) as pilot:
         await switching(pilot, robot)
+        assert "Starting now: pictures of people's faces (3 of 12) ..." in pilot.text()
+        assert "Ready: simulated devices and people." in pilot.text()
         looks(pilot.app)
 
 

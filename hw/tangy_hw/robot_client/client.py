@@ -112,6 +112,7 @@ class RobotLink:
                 raise DeviceError("The robot is switched off.")
             worker = self._begin()
         self._cancellation.register(partial(_call_off, worker))
+        self._cancellation.starts("program")
         try:
             told = worker.first.result(START_SECONDS)
             self.screen, self.code = str(told.get("screen", "")), str(told.get("code", ""))
@@ -322,6 +323,9 @@ class RobotLink:
     def _hear(self, said: Said, _: bytes) -> bool:
         """Take what it says of itself; return whether that was no answer."""
         self._told.time = max(self._told.time, said.get("at", 0.0))
+        if "starts" in said:
+            self._cancellation.starts(str(said["starts"]))
+            return True
         if "beat" not in said:
             return False
         before, self._told.state = self._told.state, RobotState.from_json(said["beat"])

@@ -69,6 +69,8 @@ class RobotRuntime:
         self._bench = bench
         self._sensors = sensors
         self._senses = senses
+        self.starts: Callable[[str], object] = lambda part: None
+        """Is told what is being started while it is switched on."""
         self._open = AsyncExitStack()
 
     async def __aenter__(self) -> RobotRuntime:
@@ -76,11 +78,15 @@ class RobotRuntime:
             if self._bench is not None:
                 self._open.push_async_callback(self._bench.close)
                 await self._bench.start()
+            for camera in self._sensors.cameras:
+                self.starts(camera)
             await self._open.enter_async_context(self._sensors)
             self._open.callback(self._senses.close)
             self._open.push_async_callback(self.robot.close)
-            await self.robot.start()
+            await self.robot.start(self.starts)
+            self.starts("senses")
             await self._senses.prepare()
+            self.starts("first words")
             await self._wake()
             self.robot.watch_ticks()  # what takes its time at the start is over
         except BaseException:

@@ -17,6 +17,7 @@ from tangy_hw.device_protocols import STILL, Clock, Pose, Twist
 from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
+from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_hw.robot_process.body import Body
@@ -117,11 +118,13 @@ class LiveRobot:
 
     # ------------------------------------------------------------------------ on and off
 
-    async def start(self) -> None:
-        """Switch its devices on."""
+    async def start(self, starts: Callable[[str], object] = lambda part: None) -> None:
+        """Switch its devices on; `starts` is told the name of each before that."""
         for device in self.body.all:
+            starts(device.name)
             await device.start()
         if self.requests is not None:
+            starts(REQUESTS)
             await self.requests.start()
         self._tasks = [asyncio.create_task(self.passing.run())]
         if not self.stepped:

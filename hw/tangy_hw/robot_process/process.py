@@ -4,7 +4,8 @@ The first line is a `RobotSetup`. Then each line asks for something: {"id": 7, "
 answered by {"id": 7, "done": {...}} or {"id": 7, "failed": "a sentence", "broken": true if it was
 broken off}; several may be under way. {"beat": n} says that the program lives, without an answer.
 A line that cannot be heeded is answered by what is wrong with it, and ends nothing.
-By itself it says {"beat": {...}}, ten times a second: health, pose, who asks, and why it stands.
+While it is switched on it says {"starts": "laser"} and so on. Then, by itself, it says
+{"beat": {...}}, ten times a second: health, pose, who asks, and why it stands.
 
 Whatever happens to the program, the robot stops: when its pipe closes it stops and ends; when
 nothing comes through it for a while it stops, and gives up what it was doing.
@@ -342,6 +343,7 @@ async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> in
     try:
         setup = RobotSetup.from_json(await lines.readline())
         wired = assemble(setup)
+        wired.starts = lambda part: out.write({"starts": part})
         # Told to end, it does what it does when its pipe closes; before this, nothing is open.
         asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, pipe.close)
         async with switched_on(wired, lines) as said:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from textual.app import ComposeResult
@@ -16,6 +16,9 @@ from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import Stop
 
+LOOK_SECONDS = 0.2
+"""Between two looks at what is being started."""
+
 
 class SwitchingOnDialog(Dialog[None]):
     """Stays until the robot is on, or off again. Esc, STOP, and leaving the program call it off."""
@@ -23,16 +26,24 @@ class SwitchingOnDialog(Dialog[None]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "call_off", "Leave it off")]
     HELP = "Wait until the robot is switched on, or press esc to leave it off."
 
-    def __init__(self, title: str, call_off: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        title: str,
+        call_off: Callable[[], None],
+        parts: Callable[[], Sequence[str]] = tuple,
+    ) -> None:
         """Make it.
 
         Args:
             title: which robot it is.
             call_off: is called when somebody wants it left off, perhaps more than once.
+            parts: returns, in lines, what was started so far, and what is being started.
         """
         super().__init__(None)
         self._title = clean(title)
         self._call_off = call_off
+        self._parts = parts
+        self._told: Sequence[str] = ()
         self.called_off = False
         """Whether somebody wants it left off."""
         self._shown = asyncio.Event()
@@ -44,6 +55,13 @@ class SwitchingOnDialog(Dialog[None]):
     def on_mount(self) -> None:
         """Take note when this can be read."""
         self.call_after_refresh(self._shown.set)
+        self.set_interval(LOOK_SECONDS, self._look)
+
+    def _look(self) -> None:
+        """Show what is being started, if that is another part now."""
+        if (parts := tuple(self._parts())) != self._told:
+            self._told = parts
+            self.query_one("#switching-on", Static).update(self._text())
 
     async def shown(self) -> None:
         """Wait until this can be read, and keys are heard."""
@@ -72,6 +90,7 @@ class SwitchingOnDialog(Dialog[None]):
         head = (f"Switching {self._title} on ...", "bold")
         if self.called_off:
             return Content.assemble(head, "\n\n", CALLED_OFF)
+        parts = [f"\n{clean(line)}" for line in self._told]
         return Content.assemble(
-            head, "\n\n", STARTING, "\n\n", ("ESC", "$success bold"), "  leave it off"
+            head, *parts, "\n\n", STARTING, "\n\n", ("ESC", "$success bold"), "  leave it off"
         )
