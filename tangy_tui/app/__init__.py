@@ -1,1 +1,1 @@
-"""The program without a screen: profiles, store, worlds and robots, put together for games."""
+"""The application without a screen: wires profiles, store, worlds and robots together for games."""

@@ -1,6 +1,6 @@
-"""Answers to Tangy's questions: words become a verified behaviour before it is carried out.
+"""Answers to Tangy's questions: staff verify the behaviour before Tangy carries it out.
 
-The verification belongs to the question: another question begins anew.
+Each question has its own verification.
 """
 
 from __future__ import annotations
@@ -13,44 +13,44 @@ from tangy_tui.learning.verification import Asked, Offered, Reply, Say, Verifica
 from tangy_tui.monitoring.supervision import Supervision
 
 Spoken: TypeAlias = Verification | StaffNote
-"""What is said to an answer before it is acted upon; `Verified` is for the controller to do."""
+"""The reply to an answer before Tangy acts on it; the controller carries out a `Verified`."""
 
 
 class Answers:
-    """The teacher's side of the question that is open."""
+    """Collects and verifies staff's answer to the open question."""
 
     def __init__(self, supervision: Supervision) -> None:
-        """Take the answers to what supervised games ask."""
+        """Verify the answers to the questions of supervised games."""
         self._supervision = supervision
         self._verifier: Verifier | None = None
         self._question: Unsure | None = None
 
     @property
     def verifying(self) -> Asked | Offered | None:
-        """The verification that is open, where a command waits for its Y."""
+        """The open verification, if a command waits for its Y."""
         verifier = self._of_question()
         return None if verifier is None else verifier.question
 
     @property
     def sayable(self) -> tuple[str, ...]:
-        """The commands that can be carried out now, where Tangy asks for one."""
+        """The commands that can be carried out now, if Tangy asks for one."""
         verifier = self._of_question()
         return () if verifier is None else verifier.sayable()
 
     def say(self, said: Say) -> Spoken:
-        """Take words as the answer to what Tangy asks."""
+        """Take words as the answer to the open question."""
         verifier = self._of_question()
         return StaffNote("nothing asked") if verifier is None else verifier.say(said)
 
     def reply(self, reply: Reply) -> Spoken:
-        """Answer the verification."""
+        """Answer the open verification."""
         verifier = self._of_question()
         if verifier is None or verifier.question is None:
             return StaffNote("nothing asked")
         return verifier.reply(reply)
 
     def _of_question(self) -> Verifier | None:
-        """Return the verifier of the present question, None if nothing is asked."""
+        """Return the verifier of the open question, None if Tangy asks nothing."""
         question = self._supervision.question
         if question is not self._question:
             self._question = question

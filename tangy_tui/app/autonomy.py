@@ -1,4 +1,4 @@
-"""How much Tangy does of itself, and what staff have said yes to where it asks them first."""
+"""How much Tangy decides by itself, and which proposals staff have approved."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from tangy_tui.app.game_commands import Autonomy, Proposal
 from tangy_tui.learning.policy import Decision
 
 SURE = 0.9
-"""The share of votes from which a decision is not asked about where Tangy asks when unsure."""
+"""At the level `unsure`, Tangy asks about a decision with a smaller share of votes than this."""
 
 
 class AutonomyDial:
-    """The dial that staff turn. Where it asks first, `propose` keeps what it would do."""
+    """The level of autonomy that staff set; keeps the proposal if Tangy must ask first."""
 
     def __init__(self) -> None:
         """Begin at full autonomy."""
         self.level: Autonomy = "alone"
         self.proposal: Proposal | None = None
-        """What Tangy would do next, and asks staff about."""
+        """The next action, on which staff are asked."""
         self._confirmed: tuple[str, str | None] | None = None
 
     def turn(self, level: Autonomy) -> None:
@@ -32,20 +32,20 @@ class AutonomyDial:
         self.proposal = Proposal(decision.behaviour, target, decision.share, decision.seen)
 
     def confirm(self, *, yes: bool) -> bool:
-        """Keep what staff said to the proposal: it alone is done next. False: there was none."""
+        """Record the answer to the proposal; a yes permits only that action. False: no proposal."""
         proposal, self.proposal = self.proposal, None
         if proposal is not None and yes:
             self._confirmed = proposal.behaviour, proposal.target
         return proposal is not None
 
     def done(self) -> None:
-        """Take the yes back: a behaviour was done by it."""
+        """Drop the approval after its behaviour was carried out."""
         self._confirmed = None
 
     def permits(self, decision: Decision, target: str | None) -> bool:
-        """Return whether staff approved this step; if the situation changed, they are asked again.
+        """Return whether staff approved this step; if the situation changed, Tangy asks again.
 
-        People ask for things while a question stands, and what would be done is another then.
+        The situation can change while a proposal is open, for example if a person asks for help.
         """
         unsure = self.level == "unsure" and decision.share < SURE
         asks = self.level == "each" or unsure

@@ -1,4 +1,4 @@
-"""News for staff about cards: which ones Tangy does not judge, and whose it believes a card is."""
+"""News for staff about cards: which ones Tangy does not judge, and who it believes owns a card."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from tangy_tui.interaction.game_events import GameBegun, ResumedGame
 from tangy_tui.monitoring.supervision import Event
 
 BY = "tangy"
-"""Who notes this in the log."""
+"""The author of these notes in the event log."""
 
 
 @dataclass(frozen=True, slots=True)
 class CardNote:
-    """What there is to tell of cards: to staff, and to the log, where people are their ids.
+    """A note about cards for staff and for the event log, which names people by id.
 
-    `news` is what Tangy learnt or doubts; None where staff know it themselves.
+    `news` is what Tangy learnt or doubts; None if staff know it already.
     """
 
     note: str
@@ -26,7 +26,7 @@ class CardNote:
 
     @property
     def doubt(self) -> CardDoubt | None:
-        """Return the doubt, if it is about one."""
+        """Return the doubt, if the note is about one."""
         return self.news if isinstance(self.news, CardDoubt) else None
 
 
@@ -59,7 +59,7 @@ def learnt_note(learnt: CardLearnt) -> str:
 
 
 def doubt_note(doubt: CardDoubt) -> str:
-    """Write for the log why a card was not judged."""
+    """Write for the log why Tangy did not judge a card."""
     cards = ", ".join(map(str, doubt.cards))
     why = {
         "copies": "copies of a card",
@@ -71,7 +71,7 @@ def doubt_note(doubt: CardDoubt) -> str:
 
 
 def doubt_document(doubt: CardDoubt, game: int) -> dict[str, object]:
-    """Return as JSON has it why a card was not judged, in which game."""
+    """Return as JSON data why Tangy did not judge a card, and in which game."""
     return {
         "game": game,
         "person": doubt.person,

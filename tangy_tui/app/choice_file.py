@@ -1,4 +1,4 @@
-"""A choice that is kept in the data folder, as a TOML file of one key."""
+"""A choice stored in the data folder, as a TOML file with one key."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tangy_profiles.reading import plain, read_toml
 
 
 def read_choice(path: Path, key: str) -> str:
-    """Return the choice that a file keeps, "" if there is no such file.
+    """Return the choice stored in a file, "" if the file does not exist.
 
     Raises:
         ProfileError: the file has a mistake.
@@ -24,10 +24,10 @@ def read_choice(path: Path, key: str) -> str:
 
 
 def keep_choice(path: Path, key: str, choice: str) -> None:
-    """Write a choice to its file, as a whole or not at all.
+    """Write a choice to its file atomically.
 
     Raises:
-        TangyError: it cannot be written.
+        TangyError: the file cannot be written.
     """
     new = path.with_name(f"{path.name}.new")
     try:

@@ -1,4 +1,4 @@
-"""Which activity is taught and played at a data folder where none is named: `activity.toml`."""
+"""The default activity of a data folder: `activity.toml`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FILE = "activity.toml"
 
 
 def chosen_activity(folder: Path) -> str:
-    """Return the activity that was chosen: its name, or the path of its file.
+    """Return the chosen activity: its name, or the path of its file.
 
     Raises:
         ProfileError: the file has a mistake.
@@ -29,10 +29,10 @@ def choose_activity(folder: Path, activity: str) -> str:
         activity: its name, or the path of its file.
 
     Returns:
-        What is kept: a path is a whole one.
+        The stored name or absolute path.
 
     Raises:
-        TangyError: there is no such activity, it has mistakes, or that cannot be written.
+        TangyError: the activity does not exist or has mistakes, or it cannot be stored.
     """
     load_activity(activity)
     kept = str(Path(activity).resolve()) if activity.endswith(".toml") else activity
@@ -41,9 +41,9 @@ def choose_activity(folder: Path, activity: str) -> str:
 
 
 def choosable(profile: str, activity: Activity) -> list[tuple[str, Activity]]:
-    """Return the activities that can be chosen, by the words that choose them.
+    """Return the activities to choose from, each with its name or path.
 
-    The present one, with its `profile`, is the first: it may be a file of one's own.
+    The present one, with its `profile`, comes first: it may be a file of the user's own.
     """
     found = [(profile, activity)]
     for name in sorted(known_activities()):
@@ -52,5 +52,5 @@ def choosable(profile: str, activity: Activity) -> list[tuple[str, Activity]]:
         try:
             found.append((name, load_activity(name)))
         except ProfileError:
-            continue  # of what other packages bring; `tangy doctor` says what is wrong with it
+            continue  # an activity of another package; `tangy doctor` tells its mistake
     return found

@@ -1,8 +1,8 @@
-"""The grammar of typed commands while teaching, in games and in drills, on screens and by lines.
+"""The grammar of typed commands for teaching, games and drills, on screens and in the console.
 
-Words that are no command are left to whoever asks (`None`): while Tangy asks they are the answer,
-and while teaching a behaviour in words, which the phrasebook understands. A sentence whose aim is
-to stop is a STOP, whatever else it says.
+The parsers return `None` for words that are no command. The caller then takes them as an answer
+if Tangy asks, or as a behaviour in words for the phrasebook while teaching. Any sentence that
+means to stop the robot is a STOP.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ from tangy_tui.learning.teaching_events import (
 from tangy_tui.learning.verification import Reply, StopCommand
 
 Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "patterns"]
-"""What can be asked of the program; it changes nothing."""
+"""Questions about the program or the game; they change nothing."""
 
 INQUIRIES: dict[str, Inquiry] = {
     **dict.fromkeys(("help", "?"), "help"),
@@ -88,7 +88,7 @@ class Leave:
 
 @dataclass(frozen=True, slots=True)
 class AgainFrom:
-    """Show the present game again from a step on, counted from 1; None: it was not said which."""
+    """Demonstrate the present game again from a step, counted from 1; None: no step was given."""
 
     step: int | None
 
@@ -98,7 +98,7 @@ _WHATEVER = re.compile(r"(?:always )?(?:it is |do |that is )?the same whatever(.
 
 @dataclass(frozen=True, slots=True)
 class Perform:
-    """Do what a key does: `action` is one of the keymap; `on` where it was said, of a switch."""
+    """Do what a key does. `action` is one of the keymap; `on` sets a switch if the words say so."""
 
     action: str
     on: bool | None = None
@@ -106,7 +106,7 @@ class Perform:
 
 @dataclass(frozen=True, slots=True)
 class TeachAs:
-    """Somebody says what they are called."""
+    """The teacher's name."""
 
     name: str
 
@@ -145,7 +145,7 @@ TEACHING: dict[str, TeachingWord] = {
     **dict.fromkeys(("play", "play a game", "let tangy play"), Perform("begin")),
     **dict.fromkeys(("my name", "change my name", "who am i"), Perform("name")),
 }
-"""What may be typed while teaching; beside it, the word of every action of the keymap."""
+"""Commands while teaching, besides the word of every action of the keymap."""
 
 PERFORMED = frozenset(
     {
@@ -153,7 +153,8 @@ PERFORMED = frozenset(
         *("learn", "library", "guided", "filter", "quit", "name"),
     }
 )
-"""Actions of the keymap whose words do on the teaching screen what their keys do elsewhere."""
+"""Actions of the keymap whose typed words work on the teaching screen as their keys do elsewhere.
+"""
 
 FIXED: dict[str, GameCommand] = {
     **dict.fromkeys(("pause", "wait a moment"), Pause()),
@@ -176,7 +177,7 @@ FIXED: dict[str, GameCommand] = {
     **dict.fromkeys(("all right", "that is all right"), Accept()),
     **dict.fromkeys(("end", *LEAVING), EndGame()),
 }
-"""Words that are a command as they stand; the first of a command is the one that help shows."""
+"""Complete commands; help shows the first wording of each."""
 
 MEANINGS: tuple[tuple[str, str], ...] = (
     ("stop", "the robot stands at once; so does any sentence that aims at it"),
@@ -206,9 +207,9 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("wait 3", "reads the next line after 3 s (for scripts); or: wait until asked, called, over"),
     ("end", "ends the game"),
 )
-"""What help lists."""
+"""The commands that help lists, with their meanings."""
 
-NEAR = 0.75  # likeness from which a word may have been meant: some of them move the robot
+NEAR = 0.75  # least similarity for a suggestion: some commands move the robot
 _AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
 _CALLED = re.compile(r"(?:my name is|my name's|i am called) (\S.*)", re.I)
@@ -224,16 +225,16 @@ def read_command(
     game: Collection[str] = (),
     rules: GameRules = NO_RULES,
 ) -> GameCommand | None:
-    """Parse words as a command; None if they are not one of these.
+    """Parse words as a command; None if they are none of these.
 
     Args:
         text: what was typed or heard.
         find_person: returns the id of a person by name or id.
-        game: the words that the activity is called by.
-        rules: what the activity lets staff choose.
+        game: the words of the activity's title.
+        rules: the choices that the activity gives staff.
 
     Raises:
-        TangyError: they are nearly one, and something in them is wrong; one sentence.
+        TangyError: they resemble a command, but a part of it is wrong; one sentence.
     """
     said = " ".join(text.split()).strip(" .!")
     words = said.casefold()
@@ -267,10 +268,10 @@ def read_command(
 
 
 def read_telling(line: str, find_person: Callable[[str], str]) -> Tell:
-    """Return what a line tells: "NAME: words", or words about whom the game waits for.
+    """Parse a report about a person: "NAME: words", or words about the person the game waits for.
 
     Raises:
-        TangyError: a name stands before a colon that nobody has; one sentence.
+        TangyError: nobody has the name before the colon; one sentence.
     """
     said = " ".join(line.split())
     return _read_told(said, find_person) or Tell(None, said)
@@ -280,7 +281,7 @@ def _read_told(said: str, find_person: Callable[[str], str]) -> Tell | None:
     """Parse a report about a person; None if the words are not one.
 
     Raises:
-        TangyError: a name stands before a colon that nobody has; one sentence.
+        TangyError: nobody has the name before the colon; one sentence.
     """
     if answer := _ANSWER.fullmatch(said):
         return Tell(None, answer[1])
@@ -296,20 +297,20 @@ def _read_told(said: str, find_person: Callable[[str], str]) -> Tell | None:
 def command_reader(
     activity: Activity, find_person: Callable[[str], str]
 ) -> Callable[[str], GameCommand | None]:
-    """Return what reads commands in games of an activity, as `read_command` does."""
+    """Return a command parser for games of an activity; see `read_command`."""
     title = frozenset(activity.title.casefold().split())
     return partial(read_command, find_person=find_person, game=title, rules=activity.rules)
 
 
 def nearest_command(text: str) -> str:
-    """Return the command that words come nearest to, "" if none is near."""
+    """Return the command most similar to some words, "" if none is close."""
     words = text.casefold().strip()
     close = get_close_matches(words, [*FIXED, "stop", "autonomy", "drive"], 1, NEAR)
     return close[0] if close else ""
 
 
 def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
-    """Return what words mean while teaching, where they are no behaviour (None)."""
+    """Parse words as a command of teaching; None if they are none."""
     words = " ".join(text.split()).casefold()
     if words == "stop" or stops(text, game):
         return StopCommand(text)
@@ -334,7 +335,7 @@ def _named_facts(words: str) -> tuple[str, ...]:
 
 
 def read_program(text: str) -> Perform | Inquiry | None:
-    """Return what words want of the program itself: what a key does, or to be told something."""
+    """Parse words as a command or question to the program itself; None if they are neither."""
     words = " ".join(text.split()).casefold()
     if isinstance(word := TEACHING.get(words), Perform):
         return word
@@ -343,7 +344,7 @@ def read_program(text: str) -> Perform | Inquiry | None:
 
 
 def read_screen(text: str) -> Perform | None:
-    """Return what words want a screen to do, as a key of it does."""
+    """Parse words as a command that a screen carries out like a key."""
     word = read_program(text)
     if isinstance(word, str):
         return Perform(word) if word in ("why", "help", "phrases") else None
@@ -357,11 +358,11 @@ SETTLING: dict[str, RemarkAnswer] = {
     **dict.fromkeys(("keep", "keep it", "y", "yes"), "keep"),
     **dict.fromkeys(("later", "decide later", "n", "no"), "later"),
 }
-"""Words that answer a remark, beside the numbers."""
+"""Words that answer a remark, besides the numbers."""
 
 
 def read_settling(text: str, remark: Remark) -> Settle | None:
-    """Return the answer to a remark that words are, None if they are none of its answers."""
+    """Parse words as an answer to a remark; None if they are none of its answers."""
     words, answers = text.strip().casefold(), answers_to(remark)
     if words.isdecimal() and words.isascii() and len(words) <= LONGEST_NUMBER:
         number = int(words)
@@ -371,12 +372,12 @@ def read_settling(text: str, remark: Remark) -> Settle | None:
 
 
 def read_inquiry(text: str) -> Inquiry | None:
-    """Return what words ask of the program, None if they ask for nothing."""
+    """Parse words as a question to the program, None if they are none."""
     return INQUIRIES.get(" ".join(text.split()).casefold())
 
 
 def read_answer(text: str) -> Reply | None:
-    """Return the answer to a verification that words are: yes, no, or the number of another."""
+    """Parse the answer to a verification: yes, no, or the number of an alternative."""
     words = text.strip().casefold()
     if words in ANSWERS:
         return Reply(ANSWERS[words])

@@ -1,4 +1,4 @@
-"""Which cards staff dealt to whom, as they say it: Rosa=17."""
+"""Parsing of the cards that staff dealt: Rosa=17."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from tangy_profiles.reading import nearest, plain
 
 
 def read_dealt(texts: Iterable[str], people: Sequence[Person]) -> dict[str, int]:
-    """Read who has which card; return the numbers by id.
+    """Parse who has which card; return the card numbers by person id.
 
     Raises:
-        TangyError: there is no such person or card, or two of them have one.
+        TangyError: a person or card does not exist, or a person or card comes up twice.
     """
     dealt: dict[str, int] = {}
     for text in texts:

@@ -1,4 +1,4 @@
-"""A game on the bench of an activity that is declared by facts: its people are listened to."""
+"""A declared activity on the bench: scripted staff report what its simulated people say and do."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from tangy_sim.worlds.injection import Kind
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 
 WITH_CARDS = {injection.LOOKING, injection.ASKING, injection.CLOSING, injection.MOVING_ON}
-"""When faults show that have to do with a card."""
+"""The occasions of faults that concern cards."""
 
 
 class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
-    """Such a game, in which scripted staff pass on what the bench's people say and do."""
+    """A game on the bench in which scripted staff pass on what the simulated people say and do."""
 
     sees_all = True
 
@@ -28,7 +28,7 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         return super().begin()
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Go on where a game was interrupted; the people on the bench know where it stood."""
+        """Resume an interrupted game; the simulated people get the state of the game too."""
         self._passed_on = 0
         memory = past.steps[-1].memory
         if memory is not None:
@@ -36,7 +36,7 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         return super().resume(past)
 
     def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
-        """Speak, show and play; people on the bench know what they see and hear."""
+        """Speak, show and play; the simulated people learn what they see and hear."""
         after = self.game.copy()
         after.execute(action.behaviour.name, whom)
         if any(media(after, action.behaviour.name)):
@@ -44,11 +44,11 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         return super()._perform(action, whom)
 
     def can_show(self, kind: Kind, action: Action) -> bool:
-        """Say whether a fault of a kind would be seen if it came with an action."""
+        """Return whether a fault of this kind would be noticed if it came with an action."""
         return kind.shows not in WITH_CARDS and super().can_show(kind, action)
 
     def _listen(self) -> None:
-        """Hear what people of the bench have done since."""
+        """Pass on what the simulated people have done since the last call."""
         acts = self.truth()["acts"]
         for fact, who, raw, sure in acts[self._passed_on :]:
             self.take(Observed(TypedObservation(fact, who or None, raw), sure, "staff"))

@@ -1,7 +1,7 @@
-"""The bench: a process in which the devices of a robot and the people round it are simulated.
+"""The bench: a process that simulates the devices of a robot and the people around it.
 
-The robot process speaks to its devices over their own wires. Here is only what somebody at the
-bench would do by hand: deal cards, bring a fault about, lift it, and look how things really are.
+The robot process talks to the devices over their own protocols. This module only does what a
+person at the bench would do by hand: deal cards, inject and lift faults, look up the truth.
 """
 
 from __future__ import annotations
@@ -20,19 +20,20 @@ from tangy_profiles.errors import TangyError
 
 CHILD = (sys.executable, "-P", "-m", "tangy_sim.device_simulator")
 END_SECONDS = 3.0
-ANSWER_SECONDS = 60.0  # for what it does at once; much less than that on a machine at rest
+ANSWER_SECONDS = 60.0  # for one command; an idle machine needs much less
 
 
 class BenchError(TangyError):
-    """The bench cannot be had, or does not do what it was told."""
+    """The bench cannot be started, or a command failed."""
 
 
 @dataclass(frozen=True)
 class Wires:
-    """Where the devices of the bench are, as addresses.
+    """The addresses of the simulated devices.
 
-    `corners` are those of the table in the infrared picture; `faces` says which drawn person sits
-    where, by id.
+    `corners` are those of the table in the infrared picture (px); `faces` maps the id of each
+    person
+    to the number of their drawn face.
     """
 
     rosbridge: str
@@ -44,7 +45,7 @@ class Wires:
 
 
 class DeviceSimulator:
-    """A bench that runs. `do` things at it, and `close` it."""
+    """A running bench; `do` commands, then `close` it."""
 
     def __init__(
         self,
@@ -61,18 +62,18 @@ class DeviceSimulator:
         """Start a bench.
 
         Args:
-            seed: another seed, other people and games.
+            seed: determines the people and the games.
             people: who sits there, in this order: names by id.
-            stepped: its time passes only when the robot lets it.
-            activity: what is played: its name, or its file.
-            robot: whose devices are simulated: the name of its profile.
-            room: the name of its profile.
-            log: where what goes wrong in it is written.
-            cancellation: of the opening that it is part of.
+            stepped: simulated time advances only when the robot process steps it.
+            activity: the activity's name, or its file.
+            robot: the name of the simulated robot's profile.
+            room: the name of the room's profile.
+            log: file for the errors of the process.
+            cancellation: cancels the start.
 
         Raises:
-            BenchError: it does not begin.
-            Cancelled: it was called off.
+            BenchError: the process does not start.
+            Cancelled: the start was cancelled.
         """
         cancellation = cancellation or Cancellation()
         cancellation.check()
@@ -84,7 +85,7 @@ class DeviceSimulator:
             self._worker = WorkerProcess(command, read=_answer, lost=_ended, log=log)
         except WorkerError as error:
             raise BenchError(f"The bench cannot be started ({error}).") from None
-        cancellation.register(self._worker.kill)  # there is nothing in it to be put in order
+        cancellation.register(self._worker.kill)  # it holds no state to save
         try:
             self.wires = _wires(self._await(self._worker.first)["ready"])
         except (KeyError, TypeError, ValueError, BenchError):
@@ -95,15 +96,15 @@ class DeviceSimulator:
             raise BenchError(f"The bench does not begin{how}{where}.") from None
 
     def do(self, do: str, **what: Any) -> dict[str, Any]:
-        """Let it do something, and return its answer.
+        """Carry out a command, and return its answer.
 
         Raises:
-            BenchError: it cannot, or it has ended.
+            BenchError: the command failed, or the process has ended.
         """
         return self._await(self._worker.ask({"do": do, **what}))
 
     def close(self) -> None:
-        """End it."""
+        """Stop the process."""
         self._worker.stop(END_SECONDS)
 
     @staticmethod
@@ -123,7 +124,7 @@ def _answer(said: dict[str, Any]) -> dict[str, Any]:
     """Return an answer.
 
     Raises:
-        BenchError: it could not do it.
+        BenchError: the command failed.
     """
     if "failed" in said:
         raise BenchError(str(said["failed"]))

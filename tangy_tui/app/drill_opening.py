@@ -1,4 +1,4 @@
-"""Opening a drill in a workspace, for the screen and for lines."""
+"""Prepares a drill in a workspace, for the screen and for the console."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ def open_drill(
     Args:
         workspace: the activity, robot, people and log.
         who: the name of the person who rehearses.
-        seed: the rounds are drawn with it; None draws one.
-        rounds: how many rounds.
-        clock: gives the time in s.
+        seed: draws the rounds; None takes a random seed.
+        rounds: the number of rounds.
+        clock: returns the time in s.
         past: the sheet of an interrupted drill to resume.
 
     Raises:
-        TangyError: there is nothing to rehearse with, or the fault rules have a mistake.
+        TangyError: there is no policy to rehearse with, or the fault rules have a mistake.
     """
     activity, robot, store = workspace.activity, workspace.robot, workspace.store
     activity.need_cards()

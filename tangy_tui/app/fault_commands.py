@@ -1,4 +1,4 @@
-"""What staff do about faults in a game: say that they saw one, call the expert, clear, accept."""
+"""What staff do about faults in a game: acknowledge, call the expert, clear, accept."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from tangy_tui.app.game_commands import Accept, Acknowledge, CallExpert, Clear, 
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 Result: TypeAlias = Event | StaffNote
-"""What comes of a command."""
+"""The result of a command."""
 FaultCommand: TypeAlias = Acknowledge | CallExpert | Reached | Clear | Accept
 
 
 def attend(game: Supervision, command: FaultCommand, by: str) -> list[Result]:
-    """Carry out what staff do about a fault, and return what came of it."""
+    """Carry out a command about a fault, and return its results."""
     fault = game.halted
     match command:
         case Accept():

@@ -1,7 +1,7 @@
-"""Notices that the program itself stood still: it was stopped by a signal, or the machine slept.
+"""Detects that the program itself was frozen: stopped by a signal, or by a machine that slept.
 
-A program that only waits for a busy machine is computing whenever it may; one that stands still
-computes nothing. Both clocks are the system's: one counts while the machine sleeps, too.
+A program on a busy machine still computes when it gets the chance; a frozen one does not. Both
+clocks are the system's; the wall clock also counts while the machine sleeps.
 """
 
 from __future__ import annotations
@@ -19,39 +19,39 @@ if TYPE_CHECKING:
     from tangy_tui.app.game_controller import GameController
 
 LOOK_SECONDS = 0.5
-"""Between two looks."""
+"""The interval between two checks."""
 FROZEN_SECONDS = 5.0
-"""A gap from here on is told."""
+"""Shorter gaps are not reported."""
 WORKED_SECONDS = 0.5
-"""Who has computed for longer within the gap was not still."""
+"""A process that used more CPU time than this within the gap was not frozen."""
 
 
 def awake_time() -> float:
-    """Return s on a clock that goes on while the machine sleeps, where there is one."""
+    """Return s on a clock that also counts while the machine sleeps, if there is one."""
     clock = getattr(time, "CLOCK_BOOTTIME", time.CLOCK_MONOTONIC)
     return time.clock_gettime(clock)
 
 
 class FreezeWatch:
-    """Says once for how long the program stood still. Any thread may `tick`."""
+    """Reports once how long the program was frozen. Any thread may call `tick`."""
 
     def __init__(
         self,
         clock: Callable[[], float] = awake_time,
         worked: Callable[[], float] = time.process_time,
     ) -> None:
-        """Begin to watch.
+        """Start to watch.
 
         Args:
-            clock: s, also of those in which the machine sleeps.
-            worked: s for which the program has computed.
+            clock: returns s, including time in which the machine slept.
+            worked: returns the CPU time of the process in s.
         """
         self._clock, self._worked = clock, worked
         self._lock = threading.Lock()
         self._last = (clock(), worked())
 
     def tick(self) -> float:
-        """Return for how many s the program stood still since the last tick; 0.0: it did not."""
+        """Return for how many s the program was frozen since the last tick; 0.0 if it was not."""
         with self._lock:
             (before, worked), self._last = self._last, (self._clock(), self._worked())
         gap, computed = self._last[0] - before, self._last[1] - worked
@@ -59,7 +59,7 @@ class FreezeWatch:
 
 
 class FreezeGuard:
-    """Pauses a game after the program stood still, and says so. Any thread may `look`."""
+    """Pauses a game after the program was frozen, and reports it. Any thread may call `look`."""
 
     def __init__(
         self,
@@ -70,26 +70,26 @@ class FreezeGuard:
         """Guard the games of a controller.
 
         Args:
-            control: of the games.
-            told: is told for how many s the program stood still, after the game was paused.
-            watch: notices it.
+            control: runs the games.
+            told: is called after the pause with the s for which the program was frozen.
+            watch: detects a freeze.
         """
         self._control, self._told = control, told
         self._watch = watch or FreezeWatch()
 
     def look(self) -> bool:
-        """Look whether the program has just stood still; the game is paused then."""
+        """Return whether the program was just frozen; if so, pause the game."""
         seconds = self._watch.tick()
         if not seconds or self._control.supervision.over:
             return False
         self._control.apply(Pause())
-        with suppress(TangyError):  # who stood still is not held up by a log that is full
+        with suppress(TangyError):  # a full log must not prevent the report
             self._control.supervision.note(f"the program stood still for {seconds:.0f} s", "")
         self._told(seconds)
         return True
 
     def keep_looking(self) -> None:
-        """Look by a thread of its own from now on, until the program ends."""
+        """Check in a background thread until the program ends."""
         threading.Thread(target=self._look_on, name="freeze", daemon=True).start()
 
     def _look_on(self) -> None:

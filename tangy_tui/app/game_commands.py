@@ -1,7 +1,7 @@
-"""What staff can do in a game, and what they are told: closed sets, the same for every door.
+"""The commands of staff in a game, and the notes they get back, the same for every interface.
 
-A screen's key, a line and a sentence that was heard become one of these commands; the controller
-carries it out (see `game_controller`) and answers with events of the game, or with a `StaffNote`.
+Keys, typed lines and recognised speech become one of these commands. The controller carries it
+out (see `game_controller`) and answers with events of the game, or with a `StaffNote`.
 """
 
 from __future__ import annotations
@@ -11,13 +11,14 @@ from typing import Literal, TypeAlias, get_args
 
 Autonomy = Literal["alone", "unsure", "each"]
 AUTONOMY: tuple[Autonomy, ...] = get_args(Autonomy)
-"""How much Tangy does of itself: all of it, or it asks about what it is less sure of, or always."""
+"""How much Tangy decides by itself: everything, all but what it is unsure of, or nothing."""
 
 Direction = Literal["forward", "back", "left", "right", "still"]
 DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
 
 Phase = Literal["idle", "running", "paused", "stopped", "asking", "halted", "staff"]
-"""How a game stands. Without a game it is idle; `staff` drive by hand, or say what comes next."""
+"""The phase of a game. Without a game it is idle; `staff`: they drive by hand or say what is next.
+"""
 
 LONGEST_DRIVE = 5.0  # s that one command drives by hand
 TWISTS: dict[Direction, tuple[float, float]] = {
@@ -27,10 +28,10 @@ TWISTS: dict[Direction, tuple[float, float]] = {
     "right": (0.0, -0.6),
     "still": (0.0, 0.0),
 }
-"""m/s and rad/s: slower than it drives by itself, and slowest where it does not see."""
+"""m/s and rad/s: slower than autonomous driving, slowest backwards, where the robot is blind."""
 
 TAKEN_OVER = "took over"
-"""What a question is about that staff wanted to be asked; others are about a fault, by its id."""
+"""The subject of a question that staff asked for; other questions name the id of a fault."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,24 +41,24 @@ class Pause:
 
 @dataclass(frozen=True, slots=True)
 class GoOn:
-    """Go on after a pause; after a STOP this is what lets the robot move again."""
+    """Continue after a pause; after a STOP, let the robot move again."""
 
 
 @dataclass(frozen=True, slots=True)
 class OneStep:
-    """Do one thing, and pause."""
+    """Carry out one behaviour, then pause."""
 
 
 @dataclass(frozen=True, slots=True)
 class StopRobot:
-    """Stop the robot now, whatever it does; `by` somebody else than who runs the games."""
+    """Stop the robot now; `by` names who stopped it, unless that is who runs the games."""
 
     by: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class TakeOver:
-    """Hand control to staff as soon as the current behaviour is over."""
+    """Hand control to staff as soon as the current behaviour ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,7 @@ class GiveBack:
 
 @dataclass(frozen=True, slots=True)
 class SetAutonomy:
-    """Turn the dial of how much Tangy does of itself."""
+    """Set the level of autonomy."""
 
     level: Autonomy
 
@@ -79,21 +80,21 @@ class CallAgain:
 
 @dataclass(frozen=True, slots=True)
 class TakeBackCall:
-    """Take a call back, by its label, else the last one: it counts as not called."""
+    """Take back a call, given by its label, or the last one: it counts as not called."""
 
     label: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class SetPace:
-    """Let so many s pass from one call to the next."""
+    """Set the time between two calls."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True)
 class ChangePace:
-    """Call faster (1) or slower (-1), by a step."""
+    """Call faster (1) or slower (-1) by one step."""
 
     by: Literal[1, -1]
 
@@ -123,30 +124,30 @@ class LetWin:
 
 @dataclass(frozen=True, slots=True)
 class ComesIn:
-    """Take a person, by id, for being here from now on."""
+    """Mark a person, by id, as present."""
 
     person: str
 
 
 @dataclass(frozen=True, slots=True)
 class GoesAway:
-    """Take a person, by id, for having left."""
+    """Mark a person, by id, as absent."""
 
     person: str
 
 
 @dataclass(frozen=True, slots=True)
 class AskFor:
-    """Ask for help for somebody, by id, who cannot ask."""
+    """Ask for help on behalf of a person, by id."""
 
     person: str
 
 
 @dataclass(frozen=True, slots=True)
 class Tell:
-    """Tell what a person, by id, says or does; None: the one whom the game waits for.
+    """Report what a person, by id, says or does; None: the person the game waits for.
 
-    `sure` is the likelihood that it is so, `source` where it comes from.
+    `sure` is the probability that the report is right, `source` its origin.
     """
 
     person: str | None
@@ -157,14 +158,14 @@ class Tell:
 
 @dataclass(frozen=True, slots=True)
 class VoidResponse:
-    """Let the last response of a person, by id, not count: it was otherwise than it was seen."""
+    """Discard the last response of a person, by id, because it was observed wrongly."""
 
     person: str
 
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Drive by hand for so many s, at most `LONGEST_DRIVE`."""
+    """Drive by hand for some s, at most `LONGEST_DRIVE`."""
 
     direction: Direction
     seconds: float = 1.0
@@ -172,47 +173,47 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class Confirm:
-    """Answer what Tangy proposes to do next: do it, or let staff say what else."""
+    """Answer Tangy's proposal: yes carries it out, no lets staff choose another action."""
 
     yes: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Acknowledge:
-    """Say that a fault, by id, was seen; without one that which halts Tangy."""
+    """Acknowledge a fault, by id; without an id, the one that halts Tangy."""
 
     fault: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class CallExpert:
-    """Note that the expert is called about it."""
+    """Log that staff call the expert."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """Say that the expert was reached."""
+    """Log that staff reached the expert."""
 
 
 @dataclass(frozen=True, slots=True)
 class Clear:
-    """Say that it is over, so that Tangy goes on."""
+    """Clear the fault that halts Tangy, so that it continues."""
 
 
 @dataclass(frozen=True, slots=True)
 class Accept:
-    """Say that what Tangy asks about is all right."""
+    """Accept the condition that Tangy asks about."""
 
 
 @dataclass(frozen=True, slots=True)
 class EndGame:
-    """End the game; the robot stands."""
+    """End the game and stop the robot."""
 
 
 PlanCommand: TypeAlias = (
     TakeBackCall | SetPace | ChangePace | ClaimCard | ChoosePatterns | LetWin | ComesIn | GoesAway
 )
-"""What staff change in a game beside what Tangy does; see `GamePlanControls`."""
+"""Changes to a game that staff make besides Tangy's actions; see `GamePlanControls`."""
 
 GameCommand: TypeAlias = (
     PlanCommand
@@ -251,7 +252,7 @@ AT_ONCE = (
     Tell,
     Confirm,
 )
-"""What does not wait for its turn."""
+"""Commands that do not wait for the current behaviour to end."""
 
 
 WITHOUT_GAME = (
@@ -266,7 +267,7 @@ WITHOUT_GAME = (
     ComesIn,
     GoesAway,
 )
-"""What can be done before a game and after it, too."""
+"""Commands that also work when no game is running."""
 
 NoteKind = Literal[
     "paused",
@@ -299,7 +300,7 @@ NoteKind = Literal[
     "ended",
     "seen before",
     "reached",
-    # what cannot be done, and why
+    # refusals, and why
     "stopped first",
     "asks first",
     "halted first",
@@ -320,25 +321,25 @@ NoteKind = Literal[
     "not acceptable",
     "cannot",
 ]
-"""What staff are told of a command."""
+"""The reply to a command."""
 
 
 @dataclass(frozen=True, slots=True)
 class StaffNote:
-    """What came of a command, where it is no event of the game; `about` names what it is about."""
+    """The result of a command that is not an event of the game; `about` names its subject."""
 
     kind: NoteKind
     about: str = ""
     words: str = ""
-    """Words of the activity that it quotes."""
+    """Words of the activity that the note quotes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """What Tangy would do next, for whom, by which share of the votes: staff are asked first."""
+    """Tangy's next action, its target and its share of the votes, for staff to approve."""
 
     behaviour: str
     target: str | None
     share: float
     seen: int = 0
-    """How often it was shown in this situation."""
+    """How often it was demonstrated in this situation."""

@@ -1,7 +1,7 @@
-"""The controller of games: every door by which staff act leads here, and each game runs by it.
+"""The controller of games: carries out the commands of staff from every interface.
 
-A game goes on in one thread (`next`, again and again), commands come from another (`apply`). What
-must not wait goes to the robot at once, the rest waits for its turn. All of it is in the log.
+One thread runs a game (calls `next` repeatedly), other threads send commands (`apply`). Urgent
+commands reach the robot at once, the rest wait for the current behaviour. All are logged.
 """
 
 from __future__ import annotations
@@ -78,31 +78,31 @@ class GameController(EndingGames):
         """Take charge of games.
 
         Args:
-            supervision: what runs them.
-            by: who acts, for the log.
-            robot: the world of a robot that is there; None: the games are simulated.
-            paced: a robot that is there lets people time between two calls.
-            void: lets the last response of a person not count; says whether there was one.
-            past: a game that was interrupted, which is taken up first.
+            supervision: runs the games.
+            by: who gives the commands, for the log.
+            robot: the world of a real robot; None: the games are simulated.
+            paced: leave people time between two calls of a real robot.
+            void: discards the last response of a person; returns whether there was one.
+            past: an interrupted game to resume first.
         """
         self.past = past
         self.supervision = supervision
         self.autonomy = AutonomyDial()
         self.stopped = self.taking_over = False
         self.nudge = threading.Event()
-        """Is set when something has changed for whoever waits to do the next thing."""
+        """Set when something changed, for the thread that waits to call `next`."""
         self.changed: Callable[[], object] = lambda: None
-        """Is called then as well, by the thread that acts."""
+        """Called after each command, in the thread that carried it out."""
         self.by = by
         self.robot = RobotControls(robot, self.note, lambda: self.stopped, paced=paced)
         self.plan = GamePlanControls(supervision, self.note, by)
         self.answers = Answers(supervision)
-        """What is said where Tangy asks, until it is verified: then it is for `answer`."""
+        """Verifies answers to Tangy's questions; `answer` then carries them out."""
         self._void = void
         self.going = True
-        """Whether the next thing is done; False: the game is paused."""
+        """Whether the next behaviour may run; False: the game is paused."""
         self.single = False
-        """Whether the game pauses after the next thing."""
+        """Whether the game pauses after the next behaviour."""
         self._turn = threading.RLock()
         """Whoever has it has the supervision, and the robot."""
         self._watch = StaffWatch()
@@ -112,7 +112,7 @@ class GameController(EndingGames):
 
     @property
     def phase(self) -> Phase:
-        """How the game stands."""
+        """The phase of the game."""
         if self.supervision.over:
             return "idle"
         if self.stopped:
@@ -127,16 +127,16 @@ class GameController(EndingGames):
 
     @property
     def proposal(self) -> Proposal | None:
-        """What Tangy would do next, and asks staff about."""
+        """The next action, on which staff are asked."""
         return self.autonomy.proposal
 
     def begin(self) -> list[Event]:
         """Begin the next game, or resume the interrupted one, paused until staff continue it.
 
-        The robot may move: staff have said that all is well. While it is stopped, none begins.
+        Releases the robot. If it is stopped, no game begins.
 
         Raises:
-            NotResumable: the world cannot come to where the past game was.
+            NotResumable: the world cannot restore the state of the interrupted game.
         """
         with self._turn, serving():
             if self.stopped:
@@ -145,7 +145,7 @@ class GameController(EndingGames):
             self.going = self.past is None
             self.autonomy.reset()
             self.robot.release(everybody=True)
-            if self.stopped:  # just now
+            if self.stopped:  # in the meantime
                 self.robot.stop()
                 return []
             past, self.past = self.past, None
@@ -155,7 +155,7 @@ class GameController(EndingGames):
             return events
 
     def next(self) -> list[Event]:
-        """Do the next thing if it may be done now; else only look at the devices."""
+        """Carry out the next behaviour if it is permitted; otherwise only check the devices."""
         with self._turn, serving():
             game = self.supervision
             self.nudge.clear()
@@ -166,7 +166,7 @@ class GameController(EndingGames):
                 return game.look()
             if self.taking_over and not game.waiting:
                 asked: list[Event] = list(game.game.ask(TOOK_OVER, "Say what it does.", TAKEN_OVER))
-                self.taking_over = False  # only now: an answer typed ahead finds the question
+                self.taking_over = False  # only now: an answer typed earlier finds the question
                 return asked
             if not self._may_step():
                 return []
@@ -195,7 +195,7 @@ class GameController(EndingGames):
             self._turn.release()
 
     def _may_step(self) -> bool:
-        """Say whether the next behaviour may be done now, or ask staff about it first."""
+        """Return whether the next behaviour may be carried out now; propose it to staff if not."""
         game = self.supervision
         alone = self.autonomy.level == "alone" and not self.robot.paced
         if alone or game.waiting:
@@ -214,14 +214,14 @@ class GameController(EndingGames):
     # ----------------------------------------------------------------------------- what staff do
 
     def apply(self, command: GameCommand) -> list[Result]:
-        """Carry out a command of staff, and return what came of it, or why it cannot be done."""
+        """Carry out a command of staff; return its results, or why it was refused."""
         try:
             return self.carry_out(command)
         except TangyError as error:
             return [StaffNote("cannot", str(error))]
 
     def carry_out(self, command: GameCommand) -> list[Result]:
-        """Carry out a command of staff; raises TangyError where it cannot be done or logged."""
+        """Carry out a command of staff; raises TangyError if that fails or cannot be logged."""
         with serving():
             try:
                 if isinstance(command, AT_ONCE):
@@ -282,7 +282,7 @@ class GameController(EndingGames):
 
     @contextmanager
     def driving(self) -> Iterator[None]:
-        """Let staff drive by keys, and the game wait meanwhile."""
+        """Let staff drive by keys while the game waits."""
         going, self.going, self.robot.driving = self.going, False, True
         try:
             yield
@@ -348,11 +348,11 @@ class GameController(EndingGames):
         return StaffNote("voided", person)
 
     def refuses(self, command: GameCommand) -> StaffNote | None:
-        """Say whether a command that moves the robot is refused already as it is given."""
+        """Return why a command that moves the robot is refused at once, None if it is not."""
         return self.refusal(asking=False) if isinstance(command, CallAgain | Drive) else None
 
     def refusal(self, *, asking: bool = True) -> StaffNote | None:
-        """Say what has to be done before staff can do more, None if nothing has."""
+        """Return what staff have to do first, None if nothing."""
         if self.stopped:
             return StaffNote("stopped first")
         if self.supervision.halted is not None:
@@ -365,7 +365,7 @@ class GameController(EndingGames):
         """Carry out an answer and learn from it; blocks until it is done.
 
         Raises:
-            TangyError: it could not be kept, and nothing of it is.
+            TangyError: it could not be stored; nothing of it is kept.
         """
         with self._turn, serving():
             if refused := self.refusal(asking=False):

@@ -1,4 +1,4 @@
-"""What others are shown of the game that a program runs, at one moment."""
+"""A snapshot of the game that a program runs, for other consoles."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class GameView:
-    """A game as it stands: who drives it, where it is played, and what there is to see.
+    """A snapshot of a game: who controls it, where it is played, and its scene.
 
-    `game` is its id in the log, `number` counts from 1 in this run, `robot` is the rolled-up state
-    of the robot with its `cause`, `pose` is where the robot is (m, m), if one is there.
+    `game` is its id in the log, `number` counts from 1 in this run, `robot` is the overall state of
+    the robot with its `cause`, `pose` the position of the robot (m, m), if there is a real one.
     """
 
     driver: str
@@ -46,11 +46,11 @@ class GameView:
 
 
 def view_of(control: GameController) -> GameView | None:
-    """Look at the game that a controller runs; None where none was begun yet, or it changes now."""
+    """Return a snapshot of a controller's game; None if there is none yet or it is changing."""
     supervision = control.supervision
     world = supervision.world
     link = getattr(world, "link", None)
-    with suppress(RuntimeError, LookupError):  # the game's own thread was just changing it
+    with suppress(RuntimeError, LookupError):  # the game's thread changed it meanwhile
         if not supervision.games:
             return None
         robot, cause = supervision.status

@@ -1,4 +1,4 @@
-"""Which faults can be brought about in a robot."""
+"""The faults that can be injected into a robot."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ from tangy_sim.worlds.injection import KINDS
 
 
 def possible_kinds(codes: Iterable[str]) -> tuple[str, ...]:
-    """Return the kinds of fault that are correctly diagnosed as one of these codes."""
+    """Return the kinds of fault whose correct diagnosis is one of these codes."""
     known = set(codes)
     return tuple(name for name, kind in KINDS.items() if kind.code in known)

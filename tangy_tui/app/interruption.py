@@ -1,4 +1,4 @@
-"""Games that were interrupted: found at the next start, gone on with, or ended."""
+"""Interrupted games: found at the next start, then resumed or ended."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
-    """Return the game of the workspace's activity that was interrupted in a world, if one was."""
+    """Return the interrupted game of the workspace's activity in a world, None if there is none."""
     past = interrupted_game(workspace.store, workspace.activity.name)
     return past if past is not None and past.world == world else None
 
 
 def take_up(workspace: Workspace, past: PastGame) -> None:
-    """Let people sit as they sat in a game that is to go on, in the same room.
+    """Restore the seats and the room of an interrupted game that is to be resumed.
 
     Raises:
-        TangyError: its room cannot be had.
+        TangyError: its room is not available.
     """
     if not workspace.room_is_given:
         room = past.beginning.room
@@ -32,6 +32,6 @@ def take_up(workspace: Workspace, past: PastGame) -> None:
 
 
 def end_interrupted(workspace: Workspace, past: PastGame, reason: str) -> None:
-    """Log the end of a game that was interrupted, with the reason that people read."""
+    """Log the end of an interrupted game, with a reason for people to read."""
     game = past.beginning.game
     workspace.store.append(GameEnding(game=game, steps=len(past.steps), stopped=reason))

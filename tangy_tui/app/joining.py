@@ -1,4 +1,4 @@
-"""People who join the group while Tangy runs: they get an id, a name, and a seat."""
+"""People who join the group while Tangy runs: each gets an id, a name and a seat."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
 
 
 def let_join(workspace: Workspace, name: str, *, guest: bool = False) -> str:
-    """Let a person take part from now on, as a guest only today; return the id.
+    """Add a person who takes part from now on, as a guest only today; return the id.
 
     The others keep their seats.
 
     Raises:
-        TangyError: there is no room for more, or the name cannot be given.
+        TangyError: there is no free seat, or the name cannot be given.
     """
     order = [person.id for person in workspace.people]
     if workspace.room is workspace.chosen_room:
@@ -28,7 +28,7 @@ def let_join(workspace: Workspace, name: str, *, guest: bool = False) -> str:
             workspace.register()
             workspace.rename(workspace.find_person(id), name)
     finally:
-        workspace.register()  # without the person, where the name could not be given
+        workspace.register()  # without the person, if the name was refused
         new = [person.id for person in workspace.people if person.id not in order]
         workspace.seat([*order, *new])
     return id

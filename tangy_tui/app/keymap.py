@@ -1,8 +1,8 @@
 """The keymap: every action of any screen, with its keys and its typed word.
 
-A key means the same wherever it works. Screens make their bindings, the line of keys at the foot,
-help and palette from this table; what the actions are called stands in `tangy_tui/text/keys.py`.
-Letters are keys only where there is no line to type in. Users may change keys in `settings.toml`.
+A key means the same on every screen. Key bindings, the line of keys at the foot, help and the
+command palette all come from this table; `tangy_tui/text/keys.py` has the names of the actions.
+Letters are keys only if no input line has the focus. Users may change keys in `settings.toml`.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from tangy_profiles.reading import Table, nearest
 
 @dataclass(frozen=True, slots=True)
 class KeyAction:
-    """One thing that a key does.
+    """An action and its keys.
 
-    `keys` are named as Textual names them; the first is the one that is shown while a line takes
-    letters. `word` is typed in a line or in the palette. A `fixed` one keeps its keys. An action
-    of a screen `with_line` works there while somebody types, and so takes no letter alone.
+    `keys` use Textual's names; the first one is shown while an input line takes letters. `word` is
+    typed in a line or in the palette. A `fixed` action keeps its keys. An action `with_line` also
+    works while the user types, so it takes no letter alone.
     """
 
     id: str
@@ -104,7 +104,7 @@ ACTIONS: tuple[KeyAction, ...] = (
     KeyAction("rename", ("T",), "rename"),
     KeyAction("world", ("W",), "games"),
     KeyAction("camera", ("V",), "camera"),
-    # the same in every program
+    # fixed
     _fixed("back", "escape", word="leave"),
     _fixed("open", "enter", word="open"),
     _fixed("up", "up", "k"),
@@ -150,37 +150,37 @@ NAMED: Mapping[str, str] = {
     "(": "left_parenthesis",
     ")": "right_parenthesis",
 }
-"""Characters, and what Textual calls their keys."""
+"""Characters, and Textual's names of their keys."""
 
 _SHOWN = {name: character for character, name in NAMED.items()} | {"escape": "esc"}
 
 CONTROL = tuple(f"ctrl+{letter}" for letter in "bfgklnoprtuvwxyz")
-"""Control keys that a terminal passes on; some are the line's own."""
+"""Control keys that a terminal passes on; some belong to the input line."""
 
 FUNCTION = tuple(f"f{number}" for number in range(1, 13))
 OF_THE_LINE = frozenset({"ctrl+f", "ctrl+k", "ctrl+u", "ctrl+v", "ctrl+w"})
-"""Keys that edit the line to type in."""
+"""Keys that edit the input line."""
 
 KNOWN: tuple[str, ...] = (*FUNCTION, *CONTROL, *string.ascii_letters, *NAMED, *NAMED.values())
-"""What may be written as a key."""
+"""Everything that may be written as a key."""
 
 _PERMANENT = ("ctrl+x",)
-"""Stops the robot whatever is set: the key that is told of everywhere."""
+"""Always stops the robot, whatever the settings: the key that screens and documents name."""
 
 
 def shown(key: str) -> str:
-    """Return how a key is written on the screen: "^x", "f2", "?", "esc"."""
+    """Return how the screen writes a key: "^x", "f2", "?", "esc"."""
     return _SHOWN.get(key, key.replace("ctrl+", "^"))
 
 
 def is_letter(key: str) -> bool:
-    """Say whether a line would take a key as a character."""
+    """Return whether an input line would take a key as a character."""
     return len(key) == 1 or (key in _SHOWN and key != "escape")
 
 
 @dataclass(frozen=True, slots=True)
 class Keymap:
-    """The keys that count: those of the table, and instead of them those that a user has set."""
+    """The keys in use: those of the table, with the user's changes."""
 
     changed: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -193,7 +193,7 @@ class Keymap:
         return next((a.id for a in ACTIONS if key in self.keys(a.id)), "")
 
     def shown(self, id: str, *, typing: bool = False) -> str:
-        """Return the key of an action as it is shown; `typing` where letters go to a line."""
+        """Return the key to show for an action; `typing`: an input line takes the letters."""
         keys = self.keys(id)
         letters = [key for key in keys if is_letter(key)]
         if typing or not letters:
@@ -211,7 +211,7 @@ def read_keys(table: Table) -> Keymap:
     An action is named by its id or by its word.
 
     Raises:
-        ProfileError: an action or a key is not known, cannot be changed, or is used twice.
+        ProfileError: an action or a key is unknown, cannot be changed, or is used twice.
     """
     changeable = {action.id: action.id for action in ACTIONS if not action.fixed}
     changeable |= {BY_ID[id].word.replace(" ", "_"): id for id in tuple(changeable)}
@@ -246,7 +246,7 @@ def _read(table: Table, id: str, action: KeyAction) -> Iterator[str]:
 
 
 def _clashes(keymap: Keymap, id: str, keys: Iterable[str]) -> Iterator[str]:
-    """Give the other actions that have one of some keys."""
+    """Yield the other actions that have one of some keys."""
     for action in ACTIONS:
         if action.id != id and not set(keys).isdisjoint(keymap.keys(action.id)):
             yield action.id

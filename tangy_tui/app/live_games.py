@@ -1,4 +1,4 @@
-"""Live games without a screen: played to their end by scripted people, and added up."""
+"""Live games without a screen: scripted staff play them to the end, and the results add up."""
 
 from __future__ import annotations
 
@@ -27,26 +27,26 @@ if TYPE_CHECKING:
 
 
 News: TypeAlias = CardNote | Seated
-"""What is new of cards, or of who sits where."""
+"""News about cards, or about who sits where."""
 Tell: TypeAlias = Callable[[list[Event], list[News]], None]
 
 
 class LiveGames:
-    """Games that were played live, and what they add up to."""
+    """Live games and the totals of their results."""
 
     def __init__(
         self, workspace: Workspace, supervision: Supervision, past: PastGame | None = None
     ) -> None:
-        """Begin to count; a past game, which was interrupted, is taken up first."""
+        """Start with empty totals; an interrupted game is resumed first."""
         self._past = past
         self.tally = Tally()
         self.faults: list[dict[str, Any]] = []
         self.card_doubts: list[dict[str, Any]] = []
-        """Why cards were not judged, as JSON has it."""
+        """Why Tangy did not judge cards, as JSON data."""
         self.scores: list[GameScore] = []
-        """What was brought about on a bench, and what became of it, game by game."""
+        """The injected faults and their outcomes, game by game."""
         self.seconds = 0.0
-        """How long the games took in the robot's time."""
+        """Duration of the games in the robot's time, in s."""
         self.took = 0.0
         self._workspace = workspace
         self._supervision = supervision
@@ -63,9 +63,9 @@ class LiveGames:
         """Play games, one after another.
 
         Args:
-            games: as many as it gives.
+            games: one item for each game to play.
             expert: staff are there to clear what halts the robot.
-            tell: is told what happens, and what is new.
+            tell: is called with new events and news.
         """
         for _ in games:
             began = time.monotonic()
@@ -94,7 +94,7 @@ class LiveGames:
             self.scores.append(score_game(self.tally.games, came, game.faults, game.book))
 
     def take(self, events: Sequence[Event]) -> list[News]:
-        """Count events, log news about cards, and return it together with news about seats."""
+        """Count events, log news about cards, and return it with the news about seats."""
         self.tally.add(list(events))
         game, world = self._supervision, self._supervision.world
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere

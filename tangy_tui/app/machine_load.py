@@ -1,4 +1,4 @@
-"""Busy processes beside a game on the bench: a machine that is short of time."""
+"""CPU load beside a game on the bench, to test a machine that is short of time."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from contextlib import contextmanager
 
 MOST = 64
 BUSY = "import os\nparent = os.getppid()\nwhile os.getppid() == parent:\n    sum(range(100_000))\n"
-"""Computes for as long as the program that started it is there."""
+"""Runs until its parent process ends."""
 
 
 @contextmanager
 def machine_load(processes: int) -> Iterator[None]:
-    """Keep the machine busy with some processes; they end with it, or if this program dies."""
+    """Keep some processes busy inside the context; they also end if this program dies."""
     busy = [
         subprocess.Popen((sys.executable, "-P", "-c", BUSY), stdin=subprocess.DEVNULL)  # noqa: S603 - own
         for _ in range(processes)

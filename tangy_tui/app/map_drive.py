@@ -1,4 +1,4 @@
-"""A drive by the keys from which a map is drawn: the robot switched on, and what it recorded."""
+"""A drive by the keys that records scans, and the map drawn from them."""
 
 from __future__ import annotations
 
@@ -20,13 +20,15 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
 
 COARSE = 0.1
-"""m to a cell of the map shown during the drive: odometry drifts, so finer cells show no more."""
+"""Cell size in m of the map shown during the drive: odometry drifts, so finer cells show no more.
+"""
 DRIVES_BY = ("base", "stop_button")
-"""What a drive on the bench needs of its rosbridge; the scanner has a connection of its own."""
+"""The devices that a drive on the bench reaches by rosbridge; the scanner has its own connection.
+"""
 
 
 class SoFar(NamedTuple):
-    """What a drive has recorded so far: scans, metres driven, and a map by the wheels alone."""
+    """The record of a drive so far: number of scans, metres driven, and a map by odometry alone."""
 
     scans: int
     metres: float
@@ -39,10 +41,10 @@ def opening_for_map(
     """Return what switches a robot on for a drive by the keys, without a map.
 
     Args:
-        workspace: whose robot and room.
-        record: takes the scans; it must not exist yet.
+        workspace: gives the robot and the room.
+        record: file for the scans; it must not exist yet.
         bench: simulate the devices.
-        seed: of the bench.
+        seed: seeds the bench.
 
     Raises:
         DeviceError: the robot's file names no drivers.
@@ -106,9 +108,9 @@ def _linked(
 
 
 def map_so_far(record: Path) -> SoFar | None:
-    """Draw what a drive has recorded so far; None where there is nothing to draw yet.
+    """Draw the map of a drive so far; None if there is nothing to draw yet.
 
-    A line that is just being written counts as nothing: the next look finds it whole.
+    A line that is still being written counts as nothing; the next call reads it whole.
     """
     from tangy_hw.navigation.mapping import MapError, Placed, map_of_scans, sparse
     from tangy_hw.navigation.scan_log import LogError, read_log

@@ -1,4 +1,4 @@
-"""Who takes part, in which room, on which seats, and what is known of each person."""
+"""Who takes part, in which room, on which seats, and what Tangy knows of each person."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 class Participants:
-    """The people of a workspace, who are placed in a room."""
+    """The people of a workspace, placed in a room."""
 
     activity: Activity
     store: Store
     room: Room
     people: tuple[Person, ...]
     chosen_room: Room | None
-    """The room that somebody chose. It is taken as long as everybody fits in."""
+    """The room that staff chose. It is used as long as everybody fits in."""
     _sample: tuple[Person, ...]
 
     def read_people(self) -> None:
@@ -38,24 +38,24 @@ class Participants:
         self.people = self.room.placed(known_people(self.store, self._sample))
 
     def register(self, users: int = REGISTERED) -> None:
-        """Let the first `count` registered people take part, or all of them."""
+        """Let the first `users` registered people take part, or all of them."""
         teams = tuple(Person(team, team) for team in self.activity.teams)
         self._sample = teams or participants(self.store, users)
         self._place()
 
     def _place(self) -> None:
-        """Take the chosen room if everybody fits in, and the seats in it."""
+        """Use the chosen room if everybody fits in, and its seats."""
         count, chosen = len(self._sample), self.chosen_room
         self.room = chosen if chosen and count <= chosen.places else room_for(count)
         self.read_people()
 
     @property
     def room_source(self) -> str:
-        """What loads the room, "" where the number of people decides which it is."""
+        """The source to load the room from, "" if the number of people determines the room."""
         return self.room.source if self.room is self.chosen_room else ""
 
     def choose_room(self, room: Room | None) -> None:
-        """Play in a room from now on; None: in the one that the number of people decides.
+        """Set the room to play in; None: the number of people determines it.
 
         Raises:
             TangyError: not everybody fits in.
@@ -66,7 +66,7 @@ class Participants:
         self._place()
 
     def seat(self, order: Sequence[str]) -> None:
-        """Let people sit in another order of their ids."""
+        """Seat people in the order of these ids."""
         self._sample = tuple(sorted(self._sample, key=lambda person: order.index(person.id)))
         self.read_people()
 
@@ -75,7 +75,7 @@ class Participants:
         return next((p.name for p in self.people if p.id == person), person)
 
     def find_person(self, wanted: str) -> Person:
-        """Return the person of an id or a name.
+        """Return the person with an id or a name.
 
         Raises:
             TangyError: nobody, or more than one, is called that.
@@ -87,17 +87,17 @@ class Participants:
             return found[0]
         if found:
             raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
-        there = ", ".join(f"{p.id} is {p.name}" for p in self.people)  # never guess at a person
+        there = ", ".join(f"{p.id} is {p.name}" for p in self.people)  # never guess a person
         raise TangyError(plain(f"There is nobody called {wanted!r}: {there}."))
 
     def rename(self, person: Person, name: str) -> None:
-        """Give a person another name, one that nobody else answers to.
+        """Give a person a new name that nobody else has.
 
-        Lines that were spoken with the old one are forgotten.
+        Cached speech with the old name is deleted.
 
         Raises:
-            TangyError: the name is somebody else's name or id, or a place, or means something
-                else where it is said.
+            TangyError: the name is another person's name or id, or a place, or has another meaning
+                in speech.
         """
         wanted = folded(name)
         taken = {FRONT: "is a place"}
@@ -130,7 +130,7 @@ class Participants:
         self.read_people()
 
     def check_said(self, person: Person, phones: str) -> str:
-        """Return the phones of a person's name as they are written down.
+        """Return the checked phones of a person's name, as they are stored.
 
         Raises:
             TangyError: as for `pronounce`.
@@ -143,19 +143,20 @@ class Participants:
         return checked
 
     def prefer_voice(self, person: Person, preference: VoicePreference) -> None:
-        """Note how a person likes to be spoken to."""
+        """Store how a person prefers to be spoken to."""
         self.store.prefer_voice(person.id, preference)
         self.read_people()
 
     def forget(self, person: Person, also: Sequence[str] = ()) -> Forgotten:
         """Forget a person: name, pronunciation, voice, face, and consent.
 
-        The name goes from words that were typed or said as well, in the log and in the files of
-        the data folder. What they did stays in the log, under an id that says nobody's name.
+        The name is also deleted from typed and recognised words in the log and in the files of the
+        data
+        folder. The person's actions stay in the log, under an id that names nobody.
 
         Args:
-            person: who.
-            also: other names that they were called by, which are to go, too.
+            person: the person to forget.
+            also: other names of the person to delete too.
 
         Raises:
             TangyError: some of it cannot be deleted.

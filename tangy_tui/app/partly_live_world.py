@@ -1,6 +1,6 @@
-"""A simulated room with some real devices, whose reports override the simulated ones.
+"""A simulated room with some real devices, whose readings replace the simulated ones.
 
-So that a lens that is covered in earnest is diagnosed in a simulated game as what it is.
+If a person covers the real camera during a simulated game, Tangy diagnoses it.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import Injection
 
 OLDEST = 0.05
-"""Seconds for which a reading is not asked for anew: the rules look at it 40 times a second."""
+"""Readings are cached for this many seconds: the fault rules read them 40 times a second."""
 
 
 class PartlyLiveWorld(FaultyWorld):
-    """A simulated world in which the readings of some devices are those of real ones."""
+    """A simulated world in which some devices are real."""
 
     def __init__(
         self,
@@ -30,7 +30,7 @@ class PartlyLiveWorld(FaultyWorld):
         live: Callable[[], Health],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Make the world; `live` gives the readings of the real devices, of `clock`'s present."""
+        """Create the world; `live` returns the current readings of the real devices."""
         self._live = live
         self._clock = clock
         self._simulated: Health = ()
@@ -39,7 +39,7 @@ class PartlyLiveWorld(FaultyWorld):
         super().__init__(activity, people, seed=seed, injections=injections)
 
     def health(self) -> Health:
-        """Return what the devices report, the real ones as they are."""
+        """Return the readings of all devices; real ones replace simulated ones."""
         simulated, now = super().health(), self._clock()
         if simulated is not self._simulated or now - self._asked > OLDEST:
             real = {reading.device: reading for reading in self._live()}

@@ -1,4 +1,4 @@
-"""What staff change in a game by themselves: pace, calls, claims, patterns, who is here."""
+"""What staff change in a game themselves: pace, calls, claims, patterns, who is present."""
 
 from __future__ import annotations
 
@@ -28,28 +28,28 @@ if TYPE_CHECKING:
 
 
 SET_PACE = "staff set the pace"
-"""Begins what the log has of a new pace."""
+"""The beginning of the log's note on a new pace."""
 
 
 class GamePlanControls:
-    """The plan of the games that a supervision runs; where nothing can be planned, each says so."""
+    """Changes the plan of supervised games; refuses each change if the game has no plan."""
 
     def __init__(self, supervision: Supervision, note: Callable[..., None], by: str) -> None:
-        """Take what runs the games; `note` logs what staff (`by`) did."""
+        """Control the games of a supervision; `note` logs what staff (`by`) did."""
         self._supervision = supervision
         self._note = note
         self._by = by
 
     @property
     def world(self) -> PlannedGame | None:
-        """The world, where staff can plan its games."""
+        """The world, if staff can plan its games."""
         return self._supervision.game.changes.world
 
     def do(self, command: PlanCommand) -> list[Result]:
         """Carry out a command.
 
         Raises:
-            TangyError: it cannot be done, or not be logged.
+            TangyError: it cannot be carried out or logged.
         """
         if isinstance(command, ComesIn | GoesAway):
             return [self._move(command)]
@@ -86,7 +86,7 @@ class GamePlanControls:
         return StaffNote("pace", f"{pace:g}")
 
     def _take_back(self, world: PlannedGame, label: str) -> list[Result]:
-        """Take a call back, the last one or that of a label, and tell the group."""
+        """Take back the last call, or the one with a label, and tell the group."""
         deck, called = world.activity.deck, world.called_now
         if not called:
             return [StaffNote("nothing called")]
@@ -99,7 +99,7 @@ class GamePlanControls:
         return [StaffNote("call taken back", deck.label(number)), changed]
 
     def _claim(self, world: PlannedGame, card: int, person: str) -> list[Result]:
-        """Check a card by all that was called, and say to the group what came of it."""
+        """Check a card against all calls, and tell the group the result."""
         wins = world.wins(card)
         if wins is None:
             return [StaffNote("no such card", str(card))]
@@ -151,7 +151,7 @@ class GamePlanControls:
         return told
 
     def _move(self, command: ComesIn | GoesAway) -> StaffNote:
-        """Let somebody come or leave, in the present game or before the next one."""
+        """Mark a person as present or absent, in the present game or before the next one."""
         changes = self._supervision.game.changes
         gathering, person, here = changes.gathering, command.person, isinstance(command, ComesIn)
         if gathering is None or person not in gathering.people:

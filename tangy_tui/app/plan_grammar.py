@@ -1,4 +1,4 @@
-"""Words by which staff change a game: its pace, its patterns, a call, a claim, who is here."""
+"""The grammar of commands that change a game: pace, patterns, a call, a claim, who is present."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tangy_tui.app.game_commands import (
 )
 
 CHECK = "check"
-"""The word before a card's number in every activity; an activity may have one of its own."""
+"""The word before a card's number in every activity; an activity may define another."""
 _PACE = re.compile(r"pace (\d{1,4}(?:\.\d)?)(?: ?s| seconds?)?", re.I)
 _PATTERNS = re.compile(r"(?:play for|play on for|patterns?) (.+)", re.I)
 _MOVED = re.compile(r"(here|left) (.+)|(.+?) (is here|has come|left|has left)", re.I)
@@ -29,10 +29,10 @@ _TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
 def read_planned(
     said: str, find_person: Callable[[str], str], rules: GameRules
 ) -> GameCommand | None:
-    """Return the command that words are; None: they are none of these.
+    """Parse words as one of these commands; None if they are none.
 
     Raises:
-        TangyError: they are nearly one, and something in them is wrong; one sentence.
+        TangyError: they resemble a command, but a part of it is wrong; one sentence.
     """
     if claim := _claim(said, find_person, rules):
         return claim
@@ -59,7 +59,7 @@ def read_planned(
 
 
 def _claim(said: str, find_person: Callable[[str], str], rules: GameRules) -> GameCommand | None:
-    """Return the claim that words are: the activity's word for it, a card's number, a name."""
+    """Parse a claim: the activity's word for it, a card's number, and perhaps a name."""
     word, _, rest = said.partition(" ")
     if not rules.claim or not rest or word.casefold() not in (CHECK, rules.claim.casefold()):
         return None

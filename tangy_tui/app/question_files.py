@@ -1,8 +1,8 @@
 """Questions with answers to choose from, read from files of other programs.
 
-The Aiken format (Moodle and others): the question in a line, `A. answer` or `A) answer` in the
-next ones, then `ANSWER: B`. The spreadsheet of Kahoot as CSV: a header with a question, answers 1
-to 4 and the numbers of the correct ones, under any number of lines of instruction.
+Two formats: Aiken (Moodle and others) has the question on one line, `A. answer` or `A) answer` on
+the next ones, then `ANSWER: B`. Kahoot's spreadsheet as CSV has a header with question, answers 1
+to 4 and the numbers of the correct ones, below any number of lines with instructions.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ def read_questions(text: str, name: str) -> list[ChoiceQuestion]:
     """Read questions from a file in Aiken format or from a Kahoot CSV.
 
     Args:
-        text: what stands in the file.
-        name: its name, for what is said of a mistake.
+        text: the contents of the file.
+        name: its name, for error messages.
 
     Raises:
-        TangyError: naming the line that cannot be understood; or there is no question.
+        TangyError: a line cannot be parsed (the message names it), or there is no question.
     """
     aiken = any(_ANSWER.fullmatch(line.strip()) for line in text.splitlines())
     found = list(_aiken(text, name) if aiken else _kahoot(text, name))
@@ -120,9 +120,9 @@ def questions_table(questions: Sequence[ChoiceQuestion], either: str, hint: str)
     """Return the table of an activity: question, each option, all of them, the right one, a hint.
 
     Args:
-        questions: what they are.
-        either: how the options are put into a sentence: all but the last one, and the last one.
-        hint: a hint that names a wrong option, for questions with more than two.
+        questions: the rows of the table.
+        either: a template for the options in a sentence: all but the last one, and the last one.
+        hint: a template that names a wrong option, for questions with more than two.
     """
     most = max(len(one.options) for one in questions)
     out = io.StringIO()
@@ -150,13 +150,13 @@ def questions_activity(
     """Return the text of an activity file with these questions.
 
     Args:
-        base: the file of the activity that is like it, whose questions have three options.
-        name: of the file without its ending.
-        title: what people call it.
-        questions: what its table holds.
+        base: the text of the activity file to adapt, whose questions have three options.
+        name: the file name without its suffix.
+        title: the title of the activity.
+        questions: the rows of its table.
 
     Raises:
-        TangyError: the base is otherwise than this expects.
+        TangyError: the base lacks a line that is to be replaced.
     """
     most = max(len(one.options) for one in questions)
     options = ", ".join(f'"{letter}"' for letter in LETTERS[:most])

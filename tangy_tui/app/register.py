@@ -14,7 +14,7 @@ from tangy_profiles.store import Store
 
 
 def registered(store: Store) -> tuple[Person, ...]:
-    """Return who takes part, archived people and guests left out."""
+    """Return who takes part, without archived people and guests."""
     archived = archived_people(store)
     added = [e.person for e in store.events(PersonAdded) if e.person and not e.record.guest]
     known = {person.id: person for person in load_people(MOST_PEOPLE)}
@@ -23,7 +23,7 @@ def registered(store: Store) -> tuple[Person, ...]:
 
 
 def archived_people(store: Store) -> list[str]:
-    """Return the ids of the people who take part no more."""
+    """Return the ids of archived people, who no longer take part."""
     archived: dict[str, bool] = {}
     for event in store.events(PersonArchived):
         archived[str(event.person)] = event.record.on
@@ -36,7 +36,7 @@ def guest_ids(store: Store) -> list[str]:
 
 
 def guests_today(store: Store) -> tuple[Person, ...]:
-    """Return the guests of this day who have not left again, first come first."""
+    """Return today's guests who have not left, in order of arrival."""
     archived = archived_people(store)
     return tuple(guest for guest, today in _guests(store) if today and guest.id not in archived)
 
@@ -48,7 +48,7 @@ def past_guests(store: Store) -> tuple[Person, ...]:
 
 
 def _guests(store: Store) -> Iterator[tuple[Person, bool]]:
-    """Give each guest, and whether they came on this day, as the clock on the wall has it."""
+    """Yield each guest, and whether they came today in local time."""
     today, names = store.now().astimezone().date(), store.names()
     for event in store.events(PersonAdded):
         if event.person and event.record.guest:
@@ -57,16 +57,16 @@ def _guests(store: Store) -> Iterator[tuple[Person, bool]]:
 
 
 def participants(store: Store, count: int) -> tuple[Person, ...]:
-    """Return the first `count` participants; if there are fewer, numbered users fill up.
+    """Return the first `count` participants; if there are fewer, add numbered users.
 
     Raises:
-        ProfileError: so many cannot play.
+        ProfileError: the number of people is out of range.
     """
     people = registered(store)
     if count == REGISTERED:
         return (*people, *guests_today(store))[:MOST_PEOPLE]
     archived = archived_people(store)
-    numbered = load_people(count)  # which refuses what cannot be
+    numbered = load_people(count)  # refuses a number out of range
     more = [p for p in load_people(MOST_PEOPLE) if p.id not in archived and p not in people]
     return (*people, *more)[: len(numbered)]
 
@@ -89,7 +89,7 @@ def add_person(store: Store, *, guest: bool = False) -> str:
     """Register a person, and return the id.
 
     Raises:
-        TangyError: there is no room for more.
+        TangyError: the most people take part already.
     """
     if len(participants(store, REGISTERED)) >= MOST_PEOPLE:
         raise TangyError(f"{MOST_PEOPLE} people take part already: archive somebody first.")
@@ -105,7 +105,7 @@ def add_person(store: Store, *, guest: bool = False) -> str:
 
 
 def archive_person(store: Store, person: str, *, on: bool = True) -> None:
-    """Let a person take part no more, or again.
+    """Archive a person, who then no longer takes part, or restore them.
 
     Raises:
         TangyError: nobody would be left.

@@ -1,4 +1,4 @@
-"""What staff do with a robot in a game: call again, take a call back, ask for help, drive."""
+"""The commands of staff that need a real robot: call again, ask for help, report, drive."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 STOPPED, ENDED = "staff stopped it", "staff ended the game"
 UNCLEAR, UNCLEAR_SURE = "?", 0.5
-"""The end of an answer that staff have not understood clearly, and how sure it is."""
-DRIVE_AGAIN = 0.1  # s from one twist to the next: a robot that hears none stands
+"""The suffix of an answer that staff did not understand clearly, and its probability."""
+DRIVE_AGAIN = 0.1  # s between two velocity commands: without them the robot stops
 
 
 class RobotControls:
-    """A robot that is there, or (None) none: then each says so."""
+    """Controls a real robot; without one (None), its commands are refused."""
 
     def __init__(
         self,
@@ -41,16 +41,16 @@ class RobotControls:
         *,
         paced: bool = True,
     ) -> None:
-        """Take the world of a robot; `note` logs what staff did, `stopped` tells of their STOP.
+        """Control the robot of a world; `note` logs what staff did, `stopped` reports their STOP.
 
-        Where it is `paced`, people are let time between two calls.
+        If `paced`, people get time between two calls.
         """
         self._robot = robot
         self._note = note
         self._stopped = stopped
         self.paced = paced and robot is not None
         self.driving = False
-        """Whether it is driven by hand now."""
+        """Whether staff are driving it by hand."""
 
     def stop(self, why: str = STOPPED) -> None:
         """Stop at once, ahead of all queued commands; latched until staff release it."""
@@ -58,7 +58,7 @@ class RobotControls:
             self._robot.link.stop(why, by=STAFF)
 
     def release(self, *, everybody: bool = False) -> None:
-        """Release the stop of staff, or of the given source."""
+        """Release the stop of staff, or of everybody."""
         if self._robot is not None:
             self._robot.link.release(**({} if everybody else {"by": STAFF}))
 
@@ -69,26 +69,26 @@ class RobotControls:
 
     @property
     def going(self) -> str:
-        """Where it is driving to now, a person's id or the front; "" where it drives nowhere."""
+        """The destination it is driving to, a person's id or the front; "" if it is not driving."""
         return "" if self._robot is None else self._robot.link.state.going
 
     @property
     def lets(self) -> str:
-        """For whom it stands on its way, as `RobotState.lets` has it; "" for nobody."""
+        """For whom it waits on its way, as in `RobotState.lets`; "" for nobody."""
         return "" if self._robot is None else self._robot.link.state.lets
 
     def rests(self, decision: Decision) -> bool:
-        """Say whether it is too early for the next call."""
+        """Return whether it is too early for the next call."""
         if self._robot is None or not (self.paced and decision.sure):
             return False
         behaviour = self._robot.activity.behaviours[decision.behaviour]
         return behaviour.effect == "draw" and self._robot.calls_in > 0
 
     def do(self, command: CallAgain | AskFor | Tell | Drive) -> StaffNote:
-        """Do what only a robot that is there can do.
+        """Carry out a command that needs a real robot.
 
         Raises:
-            TangyError: it cannot.
+            TangyError: it failed.
         """
         robot = self._robot
         if robot is None:
@@ -110,7 +110,7 @@ class RobotControls:
         return StaffNote("call again", label)
 
     def _tell(self, robot: LiveWorld, command: Tell) -> StaffNote:
-        """Let a game that is declared by facts know what a person says or does."""
+        """Report to a declared activity what a person says or does."""
         from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
 
         said = command.words
@@ -125,12 +125,12 @@ class RobotControls:
         teller = "a voice" if command.source == "speech" else "staff"
         self._note(f"{teller} told of {command.person or 'the group'}: {said}")
         asked = robot.may_ask_again(command.person or about(robot.game))
-        if unclear and not asked:  # staff are asked in their place
+        if unclear and not asked:  # then the game asks staff instead
             return StaffNote("not told", words=", ".join(sayable(robot.game)))
         return StaffNote("told", command.person or "", said)
 
     def _tell_of_card(self, eyes: StaffEyes, command: Tell) -> StaffNote:
-        """Let a robot that sees no cards know how the one beside it is."""
+        """Report the state of the card beside a robot that cannot read cards."""
         person, said = eyes.asks, command.words
         if not person:
             return StaffNote("nothing to tell")
@@ -146,7 +146,7 @@ class RobotControls:
         return ("", ()) if eyes is None else (eyes.asks, tuple(eyes.sayable))
 
     def _drive(self, robot: LiveWorld, command: Drive) -> StaffNote:
-        """Drive by hand for a while; a STOP, which waits for nothing, ends it."""
+        """Drive by hand for a while; a STOP ends it at once."""
         forward, turn = TWISTS[command.direction]
         until = time.monotonic() + min(command.seconds, LONGEST_DRIVE)
         self.driving = True

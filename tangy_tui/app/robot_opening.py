@@ -1,4 +1,4 @@
-"""Opening a robot for games: the one that is there, or the bench, and the world that it makes."""
+"""Opens a real robot or the bench for games, and creates its world."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ if TYPE_CHECKING:
 W = TypeVar("W", bound=LiveWorld)
 B = TypeVar("B", bound=BenchedWorld)
 
-LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: what goes wrong in the processes
-PICTURES = 10  # of each drawn face that the bench's people are known by
+LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: errors of the processes
+PICTURES = 10  # of each drawn face, to recognise the simulated people
 CAMERA = "camera"
 
 Opened = TypeVar("Opened")
 Opening = Callable[[bool, Cancellation], AbstractContextManager[Opened]]
-"""Opens a robot, or its bench (in a hurry, if that is wanted), unless it is called off."""
+"""Opens a robot or its bench (stepped, if wanted), unless it is cancelled."""
 WorldOpening = Opening[LiveWorld]
-"""Opens it for games."""
+"""Opens one of them for games."""
 
 
 def opening_of(
@@ -54,11 +54,11 @@ def opening_of(
     """Return a callable that opens the robot or its bench.
 
     Args:
-        workspace: whose robot it is.
-        bench: its devices are simulated.
-        injections: the faults that are to come on the bench.
-        own: what only a robot that is there is told: its cameras, request sensor, and cards.
-        both: what both are told, as `open_bench` and `open_robot` have it.
+        workspace: the workspace with the robot.
+        bench: simulate its devices.
+        injections: the faults to inject on the bench.
+        own: options for a real robot only: its cameras, request sensor, and cards.
+        both: options for both; see `open_bench` and `open_robot`.
     """
     from tangy_profiles.fault_file import load_faults
 
@@ -76,7 +76,7 @@ def opening_of(
 
 
 def _named(own: Mapping[str, Any]) -> list[str]:
-    """Return the devices that are driven by what a command names, and not the robot's file."""
+    """Return the devices whose driver the command line names, rather than the robot's file."""
     cameras = [str(given).partition("=")[0] for given in own.get("cameras", ())]
     return [*cameras, *(["requests"] if own.get("requests") else [])]
 
@@ -98,20 +98,20 @@ def open_bench(
     """Open a bench that simulates the robot's devices.
 
     Args:
-        workspace: what it belongs to.
-        seed: of the people, their cards, and all that is left to chance.
-        stepped: in a hurry: time passes as fast as it can be computed.
+        workspace: the workspace with the robot.
+        seed: determines the people, their cards, and all random events.
+        stepped: simulated time runs as fast as it can be computed.
         pace: s between calls.
-        book: the fault rules, by which a behaviour is broken off.
-        injections: the faults that are to come in each game.
+        book: the fault rules that abort a behaviour.
+        injections: the faults to inject in each game.
         kind: the kind of world.
-        map_: the robot finds its way by this map, not by the measures of the room.
-        lost: the robot is not told where it stands.
-        cancellation: by which this can be called off before it is open.
+        map_: localise by this map file, not by the geometry of the room.
+        lost: do not tell the robot its initial pose.
+        cancellation: cancels the opening.
 
     Raises:
-        Cancelled: it was called off.
-        TangyError: the bench or the robot process does not begin.
+        Cancelled: it was cancelled.
+        TangyError: the bench or the robot process does not start.
     """
     folder, has = workspace.store.folder, workspace.robot.devices
     cancellation = cancellation or Cancellation()
@@ -162,7 +162,7 @@ def open_bench(
 
 
 ROSBRIDGE = ("base", "stop_button", "arms")
-"""The devices of the bench that are reached by rosbridge, beside its voice."""
+"""The devices of the bench that use rosbridge, besides its voice."""
 _BENCH_VOICE = {"kind": "rosbridge", "play": "/voice/play"}
 
 
@@ -182,16 +182,17 @@ def open_robot(
     courtesies: Mapping[str, str] | None = None,
     cancellation: Cancellation | None = None,
 ) -> Iterator[LiveWorld]:
-    """Open a robot that is there, by the drivers of its profile; `pace` is in s.
+    """Open a real robot with the drivers of its profile; `pace` is in s.
 
-    Who asks is told by `requests` (and the `corners` of the table in its pictures), or by what the
-    robot's file names. It stands at the front, unless it is `lost`: then it is to find its place by
-    itself. `cards` are the numbers of the cards that were dealt, by person, `courtesies` what it
-    says to people for whom it waits. Until it is open it can be called off by `cancellation`.
+    `requests` names the sensor of requests, with the `corners` of the table in its pictures; by
+    default the robot's file names it. The robot starts at the front, unless it is `lost`: then it
+    localises itself. `cards` maps people to the numbers of their cards, `courtesies` are the
+    robot's
+    words to people for whom it waits. `cancellation` cancels the opening.
 
     Raises:
-        Cancelled: it was called off.
-        TangyError: the profile names none, or the robot process does not begin.
+        Cancelled: it was cancelled.
+        TangyError: the profile names no drivers, or the robot process does not start.
     """
     check_drivers(workspace.robot)
     from tangy_hw.drivers.chest_pairing import keep_pairing
@@ -229,10 +230,10 @@ def open_robot(
 
 
 def check_drivers(robot: Robot) -> None:
-    """Look whether a robot's file says how it can be reached.
+    """Check that a robot's file names drivers.
 
     Raises:
-        DeviceError: it names no drivers.
+        DeviceError: it names none.
     """
     if not robot.drivers:
         raise DeviceError(
@@ -265,7 +266,7 @@ def _linked(
     )
     try:
         link.start()
-        link.beat()  # a game begins by what the robot says of itself
+        link.beat()  # a game starts from the robot's state
         world = kind(
             workspace.activity,
             list(workspace.names),
@@ -285,7 +286,7 @@ def _linked(
 
 
 class _Diagnosis:
-    """Says which faults the devices show, of themselves."""
+    """Diagnoses faults from the readings of the devices alone."""
 
     def __init__(self, book: FaultBook, robot: Robot) -> None:
         self._book = book
@@ -301,10 +302,10 @@ class _Diagnosis:
 
 
 def check_map(workspace: Workspace, map_: str) -> None:
-    """Look whether a robot could play by a map, before one is switched on.
+    """Check that a robot can play by a map, before it is switched on.
 
     Raises:
-        TangyError: it is no map, or the robot cannot stand there where it has to.
+        TangyError: it is no map, or the robot cannot reach its places on it.
     """
     from tangy_hw.navigation.map_files import MapFileError, read_map
     from tangy_hw.navigation.planning import PlanError, check_goal
@@ -330,10 +331,10 @@ def start_of(room: Room, people: tuple[str, ...]) -> tuple[float, float, float]:
 def _drawn_people(
     faces: Mapping[str, int], cancellation: Cancellation
 ) -> dict[str, list[list[float]]]:
-    """Describe the drawn faces of the bench's people, as an enrolment would.
+    """Compute the face vectors of the bench's people, as enrolment would.
 
     Raises:
-        Cancelled: it was called off meanwhile.
+        Cancelled: it was cancelled.
     """
     from tangy_hw.perception.faces.reader import HaarReader
     from tangy_sim.rendering.faces import drawn_face

@@ -1,4 +1,4 @@
-"""The rooms to play in: those that come with Tangy, and those a house keeps in its data folder."""
+"""The rooms to play in: those shipped with Tangy, and the house's own in its data folder."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ from tangy_profiles.room import Room, load_room, shipped_rooms
 from tangy_tui.app.choice_file import keep_choice, read_choice
 
 FOLDER = "rooms"
-"""Where a house keeps the files of its rooms, in the data folder."""
+"""The folder with the house's own room files, in the data folder."""
 FILE = "room.toml"
-"""Names the room that was chosen, in the data folder; without it, the number of people decides."""
+"""The file with the chosen room, in the data folder; without it, the number of people determines
+it."""
 
 
 @dataclass(frozen=True, slots=True)
 class KnownRoom:
-    """A room to choose: the word that loads it, and the room, or what is wrong with its file."""
+    """A room to choose: the source that loads it, and the room, or the mistake in its file."""
 
     source: str
     room: Room | None
@@ -27,7 +28,7 @@ class KnownRoom:
 
 
 def own_rooms(folder: Path) -> dict[str, Path]:
-    """Return the files of the rooms that a house keeps, by name."""
+    """Return the files of the house's own rooms, by name."""
     return {path.stem: path for path in sorted((folder / FOLDER).glob("*.toml"))}
 
 
@@ -55,10 +56,10 @@ def known_rooms(folder: Path, present: Room) -> Iterator[KnownRoom]:
 
 
 def check_places(room: Room, people: int) -> None:
-    """Make sure that so many people can sit in a room.
+    """Check that a number of people can sit in a room.
 
     Raises:
-        TangyError: they cannot.
+        TangyError: there are too few seats.
     """
     if people > room.places:
         raise TangyError(
@@ -67,7 +68,7 @@ def check_places(room: Room, people: int) -> None:
 
 
 def chosen_room(folder: Path) -> Room | None:
-    """Return the room that was chosen for this data folder, None if the people decide.
+    """Return the room chosen for this data folder, None if the number of people determines it.
 
     Raises:
         ProfileError: the file that names it, or the room's own file, has a mistake.

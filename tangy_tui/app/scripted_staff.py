@@ -1,4 +1,4 @@
-"""Scripted people in a game: a teacher who answers, and staff who clear what an expert mended."""
+"""Scripted staff in a game: they answer questions and clear faults after the expert's visit."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 TIMES_CALLED = 3
-"""An expert who comes so often and cannot mend it has the game given up."""
+"""After this many visits of the expert in vain, the game is given up."""
 
 
 def scripted_controller(game: Supervision, past: PastGame | None = None) -> GameController:
-    """Make a controller of simulated games with nobody but scripted people.
+    """Create a controller of simulated games with scripted staff.
 
     Args:
-        game: what runs them.
-        past: a game that was interrupted, which is taken up first.
+        game: runs the games.
+        past: an interrupted game to resume first.
     """
     return GameController(game, SCRIPTED, past=past)
 
 
 def go_on_by_script(control: GameController, *, expert: bool) -> list[Event]:
-    """Do the next thing, with scripted people where somebody is needed.
+    """Carry out the next step; scripted staff act if someone is needed.
 
     Args:
-        control: of the game.
-        expert: staff are there; without them a robot that halts ends the game.
+        control: runs the game.
+        expert: staff are there; without them, a fault that halts the robot ends the game.
     """
     told: Sequence[Result]
     game = control.supervision
@@ -39,17 +39,17 @@ def go_on_by_script(control: GameController, *, expert: bool) -> list[Event]:
         told = _clear(control) if expert else control.give_up()
     elif game.question is not None:
         told = _answer(control)
-    elif control.stopped:  # by somebody who looks on, and nobody is here to let it go on
+    elif control.stopped:  # by an onlooker; nobody is here to release the robot
         told = control.apply(EndGame())
     else:
-        if control.phase == "paused":  # as a game is that was interrupted
+        if control.phase == "paused":  # as an interrupted game is
             control.apply(GoOn())
         told = control.next()
     return [one for one in told if not isinstance(one, StaffNote)]
 
 
 def _answer(control: GameController) -> list[Result]:
-    """Answer the open question; give the game up where the activity expects nothing."""
+    """Answer the open question; give the game up if the activity expects no behaviour."""
     game = control.supervision
     question, activity = game.question, game.world.activity
     if question is None:
@@ -69,7 +69,7 @@ def _answer(control: GameController) -> list[Result]:
 def _clear(control: GameController) -> list[Result]:
     """Acknowledge what halts the robot, call the expert, and clear it, or give the game up."""
     game = control.supervision
-    told = list[Result](game.look())  # as screens do all the time
+    told = list[Result](game.look())  # screens check the devices all the time
     fault = game.halted
     for _ in range(TIMES_CALLED):
         told += control.carry_out(CallExpert()) + control.carry_out(Clear())

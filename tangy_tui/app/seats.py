@@ -1,4 +1,4 @@
-"""Who sits where somebody else usually sits, told once, and when that is over."""
+"""News about people who sit at another person's place, and about their return."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tangy_tui.monitoring.supervision import Event
 
 @dataclass(frozen=True, slots=True)
 class Seated:
-    """A person was seen at the place of another, or again at their own."""
+    """A person was seen at another's place, or at their own again."""
 
     person: str
     place: str
@@ -21,7 +21,7 @@ class Seats:
     """Collects news about who sits where, per game."""
 
     def __init__(self) -> None:
-        """Begin with everybody at their own place."""
+        """Start with everybody at their own place."""
         self._told: dict[str, str] = {}
 
     def news(self, events: Iterable[Event], sitting: Mapping[str, str]) -> list[Seated]:

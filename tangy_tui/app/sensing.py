@@ -1,4 +1,4 @@
-"""What a robot's devices say, see and read, asked of the robot process, for a screen to show."""
+"""What a robot's devices report, see and read, requested from the robot process for a screen."""
 
 from __future__ import annotations
 
@@ -20,29 +20,30 @@ from tangy_profiles.cards import Deck
 from tangy_profiles.health import Health
 from tangy_profiles.robot import Robot
 
-LOOK_SECONDS = 0.4  # between two questions how the cameras are
-ANSWER_SECONDS = 2.5  # in which an answer comes, a picture that is waited for as well
-AGAIN_SECONDS = 0.5  # after a question that was not answered
+LOOK_SECONDS = 0.4  # between two requests for the state of the cameras
+ANSWER_SECONDS = 2.5  # timeout of a request, including the wait for a new picture
+AGAIN_SECONDS = 0.5  # delay after a request without an answer
 OWN = ("link", "localisation", "navigator")
-"""What the robot process tells of by itself, with no driver for it."""
+"""Parts that the robot process reports itself, without a driver."""
 OWN_SOURCE = "the robot process"
-PAGE = "page"  # the kind of driver whose address is known when it is open
+PAGE = "page"  # the kind of driver whose address is known once it is open
 
 
 class LinkedSensors:
     """The devices of a robot, read through its process; satisfies `sensor_lines.Sensing`.
 
-    Within `async with` it asks how the cameras are. Cards are read when the game wants it, not
-    because somebody looks.
+    Within `async with` it polls the state of the cameras. It shows the card that the game read
+    last,
+    and triggers no reading of its own.
     """
 
     def __init__(self, link: RobotLink, robot: Robot, deck: Deck) -> None:
-        """Prepare it.
+        """Prepare the polling.
 
         Args:
-            link: the robot process.
+            link: the link to the robot process.
             robot: its profile.
-            deck: whose cards are read.
+            deck: the deck of the cards to read.
         """
         self._link = link
         self._deck = deck
@@ -82,7 +83,7 @@ class LinkedSensors:
 
     @property
     def cards(self) -> CardSight:
-        """What the robot has read of cards last."""
+        """The card that the robot read last."""
         return self._cards
 
     @contextmanager
@@ -91,7 +92,7 @@ class LinkedSensors:
         yield
 
     def source(self, device: str) -> str:
-        """Return where the data of a device comes from: a source of pictures, or a driver."""
+        """Return the source of a device's data: of pictures, or a driver."""
         if device in self._sights:
             return self._sights[device][0]
         if device == "requests":
@@ -105,7 +106,7 @@ class LinkedSensors:
         return f"{kind} {driver.get('at', '')}".rstrip()
 
     def sight(self, device: str) -> Sight:
-        """Return the state of a camera as it was told last, and how old its picture is now."""
+        """Return the last known state of a camera, with the present age of its picture."""
         now, silent = time.monotonic(), self._link.silent
         found = self._sights.get(device)
         if found is None:
@@ -122,7 +123,7 @@ class LinkedSensors:
 
     async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Frame | None:
         """Return what a camera sees, as large as fits; None if nothing newer than `after` comes."""
-        if self._link.pid != self._pid:  # another process counts its pictures anew
+        if self._link.pid != self._pid:  # another process numbers its pictures from 0
             self._pid, after = self._link.pid, -1
         told = await self._ask("picture", device=device, fit=list(fit), after=after)
         if told is None or "pixels" not in told:
@@ -132,7 +133,7 @@ class LinkedSensors:
         return Frame(told["seq"], time.monotonic(), width, height, pixels, self.sight(device))
 
     async def _follow(self) -> None:
-        """Ask how the cameras are, again and again."""
+        """Poll the state of the cameras."""
         while True:
             told = await self._ask("sights")
             if told is not None:
@@ -140,13 +141,13 @@ class LinkedSensors:
             await asyncio.sleep(LOOK_SECONDS)
 
     async def _ask(self, do: Request, **what: Any) -> dict[str, Any] | None:
-        """Ask the robot process; None if it cannot tell."""
-        if not self._link.silent:  # or lines would heap up before one that hangs
+        """Send a request to the robot process; None if it does not answer."""
+        if not self._link.silent:  # or requests would pile up for a process that hangs
             answer = asyncio.wrap_future(self._link.ask(do, **what))
             answer.add_done_callback(_heard)
             with suppress(DeviceError, TimeoutError):
                 async with asyncio.timeout(ANSWER_SECONDS):
-                    # Whoever asks may leave; an answer that is called off trips up the link.
+                    # The caller may be cancelled; cancelling the answer would break the link.
                     return await asyncio.shield(answer)
         await asyncio.sleep(AGAIN_SECONDS)
         return None
@@ -173,6 +174,6 @@ class LinkedSensors:
 
 
 def _heard(answer: asyncio.Future[dict[str, Any]]) -> None:
-    """Take note of how an answer went, that nobody may wait for any more."""
+    """Retrieve the exception of an answer that nobody may await any more."""
     if not answer.cancelled():
         answer.exception()

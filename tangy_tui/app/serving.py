@@ -1,7 +1,7 @@
-"""The program in a browser: each page opened with the token runs it in a process of its own.
+"""The application in a browser: each page opened with the token runs it in its own process.
 
-Textual's own server (textual-serve) does that; what is ours is who may come in. The token is asked
-for once and then kept by the browser in a cookie that no other site's page is sent with.
+Textual's own server (textual-serve) does that; this module adds access control. The browser sends
+the token once, then keeps it in a cookie that is not sent with requests from other sites.
 """
 
 from __future__ import annotations
@@ -21,28 +21,28 @@ if TYPE_CHECKING:
 
 LOOPBACK = "127.0.0.1"
 COOKIE = "tangy_token"
-TOKEN = "token"  # noqa: S105 - what it is called in the address
+TOKEN = "token"  # noqa: S105 - its name in the URL
 TOKEN_BYTES = 16
-HTTP = 80  # the port that browsers do not say
+HTTP = 80  # the port that browsers omit
 RUN = "from tangy_tui.cli import main; main()"
 EVERYWHERE = ("0.0.0.0", "::", "")  # noqa: S104 - they are refused
-"""Where a server would listen at all addresses: no browser can be sent there."""
+"""Wildcard addresses, to which no browser can connect."""
 CLOSES_SECONDS = 3.0
-"""In which browsers are to say that their page is closed."""
-LONGEST_DAY = 12 * 3600  # s that a browser may stay
+"""The time browsers get to acknowledge that their page is closed."""
+LONGEST_DAY = 12 * 3600  # s until the cookie expires
 
 
 class NoServer(TangyError):
-    """What serves pages is not installed."""
+    """The package that serves pages is not installed."""
 
 
 def new_token() -> str:
-    """Make a token that nobody can guess."""
+    """Create a random token."""
     return secrets.token_urlsafe(TOKEN_BYTES)
 
 
 def command_line(*words: str) -> str:
-    """Return the command that runs Tangy with these words, as a shell takes it."""
+    """Return the shell command that runs Tangy with these words."""
     return shlex.join([sys.executable, "-P", "-c", RUN, *words])
 
 
@@ -59,13 +59,13 @@ def known_as(host: str, port: int) -> set[str]:
 
 
 def make_server(command: str, host: str, port: int, token: str) -> Any:
-    """Make the server; `serve()` runs it until it is interrupted.
+    """Create the server; `serve()` runs it until it is interrupted.
 
     Args:
-        command: what each page runs.
-        host: where it listens.
-        port: where it listens.
-        token: what whoever comes in has to know.
+        command: the command line that each page runs.
+        host: the host to listen on.
+        port: the port to listen on.
+        token: the token that a browser must send.
 
     Raises:
         NoServer: textual-serve is not installed.
@@ -80,7 +80,7 @@ def make_server(command: str, host: str, port: int, token: str) -> Any:
     (name,) = allowed
 
     class TokenServer(Server):  # type: ignore[misc,unused-ignore]
-        """Lets in only those who know the token."""
+        """Admits only browsers with the token."""
 
         async def _make_app(self) -> web.Application:
             app = await super()._make_app()
@@ -89,7 +89,7 @@ def make_server(command: str, host: str, port: int, token: str) -> Any:
             return app
 
         async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
-            """Run a page, and take note of it until it is closed."""
+            """Run a page, and keep track of it until it is closed."""
             page = asyncio.current_task()
             assert page is not None  # noqa: S101 - this is a coroutine
             pages.add(page)
@@ -99,23 +99,23 @@ def make_server(command: str, host: str, port: int, token: str) -> Any:
                 pages.discard(page)
 
         async def on_shutdown(self, app: web.Application) -> None:
-            """Close the pages that are open: a browser would not until it is asked."""
+            """Close the open pages: browsers do not until they are asked to."""
             for page in (there := list(pages)):
                 page.cancel()
             if there:
                 await asyncio.wait(there, timeout=CLOSES_SECONDS)
 
         async def on_startup(self, app: web.Application) -> None:
-            """Print nothing: the caller tells the page's address."""
+            """Print nothing: the caller prints the address of the page."""
 
         def initialize_logging(self) -> None:
-            """Leave the program's own log as it is."""
+            """Leave the application's own logging as it is."""
 
     return TokenServer(command, host=host, port=port, title="Tangy", public_url=f"http://{name}")
 
 
 async def _keep_to_itself(request: web.Request, response: web.StreamResponse) -> None:
-    """Let the page load nothing from elsewhere: its typeface would come from a stranger."""
+    """Forbid the page to load anything from elsewhere: its font would come from a third party."""
     here = f"'self' ws://{request.host}"
     response.headers["Content-Security-Policy"] = (
         f"default-src 'self'; connect-src {here}; img-src 'self' data:; font-src 'self' data:; "
@@ -127,11 +127,11 @@ async def _keep_to_itself(request: web.Request, response: web.StreamResponse) ->
 
 
 def only_known(token: str, allowed: set[str]) -> Any:
-    """Make the middleware that asks for the token, and refuses pages of other sites.
+    """Create the middleware that asks for the token, and refuses requests from other sites.
 
     Args:
-        token: what has to be known.
-        allowed: by which names and ports this machine may be called.
+        token: the token to ask for.
+        allowed: the Host headers by which this machine may be addressed.
     """
     from aiohttp import web
 
@@ -140,7 +140,7 @@ def only_known(token: str, allowed: set[str]) -> Any:
         request: web.Request,
         handler: Callable[[web.Request], Awaitable[web.StreamResponse]],
     ) -> web.StreamResponse:
-        if request.host not in allowed:  # another site's name that was made to lead here
+        if request.host not in allowed:  # a foreign host name that resolves to this machine
             raise web.HTTPMisdirectedRequest
         origin = request.headers.get("Origin")
         if origin is not None and origin.partition("://")[2] != request.host:

@@ -1,8 +1,8 @@
-"""The door of a data folder through which others look on while one program runs its games.
+"""The socket in a data folder through which onlookers follow the games of a running program.
 
-One JSON line each way: who comes in is told who drives and, whenever it changes, the view of the
-game (`game_view`). They may stop the robot, and nothing else. The log they read by themselves.
-Nothing is done while nobody looks on.
+One JSON line each way: an onlooker receives the snapshot of the game (`game_view`) on connecting
+and whenever it changes, and may stop the robot. Onlookers read the log themselves. Without
+onlookers the thread only waits.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger(__name__)
 
 FILE = "tangy.sock"
-LOOK_SECONDS = 0.2  # between two views
+LOOK_SECONDS = 0.2  # between two snapshots
 MOST_GUESTS = 32
-LONGEST_LINE = 1000  # bytes that a guest may send before a line ends
-LONGEST_NAME = 40  # characters of a guest's name
+LONGEST_LINE = 1000  # bytes that an onlooker may send before a line ends
+LONGEST_NAME = 40  # characters of an onlooker's name
 
 StoppedBy = Callable[[str], object]
-"""Is told, by the door's thread, the name of a guest who stopped the robot."""
+"""Called by the socket's thread with the name of an onlooker who stopped the robot."""
 
 
 class SessionDoor:
-    """Lets others look on. `open` it once; `attach` each controller of games."""
+    """Serves onlookers. `open` it once; `attach` each controller of games."""
 
     def __init__(self, folder: Path) -> None:
-        """Name the door of a data folder; nobody comes in before `open`."""
+        """Serve a data folder; nobody can connect before `open`."""
         self._folder = folder
         self._control: GameController | None = None
         self._stopped: StoppedBy = lambda guest: None
@@ -57,18 +57,18 @@ class SessionDoor:
         """Show the games of a controller from now on.
 
         Args:
-            control: of the games.
-            stopped: is told who stopped the robot, after it was stopped.
+            control: runs the games.
+            stopped: is called with the name of an onlooker who stopped the robot, afterwards.
         """
         self._control, self._stopped = control, stopped
 
     def detach(self, control: GameController) -> None:
-        """Show the games of a controller no more, if they are the ones that are shown."""
+        """Stop showing the games of a controller, if they are the ones shown."""
         if self._control is control:
             self._control, self._stopped = None, lambda guest: None
 
     def open(self) -> None:
-        """Let others in, where the system has such doors; may be repeated."""
+        """Listen for onlookers, if the system has Unix sockets; may be repeated."""
         if self._thread is not None:
             return
         try:
@@ -81,12 +81,12 @@ class SessionDoor:
         self._thread.start()
 
     def close(self) -> None:
-        """Show everybody out; may be repeated."""
+        """Disconnect everybody; may be repeated."""
         thread, self._thread = self._thread, None
         if thread is None or self._wake is None:
             return
         self._ends.set()
-        with suppress(OSError):  # it was awake, and has gone already
+        with suppress(OSError):  # it is awake, and may have ended already
             self._wake[1].send(b".")
         thread.join()
         with suppress(OSError):
@@ -112,11 +112,11 @@ class SessionDoor:
                 guest.close()
 
     def _let_in(self, ready: selectors.BaseSelector) -> None:
-        assert self._socket is not None  # noqa: S101 - it has just said that somebody is there
+        assert self._socket is not None  # noqa: S101 - it is ready to accept
         with suppress(OSError):
             guest, _ = self._socket.accept()
             guest.setblocking(False)
-            if len(self._guests) >= MOST_GUESTS:  # whoever comes may want to stop the robot
+            if len(self._guests) >= MOST_GUESTS:  # make room: the new one may want to stop the robot
                 first = next(iter(self._guests))
                 self._hear(first, ready)
                 self._show_out(first, ready)
@@ -125,7 +125,7 @@ class SessionDoor:
             self._tell(guest, self._look(), ready)
 
     def _hear(self, guest: socket.socket, ready: selectors.BaseSelector) -> None:
-        """Take what a guest says; one who has gone, or says too much, is shown out."""
+        """Read from an onlooker; disconnect one who has gone or sends too long a line."""
         try:
             said = guest.recv(LONGEST_LINE)
         except BlockingIOError:
@@ -142,7 +142,7 @@ class SessionDoor:
                 self._tell(guest, _line({"stopped": self._stop(name)}), ready)
 
     def _stop(self, name: str) -> bool:
-        """Stop the robot, and say if there was one; the door is there for the next stop as well."""
+        """Stop the robot, and return whether it is stopped; errors must not end the thread."""
         control, stopped = self._control, self._stopped
         if control is None:
             return False
@@ -169,7 +169,7 @@ class SessionDoor:
         return _line({"pid": os.getpid(), "view": None if view is None else written(view)})
 
     def _tell(self, guest: socket.socket, line: bytes, ready: selectors.BaseSelector) -> None:
-        """Tell a guest a line; one who does not listen is shown out, so that nobody waits."""
+        """Send a line to an onlooker; disconnect one who does not read, so that nobody waits."""
         try:
             whole = guest.send(line) == len(line)
         except OSError:
@@ -190,7 +190,7 @@ def _line(said: object) -> bytes:
 
 
 def _stops(line: bytes) -> str | None:
-    """Return who stops the robot by a line, None if it says anything else."""
+    """Return the name of an onlooker whose line stops the robot, None for any other line."""
     try:
         said = json.loads(line)
     except (ValueError, RecursionError):
@@ -200,7 +200,7 @@ def _stops(line: bytes) -> str | None:
 
 
 def _listen(folder: Path) -> socket.socket:
-    """Make the socket; replace one that a killed program left behind."""
+    """Create the socket; replace one that a killed program left behind."""
     listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
         with reachable(folder) as place:
@@ -218,7 +218,7 @@ def _listen(folder: Path) -> socket.socket:
 
 @contextmanager
 def reachable(folder: Path) -> Iterator[str]:
-    """Give a short path of a folder: sockets may have some hundred characters only."""
+    """Yield a short path of a folder: a socket's path is limited to about a hundred characters."""
     opened = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         short = Path(f"/proc/self/fd/{opened}")
@@ -228,6 +228,6 @@ def reachable(folder: Path) -> Iterator[str]:
 
 
 def _view_of(control: GameController) -> GameView | None:
-    from tangy_tui.app.game_view import view_of  # only once somebody looks on
+    from tangy_tui.app.game_view import view_of  # only if somebody connects
 
     return view_of(control)

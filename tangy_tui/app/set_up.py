@@ -1,7 +1,7 @@
-"""What staff choose and check before a live game: who is here, who sits where, how it is played.
+"""What staff choose and check before a live game: who is here, seats, activity, plan, devices.
 
-The page and the lines drive the same object. The robot may be off until `begin`: then only what
-needs none is known. Looking at a card and speaking are done when staff ask for it; nothing drives.
+The screen and the console drive the same object. The robot may be off until `begin`; until then
+most checks are unknown. The robot reads a card and speaks only if staff ask, and never drives.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ T = TypeVar("T")
 CheckName = Literal["robot", "battery", "tablet", "cards", "faces", "sound"]
 CHECKS: tuple[CheckName, ...] = ("robot", "battery", "tablet", "cards", "faces", "sound")
 CheckState = Literal["off", "ready", "not ready", "not checked", "not told"]
-"""Of a check: the robot is off, all is well or not, nobody has looked yet, or no device tells."""
+"""Of a check: the robot is off, passed, failed, not checked yet, or no device reports it."""
 
 MINUTES = (0, 15, 20, 30, 40, 60, 90)
-"""How long a session may be planned to take; 0: it is left open."""
+"""The planned lengths of a session in minutes; 0: no limit."""
 APART = ("localisation", "screen")
-"""Devices that do not count as the robot's: it finds its place later, the tablet is told apart."""
+"""Devices left out of the robot check: it localises later, and the tablet has its own check."""
 LEAST_BATTERY = 0.2
-"""The share of its charge below which a robot should be charged first."""
+"""The fraction of its charge below which a robot should be charged first."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One readiness check; `about` names the problem, or the result."""
+    """A readiness check; `about` names the problem, or the result."""
 
     name: CheckName
     state: CheckState
@@ -52,11 +52,11 @@ class Check:
 
 @dataclass
 class SetUp:
-    """The choices for the games of a session. Change them by its methods; `plan` is what comes."""
+    """The choices for the games of a session. Its methods change them; `plan` is the result."""
 
     workspace: Workspace
     seats: list[str] = field(default_factory=list)
-    """The ids of those who take part, in the order of their seats."""
+    """The ids of the participants, in the order of their seats."""
     away: set[str] = field(default_factory=set)
     patterns: list[str] = field(default_factory=list)
     several: bool = False
@@ -67,26 +67,26 @@ class SetUp:
     world: LiveWorld | None = None
     """The robot, once it is on."""
     card: str = ""
-    """What was seen of a card that was held before the robot."""
+    """The number of the last card that the robot read."""
     face: str = ""
-    """Who was seen last that stood before the robot, by id."""
+    """The id of the last person that the robot recognised."""
     said: bool = False
     heard: bool = False
 
     @classmethod
     def of(cls, workspace: Workspace, pace: float = USUAL_PACE) -> SetUp:
-        """Begin with everybody here, as they sat last; `pace` is in s from call to call."""
+        """Start with everybody present, in their last seats; `pace` is in s from call to call."""
         return cls(workspace, seats_as_before(workspace), pace=pace)
 
     # ----------------------------------------------------------------------------- the choices
 
     def toggle(self, person: str) -> None:
-        """Take a person for being here, or for not being here."""
+        """Mark a present person as absent, or an absent one as present."""
         self.away ^= {person}
 
     @property
     def tables(self) -> tuple[tuple[str, ...], ...]:
-        """Who sits at each table, as the tables stand in the room."""
+        """Who sits at each table, in the order of the tables in the room."""
         at_tables = self.workspace.room.at_tables(len(self.seats))
         return tuple(tuple(self.seats[place] for place in sitting) for sitting in at_tables)
 
@@ -96,7 +96,7 @@ class SetUp:
         self.change_seats(person, self.seats[min(len(self.seats) - 1, max(0, at + by))])
 
     def change_seats(self, person: str, other: str) -> None:
-        """Let two people change seats, as long as the robot is off."""
+        """Swap the seats of two people, as long as the robot is off."""
         at, to = self.seats.index(person), self.seats.index(other)
         if self.world is None and to != at:
             self.seats[at], self.seats[to] = self.seats[to], self.seats[at]
@@ -114,22 +114,22 @@ class SetUp:
 
     @property
     def teams_play(self) -> bool:
-        """Whether teams take part, and not people one by one."""
+        """Whether teams take part instead of individuals."""
         return bool(self.workspace.activity.teams)
 
     def add(self, name: str, *, guest: bool) -> None:
-        """Let a person take part from now on, or as a guest today, as long as the robot is off.
+        """Add a person from now on, or a guest for today, as long as the robot is off.
 
-        Not while `teams_play`.
+        Does nothing if `teams_play`.
 
         Raises:
-            TangyError: there is no room for more, or the name cannot be given.
+            TangyError: there is no free seat, or the name cannot be given.
         """
         if self.world is None and not self.teams_play:
             self.seats.append(let_join(self.workspace, name, guest=guest))
 
     def rename(self, person: str, name: str) -> None:
-        """Give a person another name.
+        """Change a person's name.
 
         Raises:
             TangyError: it cannot be given.
@@ -137,12 +137,12 @@ class SetUp:
         self.workspace.rename(self.workspace.find_person(person), name)
 
     def activities(self) -> dict[str, str]:
-        """Return the titles of the activities that can be chosen, the present one first."""
+        """Return the titles of the activities to choose from, the present one first."""
         there = choosable(self.workspace.profile, self.workspace.activity)
         return {name: activity.title for name, activity in there}
 
     def play(self, activity: str) -> None:
-        """Play another activity, as long as the robot is off.
+        """Change to another activity, as long as the robot is off.
 
         Raises:
             TangyError: it cannot be played, as nobody has taught it.
@@ -163,14 +163,14 @@ class SetUp:
         self.away &= set(self.seats)
 
     def rooms(self) -> list[KnownRoom]:
-        """Return the rooms that can be chosen, the present one first."""
+        """Return the rooms to choose from, the present one first."""
         return list(known_rooms(self.workspace.store.folder, self.workspace.room))
 
     def choose_room(self, wanted: str) -> None:
-        """Play in another room from now on, as long as the robot is off.
+        """Change to another room, as long as the robot is off.
 
         Raises:
-            TangyError: there is no such room, its file has a mistake, or not everybody fits in.
+            TangyError: the room does not exist, its file has a mistake, or not everybody fits in.
         """
         if self.world is None:
             room = find_room(self.workspace.store.folder, wanted)
@@ -179,7 +179,7 @@ class SetUp:
             choose_room(self.workspace.store.folder, room)
 
     def choose_strength(self, name: str) -> None:
-        """Choose how strongly people may be spoken to, by name.
+        """Choose how strongly Tangy may speak to people, by name.
 
         Raises:
             TangyError: there is no such strength.
@@ -190,7 +190,7 @@ class SetUp:
         self.strength = name.casefold()
 
     def toggle_pattern(self, name: str) -> None:
-        """Play for a pattern after those that were chosen, or not any more."""
+        """Append a pattern to those to play for, or remove it."""
         if name in self.patterns:
             self.patterns.remove(name)
         else:
@@ -201,11 +201,11 @@ class SetUp:
         self.pace = next_pace(self.pace, by)
 
     def turn_minutes(self, by: int) -> None:
-        """Plan less or more time."""
+        """Plan a shorter (-1) or a longer (1) session."""
         self.minutes = _turned(MINUTES, self.minutes, by)
 
     def turn_strength(self, by: int) -> None:
-        """Choose how strongly people may be spoken to."""
+        """Choose a weaker (-1) or a stronger (1) way of speaking."""
         names = ("", *(one.name for one in self.workspace.activity.rules.strengths))
         self.strength = _turned(names, self.strength, by)
 
@@ -223,17 +223,17 @@ class SetUp:
         )
 
     def carry_out(self, world: LiveWorld) -> None:
-        """Play the next games of a world as was chosen.
+        """Apply the plan to the next games of a world.
 
         Raises:
-            TangyError: a pattern is not known.
+            TangyError: a pattern does not exist.
         """
         world.choose(self.plan)
 
     # ------------------------------------------------------------------------------ the checks
 
     def checks(self) -> list[Check]:
-        """Return how everything is that has to be ready, in the order in which it is looked at."""
+        """Return the results of all checks, in the order of `CHECKS`."""
         if self.world is None:
             return [Check(name, "off") for name in CHECKS]
         return [
@@ -251,7 +251,7 @@ class SetUp:
         return [check for check in self.checks() if check.state == "not ready"]
 
     def _robot(self) -> Check:
-        assert self.world is not None  # noqa: S101 - `checks` asks with a world alone
+        assert self.world is not None  # noqa: S101 - `checks` asks only with a world
         if self.world.link.silent:
             return Check("robot", "not ready", self.world.link.silent)
         ill = [r.device for r in self.world.health() if r.state != OK and r.device not in APART]
@@ -290,8 +290,8 @@ class SetUp:
         return Check("sound", state)
 
     def look_at_card(self) -> str:
-        """Look at a card that is held before the robot; return its number, "" if none is read."""
-        assert self.world is not None  # noqa: S101 - offered with a robot alone
+        """Read a card held before the robot; return its number, "" if none was read."""
+        assert self.world is not None  # noqa: S101 - offered only with a robot
         try:
             seen = self.world.commands.do("card", called=[], after=0.0, identify=True)
         except DeviceError:
@@ -300,11 +300,11 @@ class SetUp:
         return self.card
 
     def holder(self, card: int) -> str:
-        """Return who is known to have a card, "" for nobody."""
+        """Return the id of the known owner of a card, "" if there is none."""
         return "" if self.world is None else self.world.cards.dealt.owner(card)
 
     def comes_with(self, card: int, person: str) -> None:
-        """Take a person for being here, with a card."""
+        """Mark a person as present, with a card."""
         self.away.discard(person)
         if self.world is not None:
             self.world.cards.dealt.give(person, card)
@@ -321,7 +321,7 @@ class SetUp:
         return self.face
 
     def speak(self, words: str) -> bool:
-        """Say something that staff are to hear; return whether it could be said."""
+        """Say something for staff to hear; return whether that worked."""
         assert self.world is not None  # noqa: S101 - as above
         from tangy_hw.device_protocols import Picture
 
@@ -334,9 +334,9 @@ class SetUp:
 
 
 def seats_as_before(workspace: Workspace) -> list[str]:
-    """Let people sit as in the last game among people, or on the bench; return their ids.
+    """Seat people as in the last game with people or on the bench; return their ids.
 
-    People who were not in it sit behind the others.
+    People who were not in it come after the others.
     """
     there = [person.id for person in workspace.people]
     games = [event.record for event in workspace.store.events(GameBeginning)]
@@ -349,7 +349,7 @@ def seats_as_before(workspace: Workspace) -> list[str]:
 
 
 def battery_of(world: World | None) -> float | None:
-    """Return the share of its charge that a robot has, None where no device tells."""
+    """Return the fraction of a robot's charge, 0 to 1; None if no device reports it."""
     if world is None:
         return None
     for reading in world.health():

@@ -1,7 +1,7 @@
 """A world on the bench: injects faults into the devices, and scores perception against the truth.
 
-The bench knows how things really are; the robot does not. Only the count of what was read rightly
-(`PerceptionScore`) is told, when it has been read.
+The bench knows the ground truth, the robot does not. Perception is scored after each reading
+(`PerceptionScore`).
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from tangy_sim.worlds.injection_log import InjectionLog
 from tangy_sim.worlds.pending_injections import ToCome
 from tangy_tui.app.device_simulator import BenchError, DeviceSimulator
 
-EXPERT_SECONDS = 60.0  # that an expert takes on the bench
-NOTICED_SECONDS = 12.0  # of real time, in which devices that real time passes for show a fault
+EXPERT_SECONDS = 60.0  # that an expert's visit takes on the bench
+NOTICED_SECONDS = 12.0  # of real time, for devices that show a fault only after real time
 
 
 @dataclass
@@ -44,10 +44,10 @@ class PerceptionScore:
     reads: Counter[str] = field(default_factory=Counter)
     identities: Counter[str] = field(default_factory=Counter)
     off: list[float] = field(default_factory=list)
-    """How far off the robot believed to be after each drive, arrived or not, in metres."""
+    """Distance in m between believed and true position after each drive, arrived or not."""
 
     def to_json(self) -> dict[str, Any]:
-        """Return it as `tangy live --json` prints it."""
+        """Return the score as `tangy live --json` prints it."""
         off = sorted(self.off)
 
         def quantile(share: float) -> float | None:
@@ -61,7 +61,7 @@ class PerceptionScore:
 
 
 class BenchedWorld(LiveWorld):
-    """A real world on simulated devices. All faults are removed between games."""
+    """A live world on simulated devices. All faults are lifted between games."""
 
     played_in: GameWorld = BENCH
     bench: DeviceSimulator
@@ -70,7 +70,7 @@ class BenchedWorld(LiveWorld):
     def on(
         self, bench: DeviceSimulator, injections: Sequence[Injection] = (), seed: int = 1
     ) -> BenchedWorld:
-        """Name the bench that it is on, and the faults that are to come in each game."""
+        """Attach the bench, and set the faults to inject in each game."""
         self.bench = bench
         self.injections = tuple(injections)
         self.score = PerceptionScore()
@@ -81,27 +81,27 @@ class BenchedWorld(LiveWorld):
         self.cards.looked = self._check
         if self.eyes is not None:
             self.eyes.answer = self._told_by_staff
-        self._heard = 0  # of those who said that they would like help
+        self._heard = 0  # number of spoken requests passed on so far
         self._listens = False
         self._tablet: Tablet | None = None
         self._open_tablet()
         return self
 
     def _told_by_staff(self, person: str) -> ToldCard | None:
-        """Tell, as staff at the table would, how the card of a person is.
+        """Report a person's card as staff at the table would.
 
-        After a request they wait until the card has changed, or the person was given time.
+        After a request they wait until the card has changed, or the person has had time.
         """
         there = self.truth()["people"][person]
         numbers = self.numbers_on(there["card"]) or ()
         told = told_card(self.activity, self.called, numbers, there["marked"])
-        assert self.eyes is not None  # noqa: S101 - it is asked for by them
+        assert self.eyes is not None  # noqa: S101 - they ask for it
         waited = self.link.time - self.eyes.began
         waits = told == self.eyes.before and waited < PATIENCES * self.activity.patience
         return None if waits else told
 
     def _open_tablet(self) -> None:
-        """Open the page of the chest screen, another one after the robot process has begun anew."""
+        """Open the page of the chest screen, again after a restart of the robot process."""
         if self._tablet is not None:
             self._tablet.close()
         screen, code = self.link.screen, self.link.code
@@ -109,22 +109,22 @@ class BenchedWorld(LiveWorld):
         self._switch_tablet()
 
     def _read(self, text: str) -> None:
-        """Let the people at the table read what the tablet shows."""
+        """Let the simulated people read what the tablet shows."""
         with suppress(BenchError):  # it is being closed
             self.bench.do("read", text=text)
 
     def leave(self) -> None:
-        """Close what looks at the robot from outside."""
+        """Close the tablet's page."""
         if self._tablet is not None:
             self._tablet.close()
 
     def begin(self) -> ActivityState:
-        """Begin a game on the bench, with other cards, and nothing wrong."""
+        """Begin a game on the bench, with new cards and without faults."""
         self.cards.dealt.deal(self.bench.do("begin")["cards"])
         self.link.do("fail", device="navigator", state="OK")
         self._switch_tablet()
         if any(r.device == "voice" and r.state != OK for r in self.health()):
-            self.link.do("restart", device="voice")  # it is thought dead until it has spoken
+            self.link.do("restart", device="voice")  # it counts as dead until it has spoken
         self.came = []
         self.injection_log = InjectionLog()
         self._heard, self._listens = 0, False
@@ -136,21 +136,21 @@ class BenchedWorld(LiveWorld):
 
     @property
     def pending_injections(self) -> list[str]:
-        """The injections that have not come about in this game, but for those by chance."""
+        """The injections that have not occurred in this game, except those by chance."""
         return self._to_come.words
 
     @property
     def present(self) -> list[str]:
-        """The kinds of fault that are there."""
+        """The kinds of the present faults."""
         return [fault["kind"] for fault in self.truth()["faults"]]
 
     def truth(self) -> dict[str, Any]:
-        """Return how things really are."""
+        """Return the ground truth."""
         told: dict[str, Any] = self.bench.do("truth")["truth"]
         return told
 
     def observe(self) -> ActivityState:
-        """Return the joint state; staff at the bench pass on who says that they need help."""
+        """Return the joint state; simulated staff pass on spoken requests for help."""
         if self._listens and not self.over:
             spoken = self.truth()["spoken"]
             for person in spoken[self._heard :]:
@@ -161,7 +161,7 @@ class BenchedWorld(LiveWorld):
     # ------------------------------------------------------------------------ faults
 
     def inject(self, kind: str) -> None:
-        """Bring about a fault; what devices show at once is waited for.
+        """Inject a fault; if devices show it at once, wait until they do.
 
         Raises:
             KeyError: there is no such kind.
@@ -170,18 +170,18 @@ class BenchedWorld(LiveWorld):
         self.bench.do("inject", kind=kind)
         self.came.append((self.tracker.step + 1, kind))
         self.injection_log.came(chosen, self.tracker.step + 1, self.seconds)
-        if kind == "navigation-failed":  # there is no such program on the bench
+        if kind == "navigation-failed":  # the bench has no navigation program
             self.link.do("fail", device="navigator", state="ERROR")
         self._switch_tablet()
         if chosen.shows == injection.AT_ONCE and self.link.setup.stepped:
             self._let_show(chosen)
 
     def _let_show(self, kind: Kind) -> None:
-        """Wait until devices show a fault; needed where the bench is stepped."""
+        """Wait until the devices show a fault; needed if the bench is stepped."""
         self._pass_until(lambda: kind.code in self.commands.diagnosed(self.health()))
 
     def _pass_until(self, holds: Callable[[], bool]) -> None:
-        """Let a little time pass until something holds."""
+        """Let time pass until a condition holds, or the timeout is over."""
         until = time.monotonic() + NOTICED_SECONDS
         while not holds() and time.monotonic() < until:
             if self.link.setup.stepped:
@@ -190,7 +190,7 @@ class BenchedWorld(LiveWorld):
             self.link.beat()
 
     def lift(self, kind: str) -> None:
-        """Put a fault right."""
+        """Lift a fault."""
         self.bench.do("lift", kind=kind)
         if kind == "navigation-failed":
             self.link.do("fail", device="navigator", state="OK")
@@ -201,7 +201,7 @@ class BenchedWorld(LiveWorld):
             self._tablet.on = "screen-dead" not in self.present
 
     def can_show(self, kind: Kind, action: Action) -> bool:
-        """Say whether a fault of a kind would be seen if it came with an action."""
+        """Return whether a fault of this kind would be noticed if it came with an action."""
         tracker, behaviour = self.tracker, action.behaviour
         beside = tracker.place in tracker.queue
         match kind.shows:
@@ -224,7 +224,7 @@ class BenchedWorld(LiveWorld):
                 return True
 
     def execute(self, action: Action) -> Outcome:
-        """Let faults come that are due, and carry out the action."""
+        """Inject the faults that are due, and carry out the action."""
         if not self.over:
             self._let_faults_come(action)
             step = self.tracker.step + 1
@@ -259,7 +259,7 @@ class BenchedWorld(LiveWorld):
         return super().recover(remedy)
 
     def change(self, change: GameChange) -> None:
-        """Let something change in the game, of which the people on the bench know as well."""
+        """Apply a change to the game, and tell the simulated people about it."""
         super().change(change)
         match change.what:
             case "others first":
@@ -271,7 +271,7 @@ class BenchedWorld(LiveWorld):
             case "taken back":
                 self.bench.do("rules", taken_back=change.number)
             case _:
-                pass  # that is between staff and the robot
+                pass  # only concerns staff and the robot
 
     @property
     def _wins(self) -> dict[str, Any]:
@@ -288,13 +288,13 @@ class BenchedWorld(LiveWorld):
             with suppress(DeviceError):
                 self.link.do("wait", seconds=EXPERT_SECONDS)
             self._pass_until(lambda: remedy.fault not in self.commands.diagnosed(self.health()))
-        self.stood()  # that time is told here
+        self.stood()  # its result includes that time
         return max(0.0, self.link.time - began)
 
     # ------------------------------------------------------------------------ what is counted
 
     def _check(self, what: str, place: str, seen: Any) -> None:
-        """Count something that was seen, by how it really is."""
+        """Score something that the robot saw against the ground truth."""
         if what == "face":
             there = self.truth()["place"]
             word = "unknown" if seen is None else "right" if seen == there else "wrong"

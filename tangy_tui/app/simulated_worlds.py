@@ -1,4 +1,4 @@
-"""Which simulated world an activity is played in: that of its cards, or that of its facts."""
+"""The simulated world that suits an activity: one with cards, or one declared by facts."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ def game_world(
     injections: Sequence[Injection] | None,
     live: Callable[[], Health] | None = None,
 ) -> World:
-    """Make the simulated world of games.
+    """Create the simulated world for games.
 
     Args:
-        activity: what is played.
-        people: who takes part.
-        seed: of the random generators.
-        injections: faults that are to come; None makes a world without any.
-        live: what real devices report, in place of the simulated ones.
+        activity: the activity to play.
+        people: the ids of the participants.
+        seed: seeds the random generators.
+        injections: faults to inject; None creates a world without faults.
+        live: returns the readings of real devices, which replace simulated ones.
 
     Raises:
-        TangyError: faults are to come in an activity that has none.
+        TangyError: the activity has no faults to inject.
     """
     if isinstance(activity, DeclaredActivity):
         from tangy_sim.worlds.clarity import UNCLEAR
@@ -58,10 +58,11 @@ def game_world(
 
 
 def teaching_world(activity: Activity, shown: Demonstration, store: Store) -> World:
-    """Make the simulated world of a demonstration, in which people ask more often.
+    """Create the simulated world of a demonstration, in which people ask more often.
 
-    A guided one of an activity that is declared by facts brings about what the demonstrations
-    before it in the log have not shown.
+    The guided world of a declared activity creates situations that earlier demonstrations in the
+    log
+    have not covered.
     """
     if isinstance(activity, DeclaredActivity):
         return _declared_teaching(activity, shown, store)

@@ -1,7 +1,7 @@
-"""What staff have to see of a game at any time, as values: the call, the clock, people, what next.
+"""What staff always see of a game, as values: the call, the clock, people, the next step.
 
-It is read from what the world shows, without asking the robot for anything, so that it can be
-looked at as often as one likes while the game goes on beside it.
+It is derived from the world's scene without a request to the robot, so that screens may call it
+at any rate while the game runs.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class PersonNow:
     id: str
     state: PersonState
     turn: int = 0
-    """Their place among those who ask, from 1 on; 0: they do not ask."""
+    """Their position in the queue of requests, from 1; 0: they have not asked."""
     waits: float | None = None
     unvisited: float | None = None
     doing: str = ""
@@ -39,7 +39,7 @@ class PersonNow:
 
 @dataclass(frozen=True, slots=True)
 class StaffView:
-    """What staff see: see the module."""
+    """The state of the game for staff; see the module."""
 
     seconds: float
     """Since the game began, in s."""
@@ -49,7 +49,7 @@ class StaffView:
 
 
 class StaffWatch:
-    """Keeps since when people ask and when they were visited, from one look to the next."""
+    """Remembers when people asked and when they were visited."""
 
     def __init__(self) -> None:
         self._looks = threading.Lock()
@@ -63,7 +63,7 @@ class StaffWatch:
         self._visited: dict[str, float] = {}
 
     def begin(self, now: float) -> None:
-        """Begin a game at a time in s."""
+        """Start the clock of a game at a time in s."""
         self._clear()
         self._began = now
 
@@ -73,7 +73,7 @@ class StaffWatch:
             self._ended = now
 
     def resume(self, now: float, past: PastGame) -> None:
-        """Go on with a game at a time in s, by when its steps were over and whom they were for."""
+        """Resume a game at a time in s; restore its clock and the times of its visits."""
         ends = dict[str, float]()
         for step, over in zip(past.steps, past.clock, strict=True):
             if step.target in past.beginning.people and step.completed:
@@ -128,7 +128,7 @@ class StaffWatch:
 
 
 def next_step(world: object, policy: Policy) -> tuple[Decision, ActivityState] | None:
-    """Return what Tangy would do next as things stand, None where that is not known."""
+    """Return Tangy's next decision in the present state, None if it is unknown."""
     if (game := as_planned(world)) is None:
         return None
     state = game.tracker.state()

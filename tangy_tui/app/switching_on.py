@@ -1,4 +1,4 @@
-"""Switching a robot on in the background, and cancelling that."""
+"""Switches a robot on in the background; may be cancelled."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from tangy_hw.cancellation import Cancellation
 from tangy_tui.app.robot_opening import Opened, Opening
 
 ENDING = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
-"""By which a person or a system ends a program."""
+"""The signals by which a person or a system ends a program."""
 HEARD_AFTER = 0.05
-"""The longest a signal waits, in s.
+"""The longest delay of a signal, in s.
 
-One that comes just as a thread begins to wait for another interrupts nothing: Python hears it when
-that wait is over, which took as long as the opening.
+A signal that arrives just as a thread starts to wait for another does not interrupt it: without
+this timeout, Python would handle it only after the opening.
 """
 SIGNALLED = 128
-"""The exit status of a program that a signal has ended is this and the signal's number."""
+"""The exit status of a program ended by a signal is this plus the signal's number."""
 
 
 class SwitchingOn(Generic[Opened]):
-    """One robot: `open` it on a thread, `cancel` that from another, and `close` it in the end."""
+    """A robot to `open` on one thread, `cancel` from another, and `close` at the end."""
 
     def __init__(self, opening: Opening[Opened], *, stepped: bool = False) -> None:
         """Prepare it.
 
         Args:
             opening: opens the robot, or its bench.
-            stepped: in a hurry, where that can be.
+            stepped: run simulated time as fast as possible, on a bench.
         """
         self._opening = opening
         self._stepped = stepped
@@ -40,10 +40,10 @@ class SwitchingOn(Generic[Opened]):
         self._opened = ExitStack()
 
     def open(self) -> Opened:
-        """Switch it on, which takes seconds.
+        """Switch the robot on, which takes seconds.
 
         Raises:
-            Cancelled: it was called off; nothing is on.
+            Cancelled: it was cancelled; nothing is on.
             TangyError: it cannot be switched on.
         """
         self._cancellation.check()
@@ -64,11 +64,11 @@ class SwitchingOn(Generic[Opened]):
         return self._cancellation.done
 
     def cancel(self) -> None:
-        """Call it off, from any thread and without waiting; where it is on it stays on."""
+        """Cancel the opening, from any thread and without waiting; no effect once it is open."""
         self._cancellation.cancel()
 
     def close(self) -> None:
-        """Switch it off, if it is on; pending waits end at once."""
+        """Switch the robot off, if it is on; pending waits end at once."""
         self._opened.close()
 
 
@@ -85,7 +85,7 @@ def switched_on(
 
     Raises:
         TangyError: it cannot be switched on.
-        SystemExit: the program was hung up, or told to end.
+        SystemExit: the program got SIGHUP or SIGTERM.
         KeyboardInterrupt: ctrl+c was pressed.
     """
     robot = SwitchingOn(opening, stepped=stepped)
@@ -105,22 +105,22 @@ def switched_on(
 
 
 class _Signals:
-    """What ends a program, heard in order: nothing that was started is left behind.
+    """Handles the signals that end a program, so that no process is left behind.
 
-    At first a signal calls the opening off, and breaks off nothing: a process may just be starting.
-    Later it ends what goes on, at once.
+    At first a signal only cancels the opening, because a process may just be starting. Later it
+    raises at once.
     """
 
     def __init__(self, call_off: Callable[[], None]) -> None:
         self._call_off = call_off
         self._raises = False
-        self._first = 0  # the number of the first that came
+        self._first = 0  # the number of the first signal
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> _Signals:
         for number in ENDING:
-            with suppress(ValueError):  # only a program's main thread hears of signals
-                if signal.getsignal(number) != signal.SIG_IGN:  # as `nohup` has it
+            with suppress(ValueError):  # signals reach only the main thread
+                if signal.getsignal(number) != signal.SIG_IGN:  # as under `nohup`
                     self._before[number] = signal.signal(number, self._hear)
         return self
 
@@ -136,7 +136,7 @@ class _Signals:
 
     def _hear(self, number: int, _: FrameType | None) -> None:
         if self._first:
-            return  # once is enough
+            return  # already handled
         self._first = number
         if self._raises:
             self._raise()

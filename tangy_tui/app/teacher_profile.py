@@ -1,4 +1,4 @@
-"""Who teaches at this data folder, as they said when they began: `teacher.toml` in it."""
+"""The teacher's name, stored in `teacher.toml` in the data folder."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tangy_profiles.reading import plain, read_toml
 
 FILE = "teacher.toml"
 NOBODY = "teacher"
-"""Who teaches where nobody can be asked, and there is no login name."""
+"""The teacher's name if nobody can be asked, and there is no login name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class TeacherProfile:
 
 
 def read_profile(folder: Path) -> TeacherProfile:
-    """Read who teaches here; an empty profile where nobody has said so.
+    """Read the teacher's profile; an empty one if there is none.
 
     Raises:
         TangyError: the file has a mistake.
@@ -39,7 +39,7 @@ def read_profile(folder: Path) -> TeacherProfile:
 
 
 def save_profile(folder: Path, profile: TeacherProfile) -> None:
-    """Keep who teaches here.
+    """Store the teacher's profile.
 
     Raises:
         TangyError: the file cannot be written.
@@ -54,10 +54,10 @@ def save_profile(folder: Path, profile: TeacherProfile) -> None:
 
 
 def change_name(folder: Path, name: str) -> str:
-    """Keep another name of the teacher, and return it.
+    """Store a new name of the teacher, and return it.
 
     Raises:
-        TangyError: it is none that may be kept, or it cannot be written.
+        TangyError: it is no valid name, or it cannot be written.
     """
     name = checked(name)
     save_profile(folder, replace(read_profile(folder), name=name))
@@ -65,24 +65,24 @@ def change_name(folder: Path, name: str) -> str:
 
 
 def checked(name: str) -> str:
-    """Return a teacher's name as it is kept.
+    """Return a teacher's name in its stored form.
 
     Raises:
-        TangyError: it is none that may be kept.
+        TangyError: it is no valid name.
     """
     return read_name(name, "A teacher's name")
 
 
 def login_name() -> str:
-    """Return the login name, or what stands for it where there is none."""
+    """Return the login name, or a placeholder if there is none."""
     login = os.environ.get("USER") or os.environ.get("USERNAME") or ""
     return plain(login).strip()[:LONGEST_NAME].strip() or NOBODY
 
 
 def teacher_name(given: str | None, folder: Path) -> str:
-    """Return who teaches: the name that was given, the one that is kept, or the login name.
+    """Return the teacher's name: the given one, the stored one, or the login name.
 
     Raises:
-        TangyError: the given name is none that may be kept (see `read_name`).
+        TangyError: the given name is not valid (see `read_name`).
     """
     return checked(given) if given is not None else read_profile(folder).name or login_name()

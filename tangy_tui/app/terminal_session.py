@@ -1,7 +1,7 @@
-"""The terminal's surroundings: another machine, a multiplexer, or neither.
+"""Where the terminal is: on another machine, behind a multiplexer, or neither.
 
-A terminal that answers proves that what was written before has reached it. Over SSH that is the
-person's own terminal; but tmux, GNU screen and mosh answer for the terminal, on the machine where
+A reply of the terminal proves that earlier output has reached it. Over SSH that is the person's
+own terminal; but tmux, GNU screen and mosh reply on the terminal's behalf, on the machine where
 they run, and prove nothing about what the person has seen.
 """
 
@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import Literal, get_args
 
 QuestionKey = Literal["auto", "y", "digit"]
-"""How a question takes a yes: by y, by a digit, or as the session at hand needs it."""
+"""How a question takes a yes: by y, by a digit, or as the session requires."""
 
 QUESTION_KEYS: tuple[QuestionKey, ...] = get_args(QuestionKey)
 
 DIGITS = "456789"
-"""A yes is one of these: 1 to 3 choose another behaviour."""
+"""The digits for a yes; 1 to 3 choose another behaviour."""
 
 REMOTE_SERVERS = frozenset(
     {
@@ -36,17 +36,17 @@ REMOTE_SERVERS = frozenset(
         "cockpit-bridge",
     }
 )
-"""Programs that bring a person in from another machine."""
+"""Programs by which a person logs in from another machine."""
 
 MULTIPLEXERS = frozenset({"tmux", "screen", "zellij", "dtach", "abduco", "mosh-server"})
-"""Programs that answer for the terminal of the person."""
+"""Programs that reply on behalf of the person's terminal."""
 
 _REMOTE_SIGNS = ("SSH_CONNECTION", "SSH_TTY", "SSH_CLIENT")
 _MULTIPLEXER_SIGNS = ("TMUX", "STY", "ZELLIJ")
 
 _PROC = Path("/proc")
 _DEVICE = re.compile(r"(?:84|83);|1;10;0\Z")
-"""How tmux, screen and mosh name themselves when they are asked for their device attributes."""
+"""The secondary device attributes with which tmux, screen and mosh identify themselves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,15 +60,16 @@ class TerminalSession:
 def terminal_session(
     environ: Mapping[str, str] | None = None, *, pid: int | None = None, proc: Path = _PROC
 ) -> TerminalSession:
-    """Look at the environment and the processes above this one.
+    """Inspect the environment and the ancestors of this process.
 
-    A multiplexer lives on when its person leaves, and may be taken up again from elsewhere: its
-    session is remote where one of its clients is, or where any of them cannot be looked at.
+    A multiplexer outlives its client and may be attached from elsewhere: its session counts as
+    remote
+    if one of the clients is remote, or if one of them cannot be inspected.
 
     Args:
         environ: the environment (default: the process's own).
         pid: the process (default: this one).
-        proc: where the processes are listed; where nothing is, only the environment counts.
+        proc: the folder that lists processes; if it does not exist, only the environment counts.
     """
     environ = os.environ if environ is None else environ
     above = set(_names_above(os.getpid() if pid is None else pid, proc))
@@ -83,12 +84,12 @@ def terminal_session(
 
 
 def answers_for_another(attributes: str) -> bool:
-    """Say whether secondary device attributes ("84;0;0") are those of a multiplexer."""
+    """Return whether secondary device attributes ("84;0;0") are those of a multiplexer."""
     return _DEVICE.match(attributes) is not None
 
 
 def _has_remote_client(proc: Path) -> bool:
-    """Say whether a person sits at some multiplexer of this machine from another one."""
+    """Return whether a client of a multiplexer on this machine is remote."""
     return any(
         name.removesuffix(": client") in MULTIPLEXERS
         and any(above in REMOTE_SERVERS for above in _names_above(pid, proc))
@@ -103,7 +104,7 @@ def _processes(proc: Path) -> Iterator[tuple[int, str]]:
 
 
 def _names_above(pid: int, proc: Path) -> Iterator[str]:
-    """Give the names of the processes that started this one, the nearest first."""
+    """Yield the names of the ancestors of a process, the nearest first."""
     seen = {pid}
     found = _status(pid, proc)
     while found is not None and (parent := found[1]) > 0 and parent not in seen:
@@ -114,7 +115,7 @@ def _names_above(pid: int, proc: Path) -> Iterator[str]:
 
 
 def _status(pid: int, proc: Path) -> tuple[str, int] | None:
-    """Return the name of a process and the number of its parent; None if it cannot be read."""
+    """Return the name of a process and the id of its parent; None if they cannot be read."""
     try:
         line = (proc / str(pid) / "stat").read_text(errors="replace")
         name, rest = line.split("(", 1)[1].rsplit(")", 1)

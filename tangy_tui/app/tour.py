@@ -1,4 +1,4 @@
-"""The tour of a new teacher: a few stops, and at one of them a real command with its question."""
+"""The tour for a new teacher: a few stops, one of them with a real command and its question."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tangy_tui.learning.verification import Asked, Offered
 
 
 class TourStop(Enum):
-    """Where the tour is."""
+    """The stops of the tour."""
 
     ROOM = "room"
     COMMAND = "command"
@@ -30,9 +30,9 @@ _BEFORE_THE_STEP = (TourStop.ROOM, TourStop.COMMAND, TourStop.QUESTION)
 
 
 class Tour:
-    """Steps through the stops: at the teacher's action, or at Enter where no action is needed.
+    """Moves from stop to stop: at the teacher's action, or at Enter if no action is needed.
 
-    `at` is None when it has ended, or was skipped.
+    `at` is None when the tour has ended, or was skipped.
     """
 
     def __init__(self) -> None:
@@ -40,20 +40,20 @@ class Tour:
 
     @property
     def enter_goes_on(self) -> bool:
-        """Whether Enter goes on from here; elsewhere a command or an answer does."""
+        """Whether Enter leads to the next stop; otherwise a command or an answer does."""
         return self.at in _ON
 
     def go_on(self) -> None:
-        """Go to the next stop, where nothing has to be done first."""
+        """Go to the next stop, if no action is needed first."""
         if self.at is not None:
             self.at = _ON.get(self.at, self.at)
 
     def skip(self) -> None:
-        """End it."""
+        """End the tour."""
         self.at = None
 
     def follow(self, events: Iterable[TeachingEvent]) -> bool:
-        """Go on with what the teacher did; say whether that led to another stop."""
+        """Follow the teacher's actions; return whether the tour is at another stop now."""
         before = self.at
         if before not in _BEFORE_THE_STEP:
             return False
@@ -63,5 +63,5 @@ class Tour:
             elif isinstance(event, Asked | Offered):
                 self.at = TourStop.QUESTION
             elif self.at is TourStop.QUESTION:
-                self.at = TourStop.COMMAND  # it was answered with no
+                self.at = TourStop.COMMAND  # the answer was no
         return self.at is not before

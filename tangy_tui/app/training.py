@@ -1,4 +1,4 @@
-"""Learning from all that was shown, and keeping the policy."""
+"""Learns from all demonstrations, and stores the policy."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ if TYPE_CHECKING:
 
 
 def learn(workspace: Workspace) -> Policy:
-    """Learn from the finished demonstrations and what teachers decided; keep the policy.
+    """Learn from the finished demonstrations and the teachers' decisions; store the policy.
 
     Raises:
-        NothingToLearnFrom: nobody has finished a demonstration.
+        NothingToLearnFrom: there is no finished demonstration.
     """
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policies import keep_policy, unused_name, without_strange_steps

@@ -1,4 +1,4 @@
-"""Trying an activity: one simulated game by what its file expects, told step by step."""
+"""Tries out an activity: one simulated game by the behaviours that its file expects."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ class TriedStep:
     said: str
     doing: dict[str, str]
     silent: tuple[str, ...] = ()
-    """Who said nothing and was asked again, each time."""
+    """The people who said nothing, once for each time Tangy asked them again."""
     media: tuple[str, ...] = ()
-    """The names of the files of what Tangy shows and plays."""
+    """The names of the files that Tangy shows and plays."""
 
 
 def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]:
     """Play one game by the activity's expected behaviours.
 
     Raises:
-        TangyError: nothing is expected in a situation, or the game does not end.
+        TangyError: a situation has no expected behaviour, or the game does not end.
     """
     from tangy_sim.worlds.declared_world import DeclaredWorld
 

@@ -1,4 +1,4 @@
-"""What a user has set: `settings.toml` in the data folder, if there is one."""
+"""The user's settings: `settings.toml` in the data folder, if there is one."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ from tangy_tui.app.terminal_session import QUESTION_KEYS, QuestionKey
 FILE = "settings.toml"
 
 LinkSpeed = Literal["auto", "slow", "fast"]
-"""How fast the way to the terminal is; where nothing is set, its answers tell."""
+"""The speed of the connection to the terminal; `auto` measures the terminal's replies."""
 
 LINK_SPEEDS: tuple[LinkSpeed, ...] = get_args(LinkSpeed)
 LINK_VARIABLE = "TANGY_LINK"
-"""What `--link` sets for the program, whatever the settings say."""
+"""Set by `--link`; overrides the settings."""
 
 
 @dataclass(frozen=True, slots=True)
 class UserSettings:
-    """How the program is to behave.
+    """The settings of the user interface.
 
-    `question`: which key says yes to a question; `keymap`: which keys do what; `link`: how fast
-    the way to the terminal is.
+    `question`: the key for a yes to a question; `keymap`: the keys of the actions; `link`: the
+    speed
+    of the connection to the terminal.
     """
 
     question: QuestionKey = "auto"
@@ -53,5 +54,5 @@ def read_settings(folder: Path) -> UserSettings:
 
 
 def _speed(wanted: str, otherwise: str) -> LinkSpeed:
-    """Return the speed that is wanted, if there is such a speed."""
+    """Return the wanted speed if it is valid, otherwise the other one."""
     return cast("LinkSpeed", wanted if wanted in LINK_SPEEDS else otherwise)

@@ -1,4 +1,4 @@
-"""Looking on at the games that another program runs: its door, and the log."""
+"""Looking on at the games of another program: through its socket, and the log."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.replay import GameReplay, Moment, read_replays
 
 WATCH_SECONDS = 0.2
-"""Between two looks of those who look on; views do not come more often."""
+"""The interval of checks by an onlooker; snapshots come no more often."""
 LARGEST_VIEW = 1_000_000  # bytes
 CHUNK = 65_536
-PATIENCE_SECONDS = 1.0  # for the door to answer
+PATIENCE_SECONDS = 1.0  # for the socket to answer
 
 
 def room_of(view: GameView) -> Room:
-    """Return the room of a game; if its file is not here, the one that so many people fit into."""
+    """Return the room of a game; if its file is missing, the one that fits the number of people."""
     with suppress(ProfileError):
         if view.room:
             return load_room(view.room)
@@ -44,30 +44,30 @@ class NobodyThere(TangyError):
 
 
 class Guest:
-    """Stands at the door of a data folder: sees the view of the game, and may stop the robot."""
+    """A connection to the socket of a data folder: receives snapshots, and may stop the robot."""
 
     def __init__(self, folder: Path) -> None:
-        """Name the folder; `look` goes to its door."""
+        """Set the folder; `look` connects to its socket."""
         self._folder = folder
         self._socket: socket.socket | None = None
         self._heard = b""
         self.pid = 0
-        """The process that runs the games; 0: none that can be seen."""
+        """The process that runs the games; 0: none."""
         self.view: GameView | None = None
-        """The game as it stands, None while there is none."""
+        """The latest snapshot of the game, None if there is no game."""
         self.stops = self.answers = 0
-        """How often the robot was stopped from here, and how often that was asked and answered."""
+        """The number of stops of the robot from here, and of answers to stop requests."""
 
     @property
     def there(self) -> bool:
-        """Whether a program is there that shows its games."""
+        """Whether it is connected to a program that runs games."""
         return self._socket is not None
 
     def look(self) -> bool:
-        """Read new entries and connect to the session if needed; return whether that worked."""
+        """Read new snapshots, connecting first if needed; return whether it is connected."""
         if self._socket is None and not self._enter():
             return False
-        assert self._socket is not None  # noqa: S101 - it was entered
+        assert self._socket is not None  # noqa: S101 - it is connected
         while True:
             try:
                 said = self._socket.recv(CHUNK)
@@ -88,22 +88,22 @@ class Guest:
         """Stop the robot.
 
         Args:
-            by: who does; stands in the log.
+            by: who stops it, for the log.
 
         Raises:
             NobodyThere: no program runs games in this folder.
         """
         said = json.dumps({"stop": by[:LONGEST_NAME]}).encode() + b"\n"
         if not self._says(said):
-            self.close()  # it was shown out, or that program has ended: another may be there
+            self.close()  # it was disconnected, or that program has ended: another may be there
             if not self._says(said):
                 raise NobodyThere("")
 
     def _says(self, said: bytes) -> bool:
-        """Say something at the door; return whether somebody is there."""
+        """Send data to the socket; return whether that worked."""
         if self._socket is None and not self._enter():
             return False
-        assert self._socket is not None  # noqa: S101 - it was entered
+        assert self._socket is not None  # noqa: S101 - it is connected
         try:
             self._socket.sendall(said)
         except OSError:
@@ -111,7 +111,7 @@ class Guest:
         return True
 
     def answered(self, seconds: float = 5.0) -> bool:
-        """Wait, for so many s at most, until a stop was answered; say if there was what to stop."""
+        """Wait for the answer to a stop, up to some s; return whether there was a robot to stop."""
         until, before = time.monotonic() + seconds, self.stops
         while self._socket is not None and time.monotonic() < until:
             select.select([self._socket], [], [], 0.1)
@@ -122,7 +122,7 @@ class Guest:
         return False
 
     def close(self) -> None:
-        """Leave; may be repeated."""
+        """Disconnect; may be repeated."""
         entered, self._socket = self._socket, None
         self._heard, self.view, self.pid = b"", None, 0
         if entered is not None:
@@ -151,7 +151,7 @@ class Guest:
             self.pid = int(said["pid"])
             self.view = None if said["view"] is None else read(GameView, said["view"])
         except (ValueError, TypeError, KeyError, RecursionError, Unreadable):
-            self.close()  # another version's
+            self.close()  # from another version
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,15 +168,15 @@ class News:
 
     @property
     def game(self) -> Game:
-        """The game as the log has it."""
+        """The game as logged."""
         return self.replay.game
 
 
 class WatchedLog:
-    """Follows the newest game of a log. `news` gives what came since it was asked last."""
+    """Follows the newest game of a log. `news` returns what was added since the last call."""
 
     def __init__(self, store: Store) -> None:
-        """Follow a log that was opened for reading."""
+        """Follow a log that is open for reading."""
         self._store = store
         self._read = 0
         self._game = ""
@@ -185,7 +185,7 @@ class WatchedLog:
         """Whether the newest game has an end in the log."""
         self._known: dict[str, Activity | None] = {}
         self.names: Mapping[str, str] = {}
-        """Of the people, by id."""
+        """The names of the people, by id."""
 
     def news(self) -> News | None:
         """Read new entries; None if there are none."""
@@ -212,11 +212,11 @@ class WatchedLog:
         return News(replay, moments, begun, activity)
 
     def name(self, person: str) -> str:
-        """Return what a person is called."""
+        """Return a person's name."""
         return self.names.get(person, person)
 
     def activity(self, name: str) -> Activity | None:
-        """Return an activity by name, None where it is not known here."""
+        """Return an activity by name, None if it is not installed."""
         if name not in self._known:
             there = name in known_activities()
             self._known[name] = load_activity(name) if there else None

@@ -23,7 +23,7 @@ from tangy_tui.app.participants import Participants
 from tangy_tui.app.register import past_guests
 from tangy_tui.app.rooms import check_places, chosen_room, find_room
 
-# The engine is imported when it is first asked for: the first screen needs none of it.
+# The engine is imported on first use: the first screen does not need it.
 from tangy_tui.app.session_door import SessionDoor
 from tangy_tui.app.teacher_profile import login_name, read_profile
 from tangy_tui.app.user_settings import read_settings
@@ -46,14 +46,14 @@ if TYPE_CHECKING:
 
 
 def data_folder(chosen: Path | None) -> Path:
-    """Return the data folder: the chosen one, or the platform's folder for a person's data."""
+    """Return the data folder: the chosen one, or the platform's folder for user data."""
     from platformdirs import user_data_path
 
     return chosen or user_data_path("tangy", appauthor=False)
 
 
 class Workspace(Participants):
-    """One activity with its robot, room and people, and the data folder they are kept in."""
+    """One activity with its robot, room and people, and their data folder."""
 
     def __init__(
         self,
@@ -71,14 +71,14 @@ class Workspace(Participants):
         Args:
             folder: the data folder.
             activity: its name or file; "" for the chosen one.
-            users: how many people take part.
-            write: whether something is to be written to the store.
+            users: the number of participants.
+            write: open the store for writing.
             robot: the name or file of its profile.
             room: its name or file; "" for the chosen one.
             now: the clock of the store; None for the machine's.
 
         Raises:
-            ProfileError: a profile or the settings have a mistake, or there is no such activity.
+            ProfileError: a profile or the settings have a mistake, or the activity does not exist.
             StoreError: the data folder cannot be used, or another Tangy writes to it.
             TangyError: not everybody fits into the room.
         """
@@ -89,7 +89,7 @@ class Workspace(Participants):
         load_people(1 if users == REGISTERED else users)  # before a store is opened for them
         self.chosen_room = find_room(folder, room) if room else chosen_room(folder)
         self.room_is_given = bool(room)
-        """Whether the room of this run was named, whatever a game was played in before."""
+        """Whether the room was named for this run; if not, a resumed game keeps its own room."""
         self.store = Store.open(folder, write=write, now=now)
         self.door = SessionDoor(folder)
         self._logging = ExitStack()
@@ -104,25 +104,25 @@ class Workspace(Participants):
                 self.close()
                 raise
         for guest in past_guests(self.store) if write else ():
-            self.forget(guest)  # a guest is there for a day
+            self.forget(guest)  # guests stay for one day
 
     def _take_up(self, activity: str) -> None:
         loaded: Activity = load_activity(activity)
         self.robot.check(loaded)
-        self.activity, self.profile = loaded, activity  # the latter: as it was asked for
+        self.activity, self.profile = loaded, activity  # `profile` as it was requested
 
     def change_activity(self, activity: str) -> None:
-        """Teach and play another activity from now on, or raise TangyError where it cannot be."""
+        """Change to another activity; raises TangyError if that is not possible."""
         self._take_up(choose_activity(self.store.folder, activity))
         self.register(self._users)
 
     @property
     def teacher(self) -> str:
-        """Who teaches here, as they said when they began; else the login name."""
+        """The teacher's stored name, or else the login name."""
         return read_profile(self.store.folder).name or login_name()
 
     def close(self) -> None:
-        """Close the store, the door, and the log of what the program decides."""
+        """Close the store, the socket, and the decision log."""
         self.door.close()
         self._logging.close()
         self.store.close()
@@ -135,7 +135,7 @@ class Workspace(Participants):
         return Intents()
 
     def phrasebook(self) -> Phrasebook:
-        """Make the phrasebook of said and typed commands, with the teacher's own phrases."""
+        """Create the phrasebook of spoken and typed commands, with the teacher's own phrases."""
         from tangy_tui.learning.own_phrases import OwnPhrases
 
         own = OwnPhrases(self.store, self.activity, self.teacher)
@@ -149,11 +149,11 @@ class Workspace(Participants):
         guided: bool = False,
         again: Again | None = None,
     ) -> TeachingSession:
-        """Make a teaching session; `begin` resumes an unfinished demonstration.
+        """Create a teaching session; `begin` resumes an unfinished demonstration.
 
-        Without a seed the games count on from the demonstrations there are, so that no two are
-        alike and each can be had again. A guided game brings about every situation. `again`
-        names a demonstration that is to be shown again from some step on.
+        Without a seed, the session takes one that no demonstration has used yet. A guided game
+        brings
+        about every situation. `again` names a demonstration to show again from some step.
         """
         from tangy_tui.learning import library
         from tangy_tui.learning.teaching_session import TeachingSession
@@ -174,7 +174,7 @@ class Workspace(Participants):
         )
 
     def teaching_world(self, shown: Demonstration) -> World:
-        """Make the simulated world of a demonstration, in which people ask more often."""
+        """Create the simulated world of a demonstration, in which people ask more often."""
         from tangy_tui.app.simulated_worlds import teaching_world
 
         return teaching_world(self.activity, shown, self.store)
@@ -189,18 +189,18 @@ class Workspace(Participants):
         live: Callable[[], Health] | None = None,
         world: World | None = None,
     ) -> Supervision:
-        """Make a run of games under execution monitoring; they are simulated ones.
+        """Create a run of games under execution monitoring, simulated by default.
 
         Args:
-            policy: by which is played.
-            seed: of the random generators.
-            asks: somebody is there to say what to do where Tangy is not sure.
-            injections: faults that are to come, as in `--inject`.
-            live: what real devices report, in place of the simulated ones.
-            world: where they are played instead, and where `injections` are its own business.
+            policy: the policy to play by.
+            seed: seeds the random generators.
+            asks: staff are there to answer if Tangy is unsure.
+            injections: faults to inject, as in `--inject`.
+            live: returns the readings of real devices, which replace simulated ones.
+            world: another world for the games, which handles `injections` itself.
 
         Raises:
-            TangyError: one of the injections is none, or the fault rules have a mistake.
+            TangyError: an injection is not valid, or the fault rules have a mistake.
         """
         from tangy_hw.robot_client.live_world import LiveWorld
         from tangy_profiles.fault_file import load_faults
@@ -230,12 +230,12 @@ class Workspace(Participants):
         return supervision
 
     def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:
-        """Make a run of simulated games with a policy and the stored posteriors.
+        """Create a run of simulated games with a policy and the stored posteriors.
 
         Args:
-            policy: by which is played.
-            seed: of the random generators.
-            asks: somebody is there to say what to do where Tangy is not sure.
+            policy: the policy to play by.
+            seed: seeds the random generators.
+            asks: staff are there to answer if Tangy is unsure.
         """
         from tangy_tui.app.simulated_worlds import game_world
 
@@ -244,7 +244,7 @@ class Workspace(Participants):
         return self._facilitation(world, policy, seed, asks)
 
     def game_seed(self, seed: int | None) -> int:
-        """Return a seed: the given one, or one that no game has had."""
+        """Return a seed: the given one, or one that no game has used."""
         if seed is not None:
             return seed
         games = self.store.events(GameBeginning)
@@ -268,7 +268,7 @@ class Workspace(Participants):
         )
 
     def persuasion(self, rng: Random, world: GameWorld | None = None) -> Persuasion:
-        """Make the persuasion of everybody present from the responses in a world's games."""
+        """Create the persuasion of everybody present, from their responses in a world's games."""
         from tangy_tui.interaction.persuasion import Persuasion
 
         memory = self.memory(world)
@@ -281,10 +281,10 @@ class Workspace(Participants):
         )
 
     def memory(self, world: GameWorld | None = None) -> PersonModels:
-        """Make the memory of people's responses, with the activity's method of choice.
+        """Create the memory of people's responses, with the activity's method of choice.
 
         Args:
-            world: whose games count (default: the world of the last game).
+            world: the world whose games count (default: the world of the last game).
         """
         from tangy_tui.interaction.memory import PersonModels
 
@@ -292,7 +292,7 @@ class Workspace(Participants):
         return PersonModels(self.store, strategies, self.activity.persuasion, world=world)
 
     def records(self, *people: Person, world: GameWorld | None = None) -> list[Record]:
-        """Read the report data of people (of everybody, if none is named)."""
+        """Read the report data of some people (default: everybody)."""
         from tangy_tui.interaction.record import read_records
 
         return read_records(self.store, self.memory(world), people or self.people)
