@@ -1,4 +1,4 @@
-"""How staff end a game: it is given up, broken off, or left."""
+"""The ways in which staff end a game: give it up, abort it, or leave it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from tangy_tui.app.game_commands import TAKEN_OVER, StaffNote
 from tangy_tui.app.robot_controls import ENDED, RobotControls
 from tangy_tui.monitoring.supervision import Event, Supervision
 
-LEAVES_SECONDS = 1.0  # in which what is being done is broken off
+LEAVES_SECONDS = 1.0  # in which the current behaviour is aborted
 
 
 class EndingGames:
-    """The part of a controller by which games end."""
+    """The part of the controller that ends games."""
 
     supervision: Supervision
     robot: RobotControls
@@ -28,14 +28,14 @@ class EndingGames:
         raise NotImplementedError
 
     def wait_for_turn(self, seconds: float) -> bool:
-        """Wait up to so many s for the current behaviour to end; return whether it has."""
+        """Wait up to some s for the current behaviour to end; return whether it has ended."""
         if self._turn.acquire(timeout=seconds):
             self._turn.release()
             return True
         return False
 
     def break_off(self) -> None:
-        """Stop the robot in the midst of what it does, because the game ends."""
+        """Abort the robot's current behaviour, because the game ends."""
         self.supervision.stopped_by_staff()
         self.robot.stop(ENDED)
 
@@ -47,19 +47,19 @@ class EndingGames:
         return [StaffNote("ended"), *events]
 
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
-        """Stop the robot, wait up to `patience` s for that, and log that the game was left."""
+        """Stop the robot, wait up to `patience` s for it, and log that the game was left."""
         self.stopped = True
         self.break_off()
         if not self._turn.acquire(timeout=patience):
             return []
         try:
-            with suppress(TangyError):  # who leaves is not held up by a log that is full
+            with suppress(TangyError):  # a full log must not keep anyone from leaving
                 return self.supervision.leave()
         finally:
             self._turn.release()
         return []
 
     def give_up(self) -> list[Event]:
-        """End a game in which Tangy asks or is halted, and nobody is there."""
+        """End a game that waits for an answer or a clearance that nobody gives."""
         with self._turn, serving():
             return self.supervision.give_up()

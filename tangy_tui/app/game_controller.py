@@ -63,7 +63,7 @@ TOOK_OVER = "You say what Tangy does next."
 
 
 class GameController(EndingGames):
-    """Games with staff who can step in. `begin` each, then call `next` until it is over."""
+    """Games in which staff can intervene. `begin` each, then call `next` until it is over."""
 
     def __init__(
         self,
@@ -104,7 +104,7 @@ class GameController(EndingGames):
         self.single = False
         """Whether the game pauses after the next behaviour."""
         self._turn = threading.RLock()
-        """Whoever has it has the supervision, and the robot."""
+        """Guards the supervision and the robot."""
         self._watch = StaffWatch()
         supervision.game.permits = self.autonomy.permits
 
@@ -179,7 +179,7 @@ class GameController(EndingGames):
                 self.view()
 
     def view(self) -> StaffView:
-        """Return what staff have to see of the game now; by any thread, at any time."""
+        """Return the present state of the game for staff; from any thread, at any time."""
         world = self.supervision.world
         if self.supervision.over:
             self._watch.end(world.seconds)

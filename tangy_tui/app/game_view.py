@@ -38,11 +38,11 @@ class GameView:
     room: Sparse[str] = ""
     """As in `GameBeginning`."""
     seconds: Sparse[Count] = 0
-    """Since the game began; not rounded up."""
+    """Since the game began, in s, rounded down."""
     minutes: Sparse[Count] = 0
-    """For how long the session is planned; 0: it is left open."""
+    """The planned length of the session in minutes; 0: no limit."""
     people: Sparse[tuple[PersonNow, ...]] = ()
-    """How each person is, their times in whole s."""
+    """The state of each person, with times in whole s."""
 
 
 def view_of(control: GameController) -> GameView | None:
@@ -77,7 +77,7 @@ def view_of(control: GameController) -> GameView | None:
 
 
 def _in_whole_seconds(person: PersonNow) -> PersonNow:
-    """Round a person's times down, so that what is shown changes once a second at most."""
+    """Round a person's times down, so that the snapshot changes at most once a second."""
     waits, unvisited = person.waits, person.unvisited
     return replace(
         person,

@@ -120,11 +120,12 @@ class Participants:
             clear_cache()
 
     def pronounce(self, person: Person, phones: str | None) -> None:
-        """Note how a person's name is pronounced (ARPAbet, a comma between words); None: no more.
+        """Store the pronunciation of a name (ARPAbet, a comma between words); None deletes it.
 
         Raises:
-            TangyError: a phone is none, there are not as many words as in the name, or it sounds
-                like somebody else's, or like a phrase.
+            TangyError: a phone is unknown, the number of words differs from the name's, or it
+                sounds
+                like another person's name or like a phrase.
         """
         self.store.pronounce(person.id, phones and self.check_said(person, phones))
         self.read_people()

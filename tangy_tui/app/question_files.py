@@ -28,7 +28,7 @@ _NUMBERED = re.compile(r"answer\s*(\d)\b", re.I)
 
 @dataclass(frozen=True, slots=True)
 class ChoiceQuestion:
-    """A question, the answers to choose from, and which of them are right, from 0 on."""
+    """A question, its options, and the indices of the right ones, from 0."""
 
     ask: str
     options: tuple[str, ...]

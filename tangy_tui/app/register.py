@@ -1,4 +1,4 @@
-"""The register: who takes part, by the log: who was there first, who came, and who left."""
+"""The register: who takes part, as the log tells: the first people, additions, archivings."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ def _answer(control: GameController) -> list[Result]:
 
 
 def _clear(control: GameController) -> list[Result]:
-    """Acknowledge what halts the robot, call the expert, and clear it, or give the game up."""
+    """Clear the fault that halts the robot with the expert's help, or give the game up."""
     game = control.supervision
     told = list[Result](game.look())  # screens check the devices all the time
     fault = game.halted

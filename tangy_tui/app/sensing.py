@@ -88,7 +88,7 @@ class LinkedSensors:
 
     @contextmanager
     def reading_cards(self) -> Iterator[None]:
-        """Read no more than the game does."""
+        """Do nothing: only the game reads cards."""
         yield
 
     def source(self, device: str) -> str:
@@ -122,7 +122,7 @@ class LinkedSensors:
         return sight
 
     async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Frame | None:
-        """Return what a camera sees, as large as fits; None if nothing newer than `after` comes."""
+        """Return a camera's picture, scaled to fit; None if there is none newer than `after`."""
         if self._link.pid != self._pid:  # another process numbers its pictures from 0
             self._pid, after = self._link.pid, -1
         told = await self._ask("picture", device=device, fit=list(fit), after=after)

@@ -53,7 +53,7 @@ def address(host: str, port: int, token: str) -> str:
 
 
 def known_as(host: str, port: int) -> set[str]:
-    """Return by which names a browser that was sent to a host and a port asks for this machine."""
+    """Return the Host headers that a browser may send for this host and port."""
     name = f"[{host}]" if ":" in host else host
     return {name if port == HTTP else f"{name}:{port}"}
 

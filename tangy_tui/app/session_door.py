@@ -116,7 +116,7 @@ class SessionDoor:
         with suppress(OSError):
             guest, _ = self._socket.accept()
             guest.setblocking(False)
-            if len(self._guests) >= MOST_GUESTS:  # make room: the new one may want to stop the robot
+            if len(self._guests) >= MOST_GUESTS:  # the new one may want to stop
                 first = next(iter(self._guests))
                 self._hear(first, ready)
                 self._show_out(first, ready)

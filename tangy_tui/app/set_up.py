@@ -91,7 +91,7 @@ class SetUp:
         return tuple(tuple(self.seats[place] for place in sitting) for sitting in at_tables)
 
     def move(self, person: str, by: int) -> None:
-        """Let a person change seats with another so many on, as long as the robot is off."""
+        """Swap a person's seat with the one `by` places further, as long as the robot is off."""
         at = self.seats.index(person)
         self.change_seats(person, self.seats[min(len(self.seats) - 1, max(0, at + by))])
 
@@ -310,7 +310,7 @@ class SetUp:
             self.world.cards.dealt.give(person, card)
 
     def look_at_face(self) -> str:
-        """Look who stands before the robot, who is here then; return the id, "" for nobody."""
+        """Recognise the person before the robot as present; return the id, "" for nobody."""
         assert self.world is not None  # noqa: S101 - as above
         try:
             seen = self.world.commands.do("face").get("person")
@@ -360,6 +360,6 @@ def battery_of(world: World | None) -> float | None:
 
 
 def _turned(values: tuple[T, ...], now: T, by: int) -> T:
-    """Return the value so many places on, within the ends; an odd one goes to the first."""
+    """Return the value `by` places further, clipped to the ends; an unknown value is the first."""
     at = values.index(now) if now in values else 0
     return values[min(len(values) - 1, max(0, at + by))]

@@ -241,7 +241,7 @@ class BenchedWorld(LiveWorld):
                 self.inject(kind.name)
 
     def recover(self, remedy: Remedy) -> float:
-        """Let the robot, people at the table or an expert act on a fault; return the s it took."""
+        """Carry out a recovery by the robot, people or an expert; return the s that it took."""
         for kind in self._to_come.due_in_recovery():
             if kind.name not in self.present:
                 self.inject(kind.name)

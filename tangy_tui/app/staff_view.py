@@ -26,7 +26,7 @@ PersonState = Literal["visited", "comes", "asks", "away", "plays"]
 
 @dataclass(frozen=True, slots=True)
 class PersonNow:
-    """How a person is: since when they ask, and since when nobody was there, both in s."""
+    """The state of a person; times since their request and since the last visit in s."""
 
     id: str
     state: PersonState
@@ -53,7 +53,7 @@ class StaffWatch:
 
     def __init__(self) -> None:
         self._looks = threading.Lock()
-        """More than one thread looks: that of the game, of the screen, of those who look on."""
+        """Guards the times: the threads of game, screen and onlookers all call `look`."""
         self._clear()
 
     def _clear(self) -> None:
@@ -68,7 +68,7 @@ class StaffWatch:
         self._began = now
 
     def end(self, now: float) -> None:
-        """Let the clock stand from a time in s on: the game is over; the first time counts."""
+        """Stop the clock at a time in s: the game is over. Later calls change nothing."""
         if self._ended is None:
             self._ended = now
 
@@ -83,7 +83,7 @@ class StaffWatch:
         self._visited = {person: began + end for person, end in ends.items()}
 
     def look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
-        """Take a look at a time in s, and return what there is to see."""
+        """Update the times at a time in s, and return the state for staff."""
         with self._looks:
             return self._look(scene, people, now, world)
 

@@ -51,7 +51,7 @@ _DEVICE = re.compile(r"(?:84|83);|1;10;0\Z")
 
 @dataclass(frozen=True, slots=True)
 class TerminalSession:
-    """Where the keys come from. `multiplexer`: something answers in the terminal's stead."""
+    """Where the keys come from. `multiplexer`: a program replies on the terminal's behalf."""
 
     remote: bool = False
     multiplexer: bool = False

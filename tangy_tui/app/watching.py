@@ -156,7 +156,7 @@ class Guest:
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """New entries of the log: the game, its moments, and whether it has just begun.
+    """New entries of the log: the game, its new moments, and whether it has just begun.
 
     `replay` is all of the game so far.
     """

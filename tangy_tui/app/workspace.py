@@ -1,4 +1,4 @@
-"""The workspace: profiles, the store and a simulated world together, for screens and lines."""
+"""The workspace: profiles, the store and a simulated world, for screens and the console."""
 
 from __future__ import annotations
 
