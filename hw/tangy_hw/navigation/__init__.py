@@ -1,1 +1,1 @@
-"""Where the robot is and how it gets elsewhere: maps, localisation, planning and driving."""
+"""Maps, localisation, path planning and driving."""

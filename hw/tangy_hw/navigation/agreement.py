@@ -1,7 +1,7 @@
-"""How well scans agree with the map that was made of them.
+"""Checks how well scans agree with the map that was drawn from them.
 
-Where a robot came back to a place and its poses did not, the same wall stands in the map twice: one
-pass looks through the wall that the other saw, and sees its own where the other saw the floor.
+If a robot revisits a place with wrong poses, the map contains the same wall twice: the beams of one
+pass go through the wall that the other pass saw, and end where the other pass saw free floor.
 """
 
 from __future__ import annotations
@@ -18,30 +18,30 @@ from tangy_hw.navigation.poses import Floats, endpoints, placed
 from tangy_hw.navigation.revisits import Revisits
 
 TORN = 0.15
-"""The share of contradicted beams from which a map counts as torn.
+"""Share of contradicted beams from which a map counts as torn.
 
-Chosen on simulated rooms and corridors, matched: those that closed had .03 at most, those that did
-not .23 at least. Of Freiburg's building 079, on which nothing was chosen, the corrected log has .07
-and its scans matched anew, which tears it, .30.
+Chosen on simulated rooms and corridors with matched scans: maps that closed had at most .03, maps
+that did not close at least .23. On Freiburg's building 079, which was not used for choosing, the
+corrected log has .07, and its scans matched anew, which tears the map, .30.
 """
 
 UNSURE = 0.025
-"""The share from which on a map whose loops nothing confirms is not believed to be closed."""
+"""Share from which a map without confirmed loops is not believed to be closed."""
 
-REACH = 20.0  # metres beyond which beams end too far from one another
-NEAR = 0.2  # metres from a beam's end within which a wall must stand
+REACH = 20.0  # metres: the ends of more distant beams are too far apart
+NEAR = 0.2  # metres from a beam's end within which there must be a wall
 SHORT = 0.3  # metres before its end within which a beam may graze a wall
-STEP = 0.1  # metres between the points of a beam that are looked at
-MOST_SCANS = 400  # that are looked at, evenly
+STEP = 0.1  # metres between the points checked along a beam
+MOST_SCANS = 400  # evenly spaced scans that are checked at most
 
 
 Verdict = Literal["closed", "open", "torn", "unknown"]
-"""closed: it came back to places, and its poses say so; open: it never came back; torn: it came
-back, and its poses say otherwise; unknown: nobody can tell which."""
+"""closed: the robot revisited places, and its poses agree there; open: it revisited none; torn: it
+revisited places, and its poses disagree; unknown: the scans do not tell."""
 
 
 def verdict(share: float, found: Revisits) -> Verdict:
-    """Say whether a map closes, from the share of beams that contradict it and from its loops."""
+    """Judge whether a map closes, from its loops and the share (0 to 1) of contradicted beams."""
     if share > TORN or found.tears:
         return "torn"
     if found.closed:
@@ -52,7 +52,8 @@ def verdict(share: float, found: Revisits) -> Verdict:
 def contradicted(scans: Sequence[Placed], map_: OccupancyMap) -> float:
     """Return the share of beams that contradict a map, from 0 to 1.
 
-    A beam does where no wall stands within `NEAR` of its end, or where it goes through one.
+    A beam contradicts the map if there is no wall within `NEAR` of its end, or if it crosses a
+    wall.
     """
     walls = map_.cells == OCCUPIED
     far = distance_transform_edt(~walls) * map_.resolution if walls.any() else None
@@ -76,7 +77,7 @@ def contradicted(scans: Sequence[Placed], map_: OccupancyMap) -> float:
 
 
 def _at(far: Floats, points: Floats, map_: OccupancyMap) -> Floats:
-    """Return how far from a wall points (..., 2) lie, in metres; those off the map: NaN."""
+    """Return the distance of points (..., 2) to the nearest wall in m; NaN outside the map."""
     cells = np.floor((points - map_.origin) / map_.resolution).astype(np.intp)
     rows, columns = cells[..., 1], cells[..., 0]
     inside = (rows >= 0) & (columns >= 0) & (rows < far.shape[0]) & (columns < far.shape[1])

@@ -1,8 +1,8 @@
-"""Poses of a log's scans by matching, where the log has only the wheels' own.
+"""Finds the poses of logged scans by scan matching if the log has wheel odometry only.
 
-Each scan is matched with the ones that were taken near it before, the oldest first, so that a robot
-that comes back to where it was finds itself there again. That takes away the small errors that add
-up; a large loop, around which the wheels went far astray, is closed by `pose_graph`.
+Each scan is matched with earlier scans nearby, the oldest among them, so that a robot that revisits
+a place gets the same pose there again. This removes small accumulated errors; `pose_graph` closes
+large loops with more drift.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from tangy_hw.navigation.mapping import Placed
 from tangy_hw.navigation.poses import between, compose, wrap
 from tangy_hw.navigation.scan_matching import Reference
 
-NEAR = 3.0  # metres within which earlier scans are matched with
-JOINED = 6  # of those, half of them the oldest and half the newest
-FITS, GOOD = 0.5, 0.75  # shares of points that must fit, and that need no second try
-TRIED = (-0.4, -0.2, 0.2, 0.4)  # radians by which the guess is turned for that
-FARTHEST, TURNED = 0.5, 0.6  # metres and radians by which a match may differ from the wheels
+NEAR = 3.0  # metres within which earlier scans are matched
+JOINED = 6  # earlier scans to match with: half the oldest, half the newest
+FITS, GOOD = 0.5, 0.75  # shares of points: a match needs FITS; below GOOD, turned guesses are tried
+TRIED = (-0.4, -0.2, 0.2, 0.4)  # radians by which those guesses are turned
+FARTHEST, TURNED = 0.5, 0.6  # metres and radians that a match may differ from odometry
 
 
 def aligned(scans: Sequence[Placed], tell: Callable[[int], None] | None = None) -> list[Placed]:
-    """Return the scans at the poses at which they fit one another.
+    """Return the scans at poses at which they match one another.
 
     Args:
-        scans: with the poses that the wheels counted, some 10 cm from one to the next.
-        tell: called with the number of scans done.
+        scans: the scans with odometry poses, some 10 cm apart.
+        tell: called with the number of scans done so far.
     """
     found: list[Placed] = []
     references: list[Reference] = []
@@ -61,7 +61,7 @@ def _matched(
         return guess
     joined = Reference.joined([(references[i], found[i].pose) for i in chosen])
     match = joined.match(one.scan, guess)
-    if match.fits < GOOD:  # wheels are worst at telling how far they turned
+    if match.fits < GOOD:  # odometry is worst at rotation
         turns = (Pose(guess.x, guess.y, wrap(guess.heading + turn)) for turn in TRIED)
         others = [joined.match(one.scan, turn) for turn in turns]
         match = max((match, *others), key=lambda each: each.fits)

@@ -1,6 +1,6 @@
-"""Clearance along an arc from the scanner's points, of whatever kind.
+"""Computes the clearance along an arc from laser points, whatever they belong to.
 
-How much of a command may be driven past people is the guard's to say (`people_guard`).
+`people_guard` decides how much of a command may be driven past people.
 """
 
 from __future__ import annotations
@@ -14,21 +14,20 @@ from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.people_guard import Around, passed
 from tangy_hw.navigation.poses import Floats, lengths
 
-REACH = 3.0  # metres beyond which nothing matters yet
-MARGIN = 0.02  # metres by which a scan may be wrong
-AWAY = 0.02  # metres by which driving must bring something nearer than it is, to count
-STRAIGHT = 0.02  # 1/m of curvature below which an arc is a line
+REACH = 3.0  # metres beyond which obstacles are ignored
+MARGIN = 0.02  # metres of error that a scan may have
+AWAY = 0.02  # metres by which driving must approach a point for it to count
+STRAIGHT = 0.02  # 1/m of curvature below which an arc counts as a line
 SPOT = 0.02  # m/s below which a robot turns on the spot
 
 
 def free_ahead(points: Floats, curvature: float, half: float | Floats) -> float:
-    """Return how many metres a robot's middle can go on an arc until it touches one of the points.
+    """Return how far, in m, the robot's centre can go on an arc until the robot touches a point.
 
     Args:
-        points: the obstacles (n, 2), in the robot's frame, in m.
-        curvature: of the arc, 1/m, positive to the left.
-        half: half the width that must be free, in metres; (n,) where it differs from point to
-            point.
+        points: obstacles (n, 2) in the robot's frame, in m.
+        curvature: curvature of the arc in 1/m, positive to the left.
+        half: half the width that must be free, in m; (n,) if it differs for each point.
     """
     if not len(points):
         return inf
@@ -49,12 +48,11 @@ def free_ahead(points: Floats, curvature: float, half: float | Floats) -> float:
 
 
 def room_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
-    """Return how many metres the robot may go on an arc (1/m, positive to the left).
+    """Return how many metres the robot may go on an arc of some curvature (1/m, positive left).
 
-    `points` (n, 2) are the obstacles, in the robot's frame, in m.
-
-    What it stands near already does not count as long as driving brings it no nearer: it is
-    possible to drive away from everything.
+    `points` (n, 2) are obstacles in the robot's frame, in m. An obstacle that is already closer
+    than the clearance counts only if driving brings the robot nearer to it, so the robot can always
+    drive away.
     """
     if not len(points):
         return inf
@@ -63,22 +61,22 @@ def room_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
 
 
 def speed_in(room: float, limits: MotionLimits) -> float:
-    """Return how fast a robot may drive into some room in m, in m/s: it must stop in it."""
+    """Return the speed in m/s from which a robot can stop within so many metres."""
     return sqrt(2 * limits.brake * max(0.0, min(room, REACH)))
 
 
 def guarded(twist: Twist, points: Floats, around: Around, limits: MotionLimits) -> Twist:
-    """Return a twist as it may be driven by hand: on the same arc, or turning.
+    """Return a twist reduced to the available clearance: on the same arc, or turning only.
 
-    The robot slows down near obstacles and stands before close ones, but may still turn. Behind,
-    where the scanner sees little, it is always slow. Turning cannot make a round robot touch
-    anything; beside close obstacles it turns slowly.
+    The robot slows down near obstacles and stops before close ones, but may still turn: a round
+    robot touches nothing by turning, and it turns slowly next to close obstacles. It always drives
+    backwards slowly, because its scanner sees little there.
 
     Args:
         twist: the commanded twist.
-        points: the obstacles, in metres (n, 2), in the robot's frame.
-        around: the points that may be people.
-        limits: how it may drive.
+        points: obstacles (n, 2) in the robot's frame, in m.
+        around: points that may be people.
+        limits: the motion limits.
     """
     forward, turn = limits.clamped(twist)
     if abs(forward) >= SPOT:

@@ -1,7 +1,7 @@
-"""Navigation without a map: the pose by wheel odometry alone, while staff drive by the keys.
+"""Dead reckoning: the pose by wheel odometry alone, while staff drive without a map.
 
-It plans no paths. It tracks people as the navigator does, so that driving by hand slows down for
-them, and records the scans from which a map is drawn.
+It plans no paths. It tracks people as `Navigator` does, so that driving by keys slows down near
+them, and records scans from which a map can be drawn.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ NOWHERE: Floats = np.zeros((0, 2))
 
 
 class DeadReckoning:
-    """Counts the way by the wheels, from a start pose; implements `NavigatorProtocol`."""
+    """Integrates wheel odometry from a start pose; implements `NavigatorProtocol`."""
 
     drives = False
     state: State = "idle"
@@ -34,12 +34,12 @@ class DeadReckoning:
     particles: Floats = np.zeros((0, 3))
 
     def __init__(self, recorder: ScanRecorder, start: Pose = HERE, laser: Pose = HERE) -> None:
-        """Begin at a pose.
+        """Start at a pose.
 
         Args:
             recorder: records the scans.
-            start: the robot's pose in the map that is to be drawn.
-            laser: where the scanner sits on the robot.
+            start: the robot's pose in the frame of the new map.
+            laser: pose of the scanner on the robot.
         """
         self._recorder, self._laser = recorder, laser
         self._pose = start
@@ -50,11 +50,11 @@ class DeadReckoning:
 
     @property
     def estimate(self) -> Estimate:
-        """The pose by the wheels; its error is not known."""
+        """Pose by wheel odometry; its error is unknown."""
         return Estimate(self._pose, np.zeros((3, 3)), 0.0, 1.0, 1)
 
     def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
-        """Follow the wheels and the people for `dt` s, and record the scan; it never drives."""
+        """Update pose and tracks for `dt` s and record the scan; always return a zero twist."""
         if self._odometry is not None:
             self._pose = compose(self._pose, between(self._odometry, odometry.pose))
         self._odometry = odometry.pose
@@ -66,27 +66,27 @@ class DeadReckoning:
         return STILL
 
     def go(self, goal: Pose) -> None:
-        """Drive nowhere: there is no map."""
+        """Do nothing: there is no map to plan on."""
 
     def spin(self) -> None:
-        """Turn nowhere: there is no place to find on a map."""
+        """Do nothing: there is no map to localise on."""
 
     def cancel(self) -> None:
-        """Stand still, which it does anyway."""
+        """Do nothing: the robot never drives by itself."""
 
     def held(self) -> None:
-        """Take note that the robot must not drive."""
+        """Do nothing: the robot never drives by itself."""
 
     def place(self, pose: Pose | None) -> None:
-        """Count the way from another pose, as staff say."""
+        """Set the pose, as given by staff; None keeps the current one."""
         self._pose = self._pose if pose is None else pose
 
     def finds_way(self, goal: Pose) -> bool:
-        """Return that there is no way."""
+        """Return False: there is no map to plan on."""
         return False
 
     def facts(self) -> Mapping[str, Fact]:
-        """Return path, fit, spread, slip and still, with nothing wrong."""
+        """Return path, fit, spread, slip and still, with values that report no problem."""
         return {"path": "clear", "fit": 1.0, "spread": 0.0, "slip": 0.0, "still": 0.0}
 
     def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:

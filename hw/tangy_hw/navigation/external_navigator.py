@@ -1,9 +1,9 @@
-"""Navigation by the robot's own stack: goals are handed to it, and cancelled there.
+"""Navigation by the robot's own stack: sends it goals, and cancels them.
 
-What that tells the base does not pass through our hands. So a robot that must not drive has its
-goal called off, and goes on with it when it may again; until the robot has confirmed that, it
-counts as driving, and the owner commands the base to stand. The same happens if a person walks into
-its way: its speed cannot be changed here, but its goal can be cancelled.
+Its velocity commands do not pass through Tangy. If the robot must not drive, the goal is cancelled,
+and sent again once the robot may drive. Until the robot confirms the cancellation, it counts as
+driving, and the owner of this object commands the base to stop. A person who walks into the robot's
+way also cancels the goal, because Tangy cannot change the robot's speed here.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from tangy_hw.navigation.poses import HERE, Floats
 from tangy_hw.navigation.surroundings import Held
 from tangy_profiles.health import Fact, Reading
 
-AGAIN_SECONDS = 0.5  # for which it must be allowed to drive until it goes on
-CLEARING_SECONDS = 10.0  # that people have to clear a way, which cannot be looked at before
+AGAIN_SECONDS = 0.5  # seconds that the robot must be allowed to drive before the goal is sent again
+CLEARING_SECONDS = 10.0  # seconds that people get to clear a path, which cannot be checked
 
 
 class ExternalNavigator:
-    """Lets a robot's own navigation find place and way."""
+    """Drives to goals with a robot's own localisation and planner."""
 
     def __init__(
         self, navigation: OwnNavigation, limits: MotionLimits | None = None, laser: Pose = HERE
     ) -> None:
-        """Begin without a goal; `laser` is where the scanner sits on the robot."""
+        """Start without a goal; `laser` is the pose of the scanner on the robot."""
         self.state: State = "idle"
         self.why = ""
-        """Why it failed or is blocked: one sentence."""
+        """Reason for `failed` or `blocked`: one sentence."""
         self.path = None
         self.lets: Held = ""
-        """The kind of person it waits for: one who walks into its way."""
+        """Kind of person it waits for: one who walks into its way."""
         self.tracks: tuple[Track, ...] = ()
         self._tracker, self._limits = PeopleTracker(laser), limits or MotionLimits()
         self.obstacles: Floats = np.zeros((0, 2))
@@ -54,40 +54,40 @@ class ExternalNavigator:
 
     # ------------------------------------------------------------------------------- commands
     def go(self, goal: Pose) -> None:
-        """Send a goal at the next tick; `state` and `why` report its progress."""
+        """Set a goal, which the next tick sends; `state` and `why` report the progress."""
         self.cancel()
         self.state, self._goal = "driving", goal
 
     def spin(self) -> None:
-        """Turn on the spot once, by the wheels, so that the scans show its navigation the pose."""
+        """Turn once on the spot, so that the robot's localisation sees the whole room."""
         self.cancel()
         self.state, self._turned = "spinning", 0.0
 
     def cancel(self) -> None:
-        """Call the goal off."""
+        """Cancel the goal."""
         self._call_off()
         self.state, self.why, self._goal = "idle", "", None
 
     def held(self) -> None:
-        """Call the goal off for now: the robot must not drive."""
+        """Cancel the goal until the robot may drive again."""
         self._allowed = 0.0
         self._call_off()
 
     def place(self, pose: Pose | None) -> None:
-        """Tell it where it is, as staff say; "anywhere" cannot be told.
+        """Send the robot its pose, as given by staff; None (unknown pose) is ignored.
 
         Raises:
-            DeviceError: it does not hear.
+            DeviceError: the robot cannot be reached.
         """
         if pose is not None:
             self._navigation.place(pose)
 
     def finds_way(self, goal: Pose) -> bool:
-        """Say whether people have had the time to clear the way: only driving shows more."""
+        """Return whether people have had time to clear the path."""
         return self._since_blocked >= CLEARING_SECONDS
 
     def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
-        """Hand the goal over when it may drive, and turn to look round; `dt` in s."""
+        """Send the goal if the robot may drive, or return the twist of a spin; `dt` is in s."""
         self._allowed += dt
         self._since_blocked += dt
         self._watch(odometry, scan, dt)
@@ -102,13 +102,13 @@ class ExternalNavigator:
         return STILL
 
     def _watch(self, odometry: Odometry, scan: Scan | None, dt: float) -> None:
-        """Track people, and make the robot wait for a person who walks into its way."""
+        """Track people, and hold the robot for a person who walks into its way."""
         if scan is None:
             return
         tracks = self._tracker.update(odometry.pose, scan, dt)
         self.tracks = tuple(one.seen_from(odometry.pose) for one in tracks)
         if self.lets and self._allowed < AGAIN_SECONDS:
-            return  # it goes on when nobody has come for a moment
+            return  # go on after nobody has come for a moment
         walking = [one for one in self.tracks if one.speed > WALKS]
         meets = passed(odometry.twist, Around(walking, np.zeros((0, 2))), self._limits) == STILL
         self.lets = "walking" if self.drives and meets and odometry.twist != STILL else ""
@@ -123,19 +123,19 @@ class ExternalNavigator:
 
     @property
     def estimate(self) -> Estimate | None:
-        """Where the robot says that it is; None before it has."""
+        """Pose that the robot reports; None before the first one."""
         if self._navigation.pose is None:
             return None
         fit, spread = self._sure()
         return Estimate(self._navigation.pose.value, np.zeros((3, 3)), spread, fit, 0)
 
     def facts(self) -> dict[str, Fact]:
-        """Return path, fit and spread; of how its wheels grip nothing is known."""
+        """Return path, fit and spread; slip and still are 0, because they are not measured here."""
         fit, spread = self._sure()
         return {"path": self._way(), "fit": fit, "spread": spread, "slip": 0.0, "still": 0.0}
 
     def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
-        """Return the readings of "localisation" and "navigator", their age in s the robot's own."""
+        """Return the readings of "localisation" and "navigator"; `age` in s is a lower bound."""
         place, way = self._navigation.localisation(), self._navigation.reading()
         return (
             place._replace(device="localisation", age=max(place.age, age)),
@@ -154,16 +154,16 @@ class ExternalNavigator:
 
     # ------------------------------------------------------------------ its goal at the robot
     async def _drive(self, goal: Pose) -> None:
-        if self._driving is not asyncio.current_task():  # called off before it began
+        if self._driving is not asyncio.current_task():  # cancelled before it started
             return
         state: State = "arrived"
         why = ""
         try:
             await self._navigation.go(goal)
-        except Exception as error:  # whatever it was, the drive is over
+        except Exception as error:  # any error ends the drive
             none = self._navigation.reading().facts["path"] == "none"
             state, why = "blocked" if none else "failed", str(error)
-        if self._driving is asyncio.current_task():  # it was not called off
+        if self._driving is asyncio.current_task():  # not cancelled meanwhile
             self._driving = None
             self.state, self.why = state, why
             if state == "blocked":

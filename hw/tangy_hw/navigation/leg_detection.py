@@ -1,4 +1,4 @@
-"""Legs and bodies in one scan: clusters of returns, and which two of them are a person's legs."""
+"""Detects legs and bodies in a scan: clusters of returns, and pairs of legs."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.likelihood import NEAREST
 from tangy_hw.navigation.poses import HERE, Floats, bearings, compose
 
-FARTHEST = 5.0  # metres beyond which a leg catches too few beams
-SPLIT, SPLIT_SHARE = 0.10, 0.02  # metres, and of the range, between the returns of two things
-SKIPPED = 3  # beams that met nothing of which one thing may have lost so many
-LEG = (0.03, 0.30)  # metres across
-BEHIND = 0.06  # metres from the side of a leg that is seen to its middle
-APART = (0.10, 0.45)  # metres between the two legs of a person
-CHAIR, SOLID = 0.25, 0.06  # legs further apart must both be so many metres across: chairs' are thin
-WIDEST = 0.9  # metres across, from which on it is a piece of furniture
-TORSO = 0.22  # metres from the middle of a person to the outermost of the torso
-REACH = 0.2  # metres that a torso and toes reach out beyond the middle of one leg, at least
+FARTHEST = 5.0  # metres beyond which too few beams hit a leg
+SPLIT, SPLIT_SHARE = 0.10, 0.02  # gap between two clusters: metres, and share of the range
+SKIPPED = 3  # beams without a return that a cluster may contain
+LEG = (0.03, 0.30)  # width in metres
+BEHIND = 0.06  # metres from the visible side of a leg to its centre
+APART = (0.10, 0.45)  # metres between the legs of a person
+CHAIR, SOLID = 0.25, 0.06  # legs further apart than CHAIR must be SOLID wide, in m
+WIDEST = 0.9  # metres of width above which a cluster is furniture
+TORSO = 0.22  # metres from the centre of a person to the edge of the torso
+REACH = 0.2  # minimum of metres that torso and toes extend beyond the centre of one leg
 
 
 class LegSighting(NamedTuple):
-    """A person, a leg or a thing in one scan: its middle, in m in the robot's frame.
+    """A person, leg or object in a scan: its centre in m in the robot's frame.
 
-    `half` is how far it reaches out from there, in m; `legs` says whether two legs were seen.
+    `half` is its radius in m; `legs` says whether a pair of legs was seen.
     """
 
     x: float
@@ -38,7 +38,7 @@ class LegSighting(NamedTuple):
 
 
 class Cluster(NamedTuple):
-    """Returns that belong to one thing: the middle behind its seen side, and how wide that is."""
+    """Returns from one object: its centre, behind the visible side, and its width, in m."""
 
     x: float
     y: float
@@ -48,12 +48,12 @@ class Cluster(NamedTuple):
 def sightings(
     scan: Scan, laser: Pose = HERE, unmapped: NDArray[np.bool_] | None = None
 ) -> list[LegSighting]:
-    """Return the people and things in a scan that the map does not have.
+    """Return the people and objects in a scan that are not on the map.
 
     Args:
         scan: the scan.
-        laser: where the scanner sits on the robot.
-        unmapped: (n,) for each beam, whether it ends off all that is on the map; None: all do.
+        laser: pose of the scanner on the robot.
+        unmapped: (n,) for each beam, whether it ends away from everything on the map; None: all do.
     """
     found = clusters(scan, laser, unmapped)
     legs = [one for one in found if LEG[0] <= one.width <= LEG[1]]
@@ -77,9 +77,9 @@ def sightings(
 
 
 def clusters(scan: Scan, laser: Pose, unmapped: NDArray[np.bool_] | None) -> list[Cluster]:
-    """Return the things of which a scan has returns, nearer than `FARTHEST`.
+    """Return the clusters of returns in a scan that are nearer than `FARTHEST`.
 
-    Beams (n,) that are not `unmapped` are left out.
+    Only `unmapped` beams (n,) count; None: all do.
     """
     kept = (scan.ranges > NEAREST) & (scan.ranges < min(FARTHEST, scan.farthest))
     if unmapped is not None:
@@ -108,7 +108,7 @@ def _cluster(points: Floats, far: float, step: float, laser: Pose) -> Cluster:
 
 
 def _pairs(legs: list[Cluster]) -> list[tuple[int, int]]:
-    """Return which legs belong together, the nearest to one another first."""
+    """Return the pairs of legs by their numbers, the closest pairs first."""
     near = []
     for a, one in enumerate(legs):
         for b in range(a + 1, len(legs)):
@@ -126,6 +126,6 @@ def _pairs(legs: list[Cluster]) -> list[tuple[int, int]]:
 
 
 def turned(x: float, y: float, heading: float) -> tuple[float, float]:
-    """Return a vector turned by an angle in rad."""
+    """Return a vector rotated by an angle in rad."""
     c, s = cos(heading), sin(heading)
     return c * x - s * y, s * x + c * y

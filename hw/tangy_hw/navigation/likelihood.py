@@ -1,4 +1,4 @@
-"""Likelihood fields: how well a scan, taken at a pose, fits a map (Thrun et al., ch. 6.4)."""
+"""Likelihood fields: how well a scan taken at a pose fits a map (Thrun et al., ch. 6.4)."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ Field: TypeAlias = NDArray[np.float32]
 
 BEAMS = 60
 NEAREST = 0.15  # metres: nearer returns come from the robot itself
-COVERED = 0.4  # share of beams that end that near
-SIGMA = 0.12  # metres by which a beam's end and the wall it hit are apart, map and pose included
-FLOOR = 0.1  # likelihood of a beam that ends in free space of the map: a person may stand there
-SHORT = 0.3  # metres by which a beam goes past a wall, or stops before one
-MOST_STEPS = 60  # along a beam
-WALL = 15  # cells that hang together and make a wall; chairs have fewer, and are moved about
+COVERED = 0.4  # share of beams that end this near if the scanner is covered
+SIGMA = 0.12  # metres between a beam's end and its wall, with the errors of map and pose
+FLOOR = 0.1  # likelihood of a beam that ends in free space, for example at a person
+SHORT = 0.3  # metres that a beam must pass beyond a wall to contradict it
+MOST_STEPS = 60  # steps of the search along a beam
+WALL = 15  # connected cells that make a wall; chairs have fewer, and move
 
 
 def thin(scan: Scan, farthest: float, laser: Pose = HERE, beams: int = BEAMS) -> Floats:
-    """Return the ends of some beams (n, 2), in m, spread evenly over those that met something."""
+    """Return the ends (n, 2), in m, of at most `beams` beams with a return, evenly spaced."""
     points = endpoints(scan, farthest, laser, NEAREST)
     if len(points) <= beams:
         return points
@@ -33,16 +33,16 @@ def thin(scan: Scan, farthest: float, laser: Pose = HERE, beams: int = BEAMS) ->
 
 
 def covered(scan: Scan) -> bool:
-    """Say whether so much hangs right before the scanner that it tells nothing about the room."""
+    """Return whether the scanner is covered, so that the scan says nothing about the room."""
     return bool((scan.ranges < NEAREST).mean() > COVERED)
 
 
 class ScanLikelihood(NamedTuple):
-    """The evidence of a scan's beams for one pose.
+    """How well the beams of a scan support a pose.
 
-    `score` is how well those fit that something on the map explains or contradicts; `share` is how
-    many of all beams those are. The others end before anything on the map: something is in the way,
-    which says nothing about where the robot is.
+    `score` is the mean fit of the beams that the map explains or contradicts, and `share` the share
+    of these beams. The others end in front of everything on the map, at an obstacle, and say
+    nothing about the pose.
     """
 
     score: float
@@ -50,7 +50,7 @@ class ScanLikelihood(NamedTuple):
 
 
 class LikelihoodField:
-    """For each cell, how likely a beam ends there: 1 at a wall, `FLOOR` far from any."""
+    """Likelihood that a beam ends in a cell: 1 at a wall, `FLOOR` far from walls."""
 
     def __init__(self, map_: OccupancyMap, sigma: float = SIGMA) -> None:
         self.map = map_
@@ -64,18 +64,18 @@ class LikelihoodField:
         self._room = np.pad(_room(map_), 1, mode="edge").ravel()
 
     def scores(self, poses: Floats, points: Floats) -> Floats:
-        """Return how well beams fit at each of the poses (m, 3): the mean over them, 0 to 1.
+        """Return the mean likelihood (0 to 1) of the beams at each of the poses (m, 3).
 
         Args:
             poses: x, y, heading.
-            points: the ends of beams (n, 2), in the robot's frame.
+            points: ends of the beams (n, 2) in the robot's frame.
         """
         return np.asarray(self.beams(poses, points).mean(axis=1), dtype=np.float64)
 
     def beams(self, poses: Floats, points: Floats) -> Field:
-        """Return how likely each beam is at each pose (m, n)."""
+        """Return the likelihood of each beam at each pose (m, n)."""
         scale = 1.0 / self.map.resolution
-        # in cells, in single precision: a tenth of a millimetre on a map of a hundred metres
+        # in cells, single precision: .1 mm on a map of 100 m
         c = (np.cos(poses[:, 2]) * scale).astype(np.float32)[:, None]
         s = (np.sin(poses[:, 2]) * scale).astype(np.float32)[:, None]
         x = ((poses[:, 0] - self.map.origin[0]) * scale + 1).astype(np.float32)[:, None]
@@ -92,11 +92,11 @@ class LikelihoodField:
         return np.asarray(self._flat.take(index))
 
     def evidence(self, pose: Pose, points: Floats) -> ScanLikelihood:
-        """Return the evidence of beams (n, 2: their ends, in the robot's frame) for a pose."""
+        """Return how well beams with ends `points` (n, 2), in the robot's frame, support a pose."""
         if not len(points):
             return ScanLikelihood(0.0, 0.0)
         fits = self.beams(np.asarray([pose]), points)[0]
-        # a beam that fits nowhere and went through a wall speaks against the pose
+        # an unexplained beam that crosses a wall contradicts the pose
         through = fits < 0.5
         through[through] = self._crosses(pose, points[through])
         tells = through | (fits > 2 * FLOOR)
@@ -107,7 +107,7 @@ class LikelihoodField:
         )
 
     def _crosses(self, pose: Pose, points: Floats) -> NDArray[np.bool_]:
-        """Say of each beam whether it went through a wall, in steps as long as none is near."""
+        """Return whether each beam crosses a wall; step by the distance to the nearest wall."""
         far = lengths(points)
         reach = far - SHORT
         ends = placed(points, pose)
@@ -133,12 +133,12 @@ class LikelihoodField:
         return np.asarray(np.clip(cells[:, 1], 0, rows - 1).astype(np.intp) * columns + column)
 
     def on_floor(self, poses: Floats) -> NDArray[np.bool_]:
-        """Say of each pose (m, 3) whether it lies where the map is free."""
+        """Return whether each of the poses (m, 3) lies on free floor."""
         return np.asarray(self._free[self._index(poses[:, :2])])
 
 
 def _room(map_: OccupancyMap) -> Field:
-    """Return the distance to occupied cells of parts large enough to be fixed, in m."""
+    """Return the distance in m to the nearest group of occupied cells large enough to be a wall."""
     parts, _ = label(map_.cells == OCCUPIED, np.ones((3, 3)))
     sizes = np.bincount(parts.ravel())
     sizes[0] = 0

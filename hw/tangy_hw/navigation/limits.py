@@ -8,22 +8,22 @@ from math import isfinite, radians
 from tangy_hw.device_protocols import STILL, Pose, Twist
 from tangy_profiles.robot import Robot
 
-PLANNED = 0.6  # of how hard a base brakes, by which drives are planned
+PLANNED = 0.6  # share of the braking deceleration that planned drives use
 
 
 @dataclass(frozen=True)
 class MotionLimits:
-    """Limits of a base: m/s, rad/s, m/s^2, rad/s^2, and m.
+    """Limits of a base in m/s, rad/s, m/s^2, rad/s^2, and m.
 
-    `radius` is the robot's own, or that of its outermost corner if it has `corners` (x, y in m,
-    counter-clockwise); `gap` always stays free ahead. Within `wary` of people, on any side, the
-    speed limit is `gentle`. `unseen` is the limit in directions that the laser does not see; within
-    `close` of obstacles the limit for turning is `turn_close`.
+    `radius` is that of the robot, or of its outermost corner if it has `corners` (x, y in m,
+    counter-clockwise). `gap` always stays free ahead. Within `wary` of people on any side, the
+    speed limit is `gentle`; `unseen` is the limit in directions that the laser does not see. Within
+    `close` of obstacles, `turn_close` limits turning.
 
-    Near people the robot must be able to stop before they meet (see `people_guard`): `late` is the
-    delay until it brakes in s, `stops` the deceleration, `spare` the distance left at the end.
-    People are assumed to approach `approach` m/s faster than now, new tracks `approach_new`;
-    walkers may turn, and come at `approach_turned`.
+    Near people the robot must be able to stop in time (see `people_guard`): `late` is the latency
+    until it brakes in s, `stops` the deceleration, `spare` the distance left at the end. People are
+    assumed to approach `approach` m/s faster than now, and new tracks `approach_new`; walkers may
+    turn round and approach at `approach_turned`.
     """
 
     speed: float = 0.5
@@ -48,7 +48,7 @@ class MotionLimits:
 
     @classmethod
     def of(cls, robot: Robot) -> MotionLimits:
-        """Return how a robot may drive, as its file describes its body."""
+        """Return the limits of a robot from the body in its file."""
         body = robot.body
         return cls(
             speed=robot.speed,
@@ -61,10 +61,7 @@ class MotionLimits:
         )
 
     def clamped(self, twist: Twist) -> Twist:
-        """Return a twist on the same arc that is no faster than it may be; no number is none.
-
-        Whatever is not a finite number stands still.
-        """
+        """Scale a twist to the limits, on the same arc; a twist that is not finite becomes zero."""
         forward, turn = twist
         if not (isfinite(forward) and isfinite(turn)):
             return STILL
@@ -79,6 +76,6 @@ class MotionLimits:
 
 
 def laser_of(robot: Robot) -> Pose:
-    """Return where a robot's scanner sits on it: x and y in m, its heading in rad."""
+    """Return the pose of a robot's scanner on it: x and y in m, heading in rad."""
     laser = robot.body.laser
     return Pose(laser.x, laser.y, radians(laser.yaw))

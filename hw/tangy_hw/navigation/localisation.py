@@ -1,8 +1,8 @@
 """Adaptive Monte Carlo localisation with recovery (Thrun et al., ch. 8.3).
 
 Particles move with the odometry, are weighted by the fit of the scan to a likelihood field, and
-resampled. A fast and a slow average of that fit detect a robot that was carried away: while the
-fast one is much lower, some particles are redrawn where the scan fits.
+resampled. A fast and a slow average of the fit detect a kidnapped robot: while the fast average is
+much lower, some particles are drawn again where the scan fits.
 """
 
 from __future__ import annotations
@@ -20,37 +20,37 @@ from tangy_hw.navigation.particles import MOST, around, likeliest, move, needed,
 from tangy_hw.navigation.pose_search import Search
 from tangy_hw.navigation.poses import HERE, Floats, between, compose, wrap
 
-LOST = 0.85  # of the usual fit: below this the robot is probably not where it thinks
-WIDE = 0.5  # metres of spread from which on it thinks more than one place possible
-DOUBT = 0.95  # of the usual fit: below this a scan does not update the usual fit
-MOVED, TURNED = 0.1, 0.1  # metres and radians after which the particles are weighed again
-FAST, SLOW = 0.1, 0.002  # shares of a new value in the averages of the fit
+LOST = 0.85  # of the usual fit: below this the estimated pose is probably wrong
+WIDE = 0.5  # metres of spread above which several places are possible
+DOUBT = 0.95  # of the usual fit: below this, a scan does not update the usual fit
+MOVED, TURNED = 0.1, 0.1  # metres and radians after which particles are weighted again
+FAST, SLOW = 0.1, 0.002  # weights of a new value in the averages of the fit
 USUAL, BELIEF = (
     0.75,
     10,
-)  # the fit at a right pose before any scan, and how many scans that is worth
-SHARPNESS = 30.0  # the exponent that makes a weight of the fit
-START = (0.1, 0.1, 0.05)  # metres, metres, radians: spread of a given start
-FARTHEST = 20.0  # metres beyond which beams are not used
-FEWEST_BEAMS = 10  # that must have met something
-SEEN = 0.2  # share of the beams that something on the map must explain, or contradict
-BLIND = 0.02  # the squared error of the wheels, while only they are known: they do not spin
-GENTLE = 0.15  # of the sharpness, while several places are possible
-EVERY = 360  # beams that count while several places are possible: few tell them apart
-SETTLING = 15  # scans with a good fit at one place until it is believed
-JUMP, PROOF = 0.5, 0.75  # metres to another place, which must prove itself from such a fit on
-FRESH = 0.1  # share of the particles that is redrawn until then
-FIRST_TRIED, TRIED, PLACES = 20_000, 4000, 40  # poses looked at first, and then; kept of them
+)  # prior for the usual fit at a correct pose, and its weight in scans
+SHARPNESS = 30.0  # exponent that turns the fit into a weight
+START = (0.1, 0.1, 0.05)  # m, m, rad: standard deviations of a given start
+FARTHEST = 20.0  # metres beyond which beams are ignored
+FEWEST_BEAMS = 10  # beams with a return that a scan needs
+SEEN = 0.2  # share of beams that the map must explain or contradict
+BLIND = 0.02  # odometry noise without scans: the squared error for each squared unit moved
+GENTLE = 0.15  # factor on SHARPNESS while several places are possible
+EVERY = 360  # beams used while several places are possible: few beams tell them apart
+SETTLING = 15  # scans with a good fit at one place before it is believed
+JUMP, PROOF = 0.5, 0.75  # metres of a jump that resets the fast fit, and the share it resets to
+FRESH = 0.1  # share of the particles drawn again until then
+FIRST_TRIED, TRIED, PLACES = 20_000, 4000, 40  # poses tried at first, later, and kept
 
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """Where the robot thinks it is.
+    """Estimated pose of the robot.
 
-    `covariance` (3, 3) is that of the likeliest cluster of particles, `spread` the root mean square
-    distance in metres of all particles from `pose`; `fit` is how well scans fit lately, 1 is as
-    usual; `count` is how many particles there are. `settled` says that one place has been
-    believed for a while.
+    `covariance` (3, 3) is that of the most likely cluster of particles, `spread` the root mean
+    square distance in m of all particles from `pose`, `fit` the recent fit of the scans relative to
+    the usual one (1), and `count` the number of particles. `settled` says whether one place has
+    been believed for a while.
     """
 
     pose: Pose
@@ -67,23 +67,23 @@ class Estimate:
 
     @property
     def found(self) -> bool:
-        """Whether it is localised: one pose is believed, and no other is likely."""
+        """Whether the robot is localised: one pose is believed, and no other is likely."""
         return self.settled and not self.lost and self.spread < WIDE
 
 
 class Localisation:
-    """Follows the robot over a map."""
+    """Estimates the robot's pose on a map."""
 
     def __init__(
         self, map_: OccupancyMap, rng: Generator, start: Pose | None = None, laser: Pose = HERE
     ) -> None:
-        """Begin.
+        """Start.
 
         Args:
             map_: the map.
-            rng: where chance comes from.
-            start: where the robot is, within some 10 cm; None: it may be anywhere.
-            laser: where the scanner sits on the robot.
+            rng: the random generator.
+            start: the robot's pose, within some 10 cm; None: it may be anywhere.
+            laser: pose of the scanner on the robot.
         """
         self._rng = rng
         self._laser = laser
@@ -94,7 +94,7 @@ class Localisation:
         self.place(start)
 
     def place(self, pose: Pose | None) -> None:
-        """Take it that the robot is at a pose now (None: anywhere), as staff say."""
+        """Restart at a pose given by staff; None: the robot may be anywhere."""
         self._global = pose is None
         if pose is None:
             self._particles = self._search.anywhere(MOST)
@@ -109,15 +109,15 @@ class Localisation:
 
     @property
     def particles(self) -> Floats:
-        """The poses that are thought possible (n, 3)."""
+        """Particles: possible poses (n, 3)."""
         return self._particles
 
     def update(self, odometry: Pose, scan: Scan) -> Estimate:
-        """Update with odometry and a scan of one moment, and return the estimated pose.
+        """Update with simultaneous odometry and scan, and return the estimate.
 
         Args:
-            odometry: the pose that the wheels have counted, in any frame that stays.
-            scan: the scan from there.
+            odometry: pose by wheel odometry, in any fixed frame.
+            scan: the scan.
         """
         points = thin(scan, FARTHEST, self._laser)
         first = self._odometry is None
@@ -129,7 +129,7 @@ class Localisation:
         evidence = self._field.evidence(here, points)
         seen = len(points) >= FEWEST_BEAMS and not covered(scan)
         if not seen or (evidence.share < SEEN and not self._global):
-            if moved:  # only the wheels count
+            if moved:  # move by odometry alone
                 self._odometry = odometry
                 self._particles = move(self._particles, step, self._rng, BLIND)
                 self._sum_up()
@@ -143,14 +143,14 @@ class Localisation:
         every = thin(scan, FARTHEST, self._laser, EVERY) if self._unsettled else points
         self._weigh(every)
         if not first and hypot(self._anchor.x - here.x, self._anchor.y - here.y) > JUMP:
-            self._fast = min(self._fast, PROOF * self._slow)  # it was wrong before, or is now
+            self._fast = min(self._fast, PROOF * self._slow)  # one of the two poses is wrong
         score = self._field.evidence(self._anchor, every).score
         self._note(score, moved or first)
         self._renew(every)
         return self._told(self._anchor)
 
     def _note(self, score: float, moved: bool) -> None:
-        """Take a score into both averages, and see whether the robot has found one place."""
+        """Update both averages with a score, and count the scans until the pose has settled."""
         self._fast += FAST * (score - self._fast)
         self._scans += 1
         doubtful = self._fast < DOUBT * self._slow  # so it must not change the usual fit
@@ -164,7 +164,7 @@ class Localisation:
     def _weigh(self, points: Floats) -> None:
         scores = self._field.scores(self._particles, points)
         scores = np.where(self._field.on_floor(self._particles), scores, 0.1 * scores)
-        # of two places that look alike, more than one scan must decide
+        # more than one scan must decide between places that look alike
         weights = scores ** (SHARPNESS * GENTLE if self._unsettled else SHARPNESS)
         total = weights.sum()
         self._weights = weights / total if total > 0 else np.full(len(weights), 1 / len(weights))
@@ -179,7 +179,7 @@ class Localisation:
         return sqrt(float(self._weights @ (x * x + y * y)))
 
     def _renew(self, points: Floats) -> None:
-        """Resample; until the pose has settled, redraw a part where the scan fits."""
+        """Resample; until the pose has settled, draw some particles again where the scan fits."""
         drawn = resample(self._particles, self._weights, len(self._particles), self._rng)
         count, renewed = needed(drawn), self._particles[:0]
         if self._unsettled:
@@ -193,7 +193,7 @@ class Localisation:
         kept = resample(self._particles, self._weights, count - len(renewed), self._rng)
         self._particles = np.vstack((kept, renewed))
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
-        self._spread = self._spread_now()  # includes the particles added again
+        self._spread = self._spread_now()  # includes the new particles
 
     def _told(self, pose: Pose) -> Estimate:
         where = Pose(pose.x, pose.y, wrap(pose.heading))

@@ -1,4 +1,4 @@
-"""A map as lines of text, two cells one above the other to a character, so that people can look."""
+"""Draws a map as lines of text, with two cells above each other in a character."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ def map_lines(
     robot: tuple[float, float] | None = None,
     ascii_only: bool = False,
 ) -> list[str]:
-    """Return lines of limited length, the highest y at the top.
+    """Return lines of limited length, with the highest y at the top.
 
-    Walls are full blocks, free floor is blank, keep-out areas and unknown cells are shaded;
-    in ASCII they are `#`, blank, `+` and `.`.
+    Walls are full blocks, free floor is blank, keep-out areas and unknown cells are shaded; in
+    ASCII they are `#`, blank, `+` and `.`.
 
     Args:
         map_: the map.
-        columns: the longest line.
-        rows: the most lines; 0: as many as it takes.
-        robot: where the robot is marked (x, y in m).
+        columns: maximum length of a line.
+        rows: maximum number of lines; 0: no limit.
+        robot: position of the robot to mark (x, y in m).
         ascii_only: draw with ASCII characters.
     """
     by = ceil(map_.shape[1] / columns)
@@ -57,7 +57,7 @@ def map_lines(
 
 
 def _cell(map_: OccupancyMap, robot: tuple[float, float], by: int, count: int) -> tuple[int, int]:
-    """Return the line and the column of a point, where `count` rows of squares are drawn."""
+    """Return the line and column of a point in a drawing of `count` rows of cells."""
     column, row = (
         int((at - corner) / map_.resolution / by)
         for at, corner in zip(robot, map_.origin, strict=True)
@@ -74,7 +74,7 @@ def _kinds(map_: OccupancyMap) -> NDArray[np.int64]:
 
 
 def _shrunk(kinds: NDArray[np.int64], by: int) -> NDArray[np.int64]:
-    """Join squares of cells: a wall in one makes it a wall, and free floor beats the unseen."""
+    """Join squares of cells: a wall in a square makes it a wall, and free beats unknown."""
     rows, columns = (ceil(n / by) for n in kinds.shape)
     whole = np.full((rows * by, columns * by), UNSEEN)
     whole[: kinds.shape[0], : kinds.shape[1]] = kinds

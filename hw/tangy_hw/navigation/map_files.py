@@ -1,8 +1,9 @@
-"""Maps as files: the YAML and the picture that ROS's map_server writes and reads.
+"""Reads and writes maps as files: YAML and image, in the format of ROS's map_server.
 
-The YAML names the picture, the resolution (metres to a pixel), the origin (x, y and yaw of the
-lower left corner) and the shares of darkness from which on a pixel is occupied or free; between
-them it is unknown ("trinary"). Keep-out areas are a second such map beside the first.
+The YAML names the image, the resolution (metres per pixel), the origin (x, y and yaw of the lower
+left corner), and the thresholds of darkness above which a pixel is occupied and below which it is
+free; in between it is unknown ("trinary"). Keep-out areas are a second map of this kind beside the
+first.
 """
 
 from __future__ import annotations
@@ -21,17 +22,17 @@ from tangy_profiles.given_file import open_given, read_given_text
 from tangy_profiles.reading import nearest, plain
 
 BLACK, GREY, WHITE = 0, 205, 254
-FREE_BELOW, OCCUPIED_ABOVE = 0.196, 0.65  # grey (205) is darker than .196 by a hair: unknown
+FREE_BELOW, OCCUPIED_ABOVE = 0.196, 0.65  # grey (205) is just darker than .196: unknown
 MOST_PIXELS = 40_000_000
 LARGEST = 100_000  # bytes of a YAML
 LARGEST_PICTURE = 200_000_000  # bytes
-FORMATS = ("PPM", "PNG", "BMP", "TIFF", "JPEG")  # by the contents of a file, whatever its name
+FORMATS = ("PPM", "PNG", "BMP", "TIFF", "JPEG")  # by content, whatever the file's name
 KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
-KEEP_OUT = "-keep-out"  # ends the names of the files with keep-out areas
+KEEP_OUT = "-keep-out"  # suffix of the files with keep-out areas
 
 
 class MapFileError(TangyError):
-    """A file that gives no map; one sentence with file and key."""
+    """An invalid map file; one sentence with file and key."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +46,10 @@ class _Settings:
 
 
 def read_map(path: Path) -> OccupancyMap:
-    """Read a map, with its keep-out areas if NAME-keep-out.yaml is beside NAME.yaml.
+    """Read a map, with its keep-out areas if NAME-keep-out.yaml exists beside NAME.yaml.
 
     Raises:
-        MapFileError: the problem and its place, in one sentence.
+        MapFileError: one sentence with the problem and its place.
     """
     found = _read_one(path)
     beside = path.with_name(f"{path.stem}{KEEP_OUT}.yaml")
@@ -61,10 +62,10 @@ def read_map(path: Path) -> OccupancyMap:
 
 
 def write_map(map_: OccupancyMap, path: Path) -> list[Path]:
-    """Write NAME.yaml and NAME.pgm, and the same for keep-out areas, if there are any.
+    """Write NAME.yaml and NAME.pgm, and two more files for keep-out areas if there are any.
 
     Returns:
-        The files that were written.
+        The paths of the written files.
 
     Raises:
         MapFileError: a file cannot be written.
@@ -99,7 +100,7 @@ def _write_one(map_: OccupancyMap, cells: Cells, path: Path) -> list[Path]:
 
 
 def grey(cells: Cells) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
-    """Return the picture of a map (rows, columns), north up: white free, black occupied."""
+    """Return a map as an image (rows, columns), north up: free is white, occupied black."""
     shade = np.full(cells.shape, GREY, dtype=np.uint8)
     shade[cells == FREE] = WHITE
     shade[cells == OCCUPIED] = BLACK
@@ -120,7 +121,7 @@ def _picture(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     name = plain(str(path))
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of its size, which is asked about here
+            warnings.simplefilter("ignore")  # about its size, which is checked here
             with (
                 open_given(path, LARGEST_PICTURE, MapFileError) as given,
                 Image.open(given, formats=FORMATS) as file,
@@ -170,7 +171,7 @@ def _settings(path: Path) -> _Settings:
 
 
 def _yaml(text: str, name: str) -> dict[str, list[str]]:
-    """Read `key: value`, `key: [a, b]` and `key:` with lines of `- a`: all that these files use."""
+    """Parse `key: value`, `key: [a, b]` and `key:` with `- a` lines: all that map files use."""
     values: dict[str, list[str]] = {}
     key = ""
     for number, line in enumerate(text.splitlines(), 1):
@@ -194,7 +195,7 @@ def _yaml(text: str, name: str) -> dict[str, list[str]]:
 
 
 def _without_comment(line: str) -> str:
-    """Return a line without its comment: a # at its start or after a space."""
+    """Return a line without its comment, a # at its start or after a space."""
     if line.lstrip().startswith("#"):
         return ""
     return line.split(" #", 1)[0]

@@ -1,7 +1,7 @@
-"""Maps from scans: each beam says that its way is free, and that something stands at its end.
+"""Draws maps from scans: cells along a beam are free, the cell at its end is occupied.
 
-A cell is occupied if enough of the beams that came to it ended in it (counting model; Thrun et
-al., ch. 9). Poses come with the scans, or are found by matching each scan with the map so far.
+A cell is occupied if enough of the beams that reached it ended in it (counting model; Thrun et al.,
+ch. 9).
 """
 
 from __future__ import annotations
@@ -18,26 +18,26 @@ from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from tangy_hw.navigation.poses import Floats, between, endpoints, placed
 from tangy_profiles.errors import TangyError
 
-REACH = 20.0  # metres of a beam that are used
-SHARE = 0.25  # of the beams that came to a cell must have ended there
+REACH = 20.0  # metres of a beam that count
+SHARE = 0.25  # of the beams that reached an occupied cell ended there
 MOST_CELLS = 40_000_000
-SHIFT = 4  # fractional bits of the corners of polygons
+SHIFT = 4  # fractional bits of polygon corners
 
 
 class MapError(TangyError):
-    """A map that cannot be made; one sentence."""
+    """A map that cannot be drawn; one sentence."""
 
 
 @dataclass(frozen=True)
 class Placed:
-    """A scan and where the laser was."""
+    """A scan and the pose of the laser."""
 
     scan: Scan
     pose: Pose
 
 
 def sparse(scans: Iterable[Placed], metres: float = 0.1, radians: float = 0.1) -> list[Placed]:
-    """Leave out scans taken within so many m and rad of the last one."""
+    """Drop scans taken within so many m and rad of the last kept one."""
     kept: list[Placed] = []
     for one in scans:
         if kept:
@@ -49,15 +49,15 @@ def sparse(scans: Iterable[Placed], metres: float = 0.1, radians: float = 0.1) -
 
 
 class MapMaker:
-    """A map that grows scan by scan."""
+    """Builds a map scan by scan."""
 
     def __init__(
         self, left: float, near: float, right: float, far: float, resolution: float
     ) -> None:
-        """Begin with an empty map of an area (metres).
+        """Start with an empty map of an area in m.
 
         Raises:
-            MapError: it is too large.
+            MapError: the area is too large.
         """
         columns, rows = ceil((right - left) / resolution), ceil((far - near) / resolution)
         if rows * columns > MOST_CELLS:
@@ -72,11 +72,11 @@ class MapMaker:
         self._seen = np.zeros((rows, columns), dtype=np.uint8)
 
     def add(self, scan: Scan, pose: Pose) -> None:
-        """Draw a scan that was taken at a pose of the laser."""
+        """Add a scan taken at a pose of the laser."""
         ranges = np.where(np.isfinite(scan.ranges), scan.ranges, 0.0)
         known = (scan.ranges > 0) & (scan.ranges < scan.farthest)
         met = known & (scan.ranges < REACH)
-        # the cells that a beam passed, except the one it ended in
+        # the cells that a beam passed, without the one it ended in
         through = np.where(met, np.maximum(ranges - self.resolution, 0), np.where(known, REACH, 0))
         angles = scan.first + scan.step * np.arange(len(ranges))
         free = np.column_stack((through * np.cos(angles), through * np.sin(angles)))
@@ -88,7 +88,7 @@ class MapMaker:
         part = np.s_[low[1] : high[1], low[0] : high[0]]
         seen = self._seen[part]
         seen[:] = 0
-        # pixels of OpenCV have their middles at whole numbers
+        # OpenCV pixels have their centres at integers
         drawn = np.round((corners - low - 0.5) * (1 << SHIFT)).astype(np.int32)
         cv2.fillPoly(seen, [drawn.reshape(-1, 1, 2)], 1, shift=SHIFT)
         ends = np.floor(self._cells(placed(endpoints(scan, REACH), pose))).astype(int)
@@ -105,7 +105,7 @@ class MapMaker:
         return np.asarray((points - np.array(self.origin)) / self.resolution)
 
     def map(self, share: float = SHARE) -> OccupancyMap:
-        """Return the map as far as it is known: occupied from this share of beams on."""
+        """Return the map; cells are occupied from this share (0 to 1) of beams on."""
         cells = np.full(self._hits.shape, UNKNOWN, dtype=np.int8)
         cells[self._visits > 0] = FREE
         cells[(self._hits > 0) & (self._hits >= share * self._visits)] = OCCUPIED
@@ -113,7 +113,7 @@ class MapMaker:
 
 
 def extent(scans: Sequence[Placed], margin: float = 0.5) -> tuple[float, float, float, float]:
-    """Return left, near, right, far of all that the scans saw, in metres."""
+    """Return left, near, right and far of everything that the scans saw, in m."""
     ends = [placed(endpoints(one.scan, REACH), one.pose) for one in scans]
     places = np.array([(one.pose.x, one.pose.y) for one in scans])
     every = np.vstack((*ends, places))
@@ -123,10 +123,10 @@ def extent(scans: Sequence[Placed], margin: float = 0.5) -> tuple[float, float, 
 
 
 def map_of_scans(scans: Sequence[Placed], resolution: float = 0.05) -> OccupancyMap:
-    """Draw the map of scans whose poses are known, with cells of so many m.
+    """Draw the map of scans with known poses, with cells of `resolution` m.
 
     Raises:
-        MapError: there are none, or the map would be too large.
+        MapError: there are no scans, or the map would be too large.
     """
     if not scans:
         raise MapError("There are no scans to draw a map of.")

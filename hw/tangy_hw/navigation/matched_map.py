@@ -1,4 +1,4 @@
-"""A map of a log, judged: do its loops close, and if not, does a graph of poses close them?"""
+"""Judges the map of a log: do its loops close, and if not, does a pose graph close them?"""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from tangy_hw.navigation.pose_graph import close_loops
 from tangy_hw.navigation.revisits import Revisits, revisits
 
 BETTER = 0.7
-"""Share of the contradicted beams that may be left once loops are closed.
+"""Share of the contradicted beams that may be left after closing loops.
 
-Where wheels slipped along a bare corridor, nothing tells where, and loops that were closed bend the
-map without contradicting it less. Both limits were chosen on simulated corridors; in Freiburg's
-building 079, on which nothing was chosen, .30 are left.
+If wheels slipped along a bare corridor, no scan shows where, and closing the loops bends the map
+without removing contradictions. Both limits were chosen on simulated corridors; on Freiburg's
+building 079, which was not used for choosing, .30 are left.
 """
 SLIPPED = 0.015
-"""Share of the way driven from which on a correction is no drift: the wheels slipped somewhere."""
+"""Share of the path length above which a correction is not drift: the wheels slipped."""
 CLOSED_PER_TORN = 3
-"""Loops that must close for each that stays torn, as a place that only looks alike does."""
+"""Closed loops required for each torn one, which may be a place that only looks alike."""
 TRIES = 2
-"""How often loops are looked for and closed."""
+"""How often loops are searched and closed."""
 
 
 class JudgedMap(NamedTuple):
-    """A map and its scans; the share of beams that contradict it, its loops, and the verdict."""
+    """A map and its scans, with the share of contradicted beams, the loops, and the verdict."""
 
     scans: Sequence[Placed]
     map: OccupancyMap
@@ -37,22 +37,22 @@ class JudgedMap(NamedTuple):
     found: Revisits
     closes: Verdict
     by_graph: bool = False
-    """Whether a graph of poses closed its loops."""
+    """Whether a pose graph closed its loops."""
 
 
 def judged(scans: Sequence[Placed], resolution: float) -> JudgedMap:
-    """Draw the map of scans at cells of so many metres, and judge it."""
+    """Draw and judge the map of scans, with cells of `resolution` m."""
     map_ = map_of_scans(scans, resolution)
     share, found = contradicted(scans, map_), revisits(scans)
     return JudgedMap(scans, map_, share, found, verdict(share, found))
 
 
 def with_loops_closed(drawn: JudgedMap, resolution: float) -> JudgedMap:
-    """Return the map with its loops closed, or as it was where that does not make it better.
+    """Return the map with its loops closed, or unchanged if that does not improve it.
 
     Args:
-        drawn: the map, judged.
-        resolution: of the map, in metres to a cell.
+        drawn: the judged map.
+        resolution: metres per cell.
     """
     best = drawn
     for _ in range(TRIES):
@@ -67,7 +67,7 @@ def with_loops_closed(drawn: JudgedMap, resolution: float) -> JudgedMap:
 
 
 def _corrected(before: JudgedMap, after: JudgedMap) -> float:
-    """Return how far the scan that moved most did, as a share of the way."""
+    """Return the largest correction of a scan's position, as a share of the path length."""
     old, new = (np.array([one.pose[:2] for one in drawn.scans]) for drawn in (before, after))
     way = np.hypot(*np.diff(old, axis=0).T).sum()
     return float(np.hypot(*(new - old).T).max() / way) if way else 0.0

@@ -1,7 +1,7 @@
-"""The navigator: where the robot is, where it is to go, and how to drive now.
+"""The navigator: localisation, path planning and path following.
 
-It has no connections and no clock: some ten times a second its owner passes wheel odometry and
-laser scans, and sends the returned twist to the base.
+It has no connections and no clock: about ten times a second, its owner passes wheel odometry and a
+laser scan, and sends the returned twist to the base.
 """
 
 from __future__ import annotations
@@ -36,22 +36,22 @@ from tangy_hw.navigation.surroundings import Held, Surroundings
 from tangy_profiles.health import OK, Fact, Reading
 
 State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived", "failed"]
-"""Nothing to do; on its way; turning to find itself; on another way; no way just now; there; there
-can never be a way, or it does not find itself."""
+"""No goal; on its way; turning to localise itself; on another path; no path just now; at the goal;
+no path possible, or not localised."""
 
-PATIENCE = 1.0  # seconds something may stand in the way until another way is looked for
-PATIENCE_WALKING = 3.0  # the same for somebody who walks
-AGAIN = 1.0  # seconds between two looks for a way while there is none
-NO_WAY = 2.0  # seconds without a way until it is said that there is none
-PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres that must be made in so long
-SPIN = 0.5  # rad/s while it looks around
-LOOKS_ROUND = 2  # full turns without having found itself until it gives the drive up
-ASTRAY = 0.5  # metres off its path at which it looks for another
-INTO = 0.05  # metres by which a path must come nearer to an obstacle than it should, to be left
-LOOK_AHEAD = 50  # points of the path that are watched for obstacles: 2.5 m
-TAKEN = 0.6  # metres gone on another way until it is said to be one: it may end as well
-SLOW = 0.1  # m/s: a robot that drives faster stops before it takes another way
-SLIPS = 0.3  # metres of disagreement from which on the wheels do not grip
+PATIENCE = 1.0  # seconds that something may block the path before replanning
+PATIENCE_WALKING = 3.0  # the same for a person who walks
+AGAIN = 1.0  # seconds between two attempts to plan while there is no path
+NO_WAY = 2.0  # seconds without a path before it is reported
+PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres of progress required in so many seconds
+SPIN = 0.5  # rad/s while it turns to localise itself
+LOOKS_ROUND = 2  # full turns without a pose before it gives up
+ASTRAY = 0.5  # metres off the path at which it replans
+INTO = 0.05  # metres by which a path may violate the distance to an obstacle
+LOOK_AHEAD = 50  # points of the path checked for obstacles: 2.5 m
+TAKEN = 0.6  # metres driven on another path before it is reported: it may end as well
+SLOW = 0.1  # m/s: above this the robot stops before it takes another path
+SLIPS = 0.3  # metres of disagreement with the scans from which on the wheels slip
 
 
 class Navigator:
@@ -67,22 +67,22 @@ class Navigator:
         laser: Pose = HERE,
         people: Floats | None = None,
     ) -> None:
-        """Begin at a pose.
+        """Start at a pose.
 
         Args:
             map_: the map.
             rng: the random generator.
-            start: where the robot is, within some 10 cm; None: it may be anywhere.
-            limits: how it may drive.
-            laser: where the scanner sits on the robot.
-            people: positions where people may be (n, 2); near them it drives gently.
+            start: the robot's pose, within some 10 cm; None: it may be anywhere.
+            limits: the motion limits.
+            laser: pose of the scanner on the robot.
+            people: positions where people may be (n, 2); the robot drives slowly near them.
         """
         self.map = map_
         self.limits = limits or MotionLimits()
         self.people = np.zeros((0, 2)) if people is None else people
         self.state: State = "idle"
         self.why = ""
-        """Why it failed or is blocked: one sentence."""
+        """Reason for `failed` or `blocked`: one sentence."""
         self.goal: Pose | None = None
         self.path: Path | None = None
         self.slip = 0.0
@@ -93,7 +93,7 @@ class Navigator:
         self._around = Surroundings(map_, laser, self.limits)
         self._disagreement = Disagreement(laser)
         self.lets: Held = ""
-        """The kind of person it waits for, while it waits."""
+        """Kind of person it is waiting for, if any."""
         self._pursuit: Pursuit | None = None
         self._given_up: Floats | None = None
         self._way = "clear"
@@ -107,11 +107,11 @@ class Navigator:
         self._marked = 0.0
 
     drives = False
-    """Nothing drives the base but the commands that `tick` returns."""
+    """The base is driven only by the commands that `tick` returns."""
 
     # ------------------------------------------------------------------------------- commands
     def go(self, goal: Pose) -> None:
-        """Drive to a pose; another goal takes the place of the one before.
+        """Drive to a pose; a new goal replaces the previous one.
 
         `state` (failed) and `why` report a problem with the goal.
         """
@@ -127,7 +127,7 @@ class Navigator:
         self._without = 0.0
 
     def spin(self, angle: float = 2 * pi) -> None:
-        """Turn on the spot by an angle in rad, slowly, so that the robot finds itself."""
+        """Turn slowly on the spot by an angle in rad, to localise the robot."""
         if self.state != "spinning":
             self.cancel()
         self.state = "spinning"
@@ -140,47 +140,47 @@ class Navigator:
             self._pursuit = None
 
     def cancel(self) -> None:
-        """Stand still, and forget the goal."""
+        """Stop, and drop the goal."""
         self.state, self.why, self.goal = "idle", "", None
         self._stop_following()
         self._way = "clear"
 
     def held(self) -> None:
-        """Take note that the robot must stand still now, whatever the last command was."""
+        """Record that the robot must stop now, whatever the last command was."""
         self._told = STILL
 
     def place(self, pose: Pose | None) -> None:
-        """Take it that the robot is at a pose now (None: anywhere), as staff say."""
+        """Set the pose given by staff; None: the robot may be anywhere."""
         self._localisation.place(pose)
         self._around.forget()
         self._stop_following()
 
     def finds_way(self, goal: Pose) -> bool:
-        """Say whether there is a way to a goal from where it is, past all that it sees."""
+        """Return whether there is a path from here to a goal, past all known obstacles."""
         estimate = self._estimate
         return estimate is not None and self._plan(estimate.pose, goal) is not None
 
     # -------------------------------------------------------------- state
     @property
     def estimate(self) -> Estimate | None:
-        """Where it thinks it is; None before the first scan."""
+        """Estimated pose; None before the first scan."""
         return self._estimate
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """The tracked people and things that are not on the map, in the robot's frame."""
+        """Tracked people and objects that are not on the map, in the robot's frame."""
         return self._around.tracks
 
     @property
     def obstacles(self) -> Floats:
-        """Points seen that are not on the map (n, 2)."""
+        """Seen points that are not on the map (n, 2)."""
         return self._around.points
 
     @property
     def unseen(self) -> Floats:
-        """Keep-out points of the map that no laser sees, such as a table's top (n, 2).
+        """Keep-out points that no laser sees, such as the edge of a table top (n, 2).
 
-        It is in the robot's frame, as far as the robot knows its pose.
+        In the robot's frame; none if the robot is not localised.
         """
         estimate = self._estimate
         if estimate is None or not estimate.found:
@@ -191,11 +191,11 @@ class Navigator:
 
     @property
     def particles(self) -> Floats:
-        """The poses it thinks possible (n, 3)."""
+        """Particles: possible poses (n, 3)."""
         return self._localisation.particles
 
     def facts(self) -> dict[str, Fact]:
-        """Return path, fit, spread, slip and still, as the diagnosis knows them."""
+        """Return path, fit, spread, slip and still, as the diagnosis expects them."""
         estimate = self._estimate
         return {
             "path": self._way,
@@ -216,9 +216,9 @@ class Navigator:
 
     # ------------------------------------------------------------------ driving
     def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
-        """Take in the newest of wheels and laser, and return how to drive for the next `dt` s.
+        """Update with the latest odometry and scan, and return the twist for the next `dt` s.
 
-        Without a scan the robot stands still, because it does not see where it would drive.
+        Without a scan the robot stops, because it cannot see obstacles.
         """
         self._note_still(odometry, dt)
         if scan is None:
@@ -262,7 +262,7 @@ class Navigator:
 
     def _spin(self, estimate: Estimate, odometry: Odometry, dt: float) -> Twist:
         self._turned += abs(odometry.twist.turn) * dt
-        if self.goal is not None:  # it turns until it has found itself
+        if self.goal is not None:  # it turns until it is localised
             done = estimate.found and self._turned > pi / 2
             if not done and self._turned >= LOOKS_ROUND * 2 * pi:
                 self.state, self.why = "failed", "It does not find its place."
@@ -276,7 +276,7 @@ class Navigator:
         return Twist(0.0, SPIN if self._turn_to > 0 else -SPIN)
 
     def _find_way(self, pose: Pose, goal: Pose, dt: float) -> None:
-        """Look for a way now and then; say so if there is none for a while."""
+        """Plan from time to time; report if there has been no path for a while."""
         self._without += dt
         if self._since_plan >= AGAIN:
             self._since_plan = 0.0
@@ -295,7 +295,7 @@ class Navigator:
 
     def _take(self, path: Path, goal: Pose, pose: Pose) -> None:
         """Follow a path; a detour from an abandoned path is reported once it is driven."""
-        if self._way == "none":  # it is free again
+        if self._way == "none":  # the path is free again
             self._way = "clear"
         elif self._given_up is not None and _leaves(path.points, self._given_up):
             self._detour = (pose.x, pose.y)
@@ -319,7 +319,7 @@ class Navigator:
         self, pursuit: Pursuit, goal: Pose, pose: Pose, odometry: Odometry, scan: Scan, dt: float
     ) -> Twist:
         ahead = pursuit.ahead
-        if lengths(ahead[:1] - (pose.x, pose.y))[0] > ASTRAY:  # it found itself elsewhere
+        if lengths(ahead[:1] - (pose.x, pose.y))[0] > ASTRAY:  # localisation jumped
             self._pursuit = None
             return STILL
         gone = self._detour
@@ -356,7 +356,7 @@ class Navigator:
         return twist
 
     def _touches(self, path: Floats, obstacles: Floats, pose: Pose, goal: Pose) -> bool:
-        """Say whether a path comes nearer to an obstacle than ways keep, and than it is now."""
+        """Return whether a path comes closer to an obstacle than allowed and than the robot is."""
         if not len(path) or not len(obstacles):
             return False
         beside = near_ends(obstacles, ((pose.x, pose.y), (goal.x, goal.y)), self._keep)
@@ -366,7 +366,7 @@ class Navigator:
         return bool((apart < np.maximum(keep, 0.0) ** 2).any())
 
     def _progressed(self, pose: Pose, dt: float) -> bool:
-        """Say whether it comes forward; wheels that do not grip are not the way's fault."""
+        """Return whether the robot makes progress; slipping wheels do not count against it."""
         far = self._mark is None or hypot(pose.x - self._mark[0], pose.y - self._mark[1]) > PROGRESS
         if far or self.still > 0.5 or self.slip > SLIPS:
             self._mark, self._marked = (pose.x, pose.y), 0.0
@@ -375,6 +375,6 @@ class Navigator:
 
 
 def _leaves(path: Floats, other: Floats, by: float = 0.3) -> bool:
-    """Say whether a path goes another way than another one did."""
+    """Return whether a path leaves another one by more than so many m."""
     apart = ((path[::4, None] - other[None, ::2]) ** 2).sum(axis=2)
     return bool(apart.min(axis=1).max() > by**2)

@@ -1,4 +1,4 @@
-"""Protocol of localisation and path following: our navigator, or the robot's own."""
+"""Protocol of localisation and path following, by Tangy's navigator or the robot's own."""
 
 from __future__ import annotations
 
@@ -16,83 +16,83 @@ from tangy_profiles.health import Fact, Reading
 
 
 class NavigatorProtocol(Protocol):
-    """Takes a goal, then wheel odometry and laser scans again and again."""
+    """Drives to a goal; updated with wheel odometry and laser scans."""
 
     @property
     def state(self) -> State:
-        """How it stands with the goal."""
+        """Progress towards the goal."""
         ...
 
     @property
     def drives(self) -> bool:
-        """Whether an external navigation drives the base now; commands alone do not stop it."""
+        """Whether an external stack drives the base now; velocity commands alone do not stop it."""
         ...
 
     @property
     def estimate(self) -> Estimate | None:
-        """Where the robot thinks it is; None: that is not known yet."""
+        """Estimated pose; None if unknown."""
         ...
 
     @property
     def path(self) -> Path | None:
-        """The path it follows, if known."""
+        """Current path, if known."""
         ...
 
     @property
     def lets(self) -> Held:
-        """The kind of person it waits for, while it waits."""
+        """Kind of person it is waiting for, if any."""
         ...
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """The tracked people and things that are not on the map, in the robot's frame."""
+        """Tracked people and objects that are not on the map, in the robot's frame."""
         ...
 
     @property
     def obstacles(self) -> Floats:
-        """Points seen that are not on the map, (n, 2)."""
+        """Seen points that are not on the map (n, 2)."""
         ...
 
     @property
     def unseen(self) -> Floats:
-        """Keep-out points that no laser sees, (n, 2) in the robot's frame, if known."""
+        """Keep-out points that no laser sees (n, 2), in the robot's frame, if known."""
         ...
 
     @property
     def particles(self) -> Floats:
-        """The poses it thinks possible (n, 3)."""
+        """Particles: possible poses (n, 3)."""
         ...
 
     def go(self, goal: Pose) -> None:
-        """Begin to drive to a pose; another goal takes the place of the one before."""
+        """Start driving to a pose; a new goal replaces the previous one."""
         ...
 
     def spin(self) -> None:
-        """Begin to turn on the spot, so that the robot finds itself."""
+        """Start turning on the spot, to localise the robot."""
         ...
 
     def cancel(self) -> None:
-        """Stand still, and forget the goal; never raises."""
+        """Stop, and drop the goal; never raises."""
         ...
 
     def held(self) -> None:
-        """Take note that the robot must not drive now, whatever was to be."""
+        """Record that the robot must not drive now."""
         ...
 
     def place(self, pose: Pose | None) -> None:
-        """Take it that the robot is at a pose now (None: anywhere), as staff say."""
+        """Set the pose given by staff; None: the robot may be anywhere."""
         ...
 
     def finds_way(self, goal: Pose) -> bool:
-        """Say whether there may be a way again to where there was none."""
+        """Return whether a blocked path to a goal may be free again."""
         ...
 
     def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
-        """Take the newest data, and return the base's command for the next `dt` s."""
+        """Update with the latest data, and return the twist for the next `dt` s."""
         ...
 
     def facts(self) -> Mapping[str, Fact]:
-        """Return path, fit, spread, slip and still, as the diagnosis knows them."""
+        """Return path, fit, spread, slip and still, as the diagnosis expects them."""
         ...
 
     def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:

@@ -10,31 +10,31 @@ from tangy_hw.navigation.likelihood import NEAREST
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.poses import HERE, Floats, compose, endpoints, placed, wrap
 
-OFF = 0.1  # metres from all that is on the map beyond which a return is not of it
-FIDGETING = 0.2  # the same where people sit who move their feet
+OFF = 0.1  # metres from everything on the map beyond which a return is an obstacle
+FIDGETING = 0.2  # the same where seated people move their feet
 AWAY, AWAY_SHARE = (
     0.15,
     0.02,
-)  # metres, and of the range, off the map from which a beam is not of it
-RANGE = 6.0  # metres beyond which a beam is too uncertain to plan by
-SURE = 3  # scans in which a cell was hit until it counts
-KEPT = 30.0  # seconds after which an obstacle no longer seen is forgotten
-BEHIND = 0.15  # metres by which a beam must pass an obstacle to clear it
+)  # the same for a single beam: metres, and share of the range
+RANGE = 6.0  # metres beyond which beams are too inaccurate for planning
+SURE = 3  # scans that must hit a cell before it counts
+KEPT = 30.0  # seconds after which an unseen obstacle is dropped
+BEHIND = 0.15  # metres that a beam must pass behind an obstacle to clear it
 
 
 class Obstacles:
-    """Remembers obstacles for a while, cell by cell of the map."""
+    """Remembers obstacles for a while, in the cells of a map."""
 
     def __init__(self, map_: OccupancyMap, laser: Pose = HERE) -> None:
         self._map = map_
         self._laser = laser
-        # a person beside a wall or a table is no part of it: as near as a scan and a pose are sure
+        # keep people beside a wall or table apart from it, as far as scan and pose are accurate
         self._new = map_.seen_distance > np.where(map_.feet, FIDGETING, OFF)
         self._hits = np.zeros(map_.shape, dtype=np.int16)
         self._age = np.zeros(map_.shape, dtype=np.float32)
 
     def see(self, pose: Pose, scan: Scan, dt: float) -> None:
-        """Take in a scan from a pose, `dt` seconds after the one before."""
+        """Add a scan from a pose, `dt` s after the previous one."""
         there = self._hits > 0
         if there.any():
             self._age[there] += dt
@@ -48,7 +48,7 @@ class Obstacles:
         self._age[hit] = 0.0
 
     def among(self, points: Floats) -> NDArray[np.bool_]:
-        """Say of points on the floor (n, 2) whether the map does not have them."""
+        """Return whether each of the points (n, 2) is off everything on the map."""
         cells = np.floor((points - self._map.origin) / self._map.resolution).astype(np.intp)
         rows, columns = cells[:, 1], cells[:, 0]
         inside = (rows >= 0) & (columns >= 0) & (rows < self._map.shape[0])
@@ -58,7 +58,7 @@ class Obstacles:
         return found
 
     def unmapped(self, pose: Pose, scan: Scan) -> NDArray[np.bool_]:
-        """Say of each beam (n,) whether it ends off all that is on the map, if it does end."""
+        """Return for each beam (n,) whether its return is off everything on the map."""
         eye = compose(pose, self._laser)
         met = np.isfinite(scan.ranges)
         ranges = np.where(met, scan.ranges, 0.0)
@@ -77,7 +77,7 @@ class Obstacles:
         return met & (away > np.where(fidgets, np.maximum(beyond, FIDGETING), beyond))
 
     def _clear(self, pose: Pose, scan: Scan) -> None:
-        """Forget old obstacles, and those that a beam now passes."""
+        """Remove old obstacles, and those that a beam passes."""
         rows, columns = np.nonzero(self._hits)
         map_, eye = self._map, compose(pose, self._laser)
         x = map_.origin[0] + (columns + 0.5) * map_.resolution - eye.x
@@ -85,21 +85,21 @@ class Obstacles:
         beam = np.round((wrap(np.arctan2(y, x) - eye.heading) - scan.first) / scan.step)
         seen = (beam >= 1) & (beam < len(scan.ranges) - 1)
         beam = np.where(seen, beam, 1).astype(np.intp)
-        # the beams beside it must go past it as well: it may be thin
+        # the neighbouring beams must pass too: the obstacle may be thin
         past = np.minimum(scan.ranges[beam], scan.ranges[beam - 1])
         past = np.minimum(past, scan.ranges[beam + 1])
-        past = np.where(np.isfinite(past), past, 0.0)  # of such a beam nothing is known
+        past = np.where(np.isfinite(past), past, 0.0)  # a beam without a return says nothing
         gone = seen & (past > np.hypot(x, y) + BEHIND)
         self._hits[rows[gone], columns[gone]] -= 2
         self._hits[(self._hits < 0) | (self._age > KEPT)] = 0
 
     @property
     def points(self) -> Floats:
-        """Where something is that is not on the map (n, 2)."""
+        """Points of obstacles that are not on the map (n, 2)."""
         rows, columns = np.nonzero(self._hits >= SURE)
         middles = np.column_stack((columns + 0.5, rows + 0.5))
         return middles * self._map.resolution + self._map.origin
 
     def forget(self) -> None:
-        """Forget all of it, as when the robot was somewhere else than it thought."""
+        """Forget all obstacles, for example if the estimated pose was wrong."""
         self._hits[:] = 0

@@ -1,4 +1,4 @@
-"""Occupancy maps: which parts of the floor are free, which are not, and which nobody has seen."""
+"""Occupancy grids: free, occupied and unknown cells of the floor."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ Mask: TypeAlias = NDArray[np.bool_]
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 """Cell values, as in nav_msgs/OccupancyGrid."""
 
-MARGIN = 0.5  # metres of the unknown around a room, so that beams through doors end on the map
-LEG_INSET = 0.1  # metres from the table's edge to the middle of a leg
-CHAIR, FEET = 0.42, 0.3  # metres between the legs of a chair; from its middle to a person's feet
-SEAT = 0.3  # metres of the keep-out area around a seat
-FIDGET = 0.2  # metres around drawn feet in which those of a person who sits there may be
+MARGIN = 0.5  # metres of unknown cells around a room, so that beams through doors end on the map
+LEG_INSET = 0.1  # metres from the edge of the table to the centre of a leg
+CHAIR, FEET = 0.42, 0.3  # metres: between chair legs; from a chair's centre to a person's feet
+SEAT = 0.3  # metres of keep-out area around a seat
+FIDGET = 0.2  # metres that the feet of a seated person may be off the drawn ones
 
 
 @dataclass(frozen=True, eq=False)
 class OccupancyMap:
-    """A grid over the floor.
+    """An occupancy grid of the floor.
 
-    `cells` (rows, columns) holds what a laser sees there: FREE, OCCUPIED or UNKNOWN; row 0 is the
-    lowest y, column 0 the lowest x. `origin` is the outer corner of that first cell, in metres.
-    `keep_out` (rows, columns) marks what a laser does not see and the robot must not touch all the
-    same: a table has legs at the height of a laser, and a top at the height of the robot.
-    `feet` (rows, columns) marks where people who sit move their feet about.
+    `cells` (rows, columns) holds what a laser sees: FREE, OCCUPIED or UNKNOWN; row 0 has the lowest
+    y, column 0 the lowest x. `origin` is the outer corner of the first cell, in m. `keep_out`
+    (rows, columns) marks areas that look free to a laser and that the robot must avoid: at laser
+    height a table is four legs, at robot height a table top. `feet` (rows, columns) marks where
+    seated people move their feet.
     """
 
     cells: Cells
@@ -50,29 +50,29 @@ class OccupancyMap:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
+        """Numbers of rows and columns."""
         return self.cells.shape[0], self.cells.shape[1]
 
     @property
     def size(self) -> tuple[float, float]:
-        """Width and depth in metres."""
+        """Width and depth in m."""
         return self.shape[1] * self.resolution, self.shape[0] * self.resolution
 
     @cached_property
     def obstacles(self) -> Mask:
-        """Cells that the robot must not touch: walls, keep-out areas, and unknown ones."""
+        """Cells that the robot must not touch: walls, keep-out areas, and unknown cells."""
         return np.asarray((self.cells != FREE) | self.keep_out)
 
     @cached_property
     def keep_out_edge(self) -> Floats:
-        """The middles of the outermost cells that are kept out of (n, 2), in metres."""
+        """Centres of the outermost keep-out cells (n, 2), in m."""
         inner = binary_erosion(self.keep_out)
         rows, columns = np.nonzero(self.keep_out & ~inner)
         return np.column_stack((columns + 0.5, rows + 0.5)) * self.resolution + self.origin
 
     @cached_property
     def seen_distance(self) -> NDArray[np.float32]:
-        """Distances (rows, columns), in m, to the nearest cell that a laser sees occupied."""
+        """Distance (rows, columns), in m, to the nearest cell that a laser sees as occupied."""
         occupied = self.cells == OCCUPIED
         if not occupied.any():
             return np.full(self.shape, np.float32(max(self.size)))
@@ -80,35 +80,35 @@ class OccupancyMap:
         return np.asarray(distance, dtype=np.float32)
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """Return the row and column of a point in m; they may lie outside the map."""
+        """Return the row and column of a point in m, which may lie outside the map."""
         column = int(np.floor((x - self.origin[0]) / self.resolution))
         return int(np.floor((y - self.origin[1]) / self.resolution)), column
 
     def point(self, row: int, column: int) -> tuple[float, float]:
-        """Return the middle of a cell in metres."""
+        """Return the centre of a cell in m."""
         return (
             self.origin[0] + (column + 0.5) * self.resolution,
             self.origin[1] + (row + 0.5) * self.resolution,
         )
 
     def inside(self, row: int, column: int) -> bool:
-        """Say whether there is such a cell."""
+        """Return whether a cell is on the map."""
         return 0 <= row < self.shape[0] and 0 <= column < self.shape[1]
 
     def cells_of(self, points: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Return the rows and columns of those points (n, 2) that lie on the map."""
+        """Return the rows and columns of the points (n, 2) that lie on the map."""
         columns, rows = np.floor((points - self.origin) / self.resolution).astype(np.intp).T
         on = (rows >= 0) & (columns >= 0) & (rows < self.shape[0]) & (columns < self.shape[1])
         return rows[on], columns[on]
 
     def free_points(self) -> Floats:
-        """Return the middles of all free cells (n, 2)."""
+        """Return the centres of all free cells (n, 2)."""
         rows, columns = np.nonzero((self.cells == FREE) & ~self.keep_out)
         return np.column_stack((columns + 0.5, rows + 0.5)) * self.resolution + self.origin
 
 
 def table_legs(room: Room) -> list[Point]:
-    """Return where the legs of a room's table stand: near its corners."""
+    """Return the positions of the legs of a room's table, near its corners."""
     left, near, right, far = room.table
     return [
         Point(x, y)
@@ -118,13 +118,13 @@ def table_legs(room: Room) -> list[Point]:
 
 
 def chair_legs(seat: Point) -> list[Point]:
-    """Return where the legs of the chair at a seat are."""
+    """Return the positions of the legs of the chair at a seat."""
     half = CHAIR / 2
     return [Point(seat.x + x, seat.y + y) for x in (-half, half) for y in (-half, half)]
 
 
 def seat_feet(room: Room, seat: Point) -> list[Point]:
-    """Return where the feet are of a person at a seat who faces the table."""
+    """Return the positions of the feet of a person at a seat who faces the table."""
     towards = FEET if room.table[1] > seat.y else -FEET
     return [Point(seat.x + x, seat.y + towards) for x in (-0.13, 0.13)]
 
@@ -132,21 +132,21 @@ def seat_feet(room: Room, seat: Point) -> list[Point]:
 def map_of_room(room: Room, resolution: float = 0.05, people: int | None = None) -> OccupancyMap:
     """Draw the map of a room from its profile.
 
-    A laser sees the walls, the legs of the table and of the chairs, and people's feet, which stand
-    nearly where they are drawn: without them a bare room looks the same from its other end. The
-    top of the table is kept out of, and so is .3 m around each seat.
+    A laser sees the walls, the legs of the table and chairs, and people's feet, which are near
+    their drawn positions; without them, a bare room looks the same from both ends. The table top
+    and .3 m around each seat are keep-out areas.
 
     Args:
         room: the room.
-        resolution: metres to a cell.
-        people: how many seats there are; None: the room's own.
+        resolution: metres per cell.
+        people: number of seats; None: the room's own.
     """
     side = max(1, round(MARGIN / resolution))
     columns, rows = round(room.width / resolution) + 1, round(room.depth / resolution) + 1
     cells = np.full((rows + 2 * side, columns + 2 * side), UNKNOWN, dtype=np.int8)
     cells[side : side + rows, side : side + columns] = OCCUPIED
     cells[side + 1 : side + rows - 1, side + 1 : side + columns - 1] = FREE
-    corner = -(side + 0.5) * resolution  # so that a wall runs through the middle of its cells
+    corner = -(side + 0.5) * resolution  # so that a wall runs through the centres of its cells
     drawn = OccupancyMap(cells, resolution, (corner, corner))
     seats = room.seats if people is None else room.seated(people)
     feet = [foot for seat in seats for foot in seat_feet(room, seat)]
@@ -163,12 +163,12 @@ def map_of_room(room: Room, resolution: float = 0.05, people: int | None = None)
 
 
 def with_feet(map_: OccupancyMap, room: Room, people: int | None = None) -> OccupancyMap:
-    """Return a map of a room on which is marked where people who sit there move their feet.
+    """Return a map with the areas marked where seated people move their feet.
 
     Args:
-        map_: the map, in the room's frame, drawn or recorded.
+        map_: the map in the room's frame, drawn or recorded.
         room: the room.
-        people: how many sit there; None: on all of the room's seats.
+        people: number of seated people; None: all seats of the room.
     """
     xs = map_.origin[0] + (np.arange(map_.shape[1]) + 0.5) * map_.resolution
     ys = map_.origin[1] + (np.arange(map_.shape[0]) + 0.5) * map_.resolution

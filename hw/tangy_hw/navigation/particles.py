@@ -1,4 +1,4 @@
-"""Particles: poses (n, 3) that are moved, counted, resampled and summed up, all at once."""
+"""Vectorised operations on particles (n, 3): motion model, KLD sampling, resampling, clustering."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from numpy.typing import NDArray
 from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.poses import Floats, wrap
 
-ALPHA = 0.2  # all four of the odometry motion model: squared error for each squared unit moved
-WHOLE = 0.1  # metres and radians up to which a step errs as one; a longer one errs as several
+ALPHA = 0.2  # all four alphas of the odometry model: squared error for each squared unit moved
+WHOLE = 0.1  # metres and radians: a longer step has the error of several steps
 FEWEST, MOST = 300, 2000
-BIN, BIN_ANGLE = 0.5, pi / 18  # of the histogram that says how many particles are needed
-ERROR, QUANTILE = 0.05, 2.33  # at most so far (KL) from the truth, with probability .99
-CLUSTER, CLUSTER_ANGLE = 0.6, 0.6  # metres and radians around a guess that belong to it
+BIN, BIN_ANGLE = 0.5, pi / 18  # metres and radians of a bin of the KLD histogram
+ERROR, QUANTILE = 0.05, 2.33  # bound on the KL divergence, and normal quantile of probability .99
+CLUSTER, CLUSTER_ANGLE = 0.6, 0.6  # metres and radians around a pose that belong to its cluster
 
 
 def move(particles: Floats, step: Pose, rng: Generator, alpha: float = ALPHA) -> Floats:
-    """Move each of (n, 3) by the wheels' step (m, rad) and an error (Thrun et al., table 5.6).
+    """Move particles (n, 3) by an odometry step (m, rad) with noise (Thrun et al., table 5.6).
 
-    The variance of the error grows with the square of a step no longer than `WHOLE`, and from there
-    in proportion to its length: errors of a long way do not all point the same way.
+    The variance of the noise grows with the square of steps up to `WHOLE`, and in proportion to the
+    length of longer ones, because errors along a long way partly cancel.
     """
     distance = hypot(step.x, step.y)
     first = atan2(step.y, step.x) if distance > 0.01 else 0.0
     last = wrap(step.heading - first)
-    # driving backwards is not a turn by pi and another one
+    # driving backwards is not a turn by pi
     turned = _errs(min(abs(first), abs(wrap(first - pi))))
     turned_last = _errs(min(abs(last), abs(wrap(last - pi))))
     n, square = len(particles), _errs(distance)
@@ -46,7 +46,7 @@ def move(particles: Floats, step: Pose, rng: Generator, alpha: float = ALPHA) ->
 
 
 def _errs(moved: float) -> float:
-    """Return the square that counts of a step in m, or of a turn in rad."""
+    """Return the effective square of a step in m, or of a turn in rad."""
     return moved * min(moved, WHOLE)
 
 
@@ -60,7 +60,7 @@ def around(
 
 
 def anywhere(points: Floats, resolution: float, count: int, rng: Generator) -> Floats:
-    """Draw particles evenly over cells, whose middles are given (n, 2), facing anywhere."""
+    """Draw particles evenly over cells (centres `points`, (n, 2), in m), with any heading."""
     chosen = points[rng.integers(len(points), size=count)]
     chosen = chosen + rng.uniform(-resolution / 2, resolution / 2, (count, 2))
     return np.column_stack((chosen, rng.uniform(-pi, pi, count)))
@@ -74,7 +74,7 @@ def _bins(particles: Floats, width: float, angle: float) -> NDArray[np.int64]:
 
 
 def needed(particles: Floats) -> int:
-    """Return how many of particles (n, 3) stand for as many places (KLD sampling; D. Fox, 2003)."""
+    """Return how many particles the spread of (n, 3) requires (KLD sampling; D. Fox, 2003)."""
     k = len(np.unique(_bins(particles, BIN, BIN_ANGLE)))
     if k < 2:
         return FEWEST
@@ -83,7 +83,7 @@ def needed(particles: Floats) -> int:
 
 
 def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> Floats:
-    """Draw from (n, 3) in proportion to the weights (n,), with one random number."""
+    """Draw from particles (n, 3) in proportion to weights (n,) (low-variance sampling)."""
     if count == 0:
         return particles[:0]
     at = (np.arange(count) + rng.random()) / count
@@ -92,7 +92,7 @@ def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> 
 
 
 def mean(particles: Floats, weights: Floats) -> Pose:
-    """Return the weighted mean of the particles (n, 3)."""
+    """Return the weighted mean of particles (n, 3)."""
     total = weights.sum()
     x, y = weights @ particles[:, :2] / total
     heading = atan2(weights @ np.sin(particles[:, 2]), weights @ np.cos(particles[:, 2]))
@@ -100,7 +100,7 @@ def mean(particles: Floats, weights: Floats) -> Pose:
 
 
 def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
-    """Return the mean of the likeliest cluster, and its covariance (3, 3)."""
+    """Return the mean of the most likely cluster of particles, and its covariance (3, 3)."""
     _, bins = np.unique(_bins(particles, BIN, pi / 6), return_inverse=True)
     inside = bins == np.argmax(np.bincount(bins, weights))
     guess = mean(particles[inside], weights[inside])

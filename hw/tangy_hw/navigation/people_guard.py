@@ -1,10 +1,10 @@
 """Limits commands near people: speed and separation monitoring, as in ISO 13855.
 
-The robot keeps the distance it needs to stop before it meets a person. It assumes that people keep
-their velocity and approach a little faster, and that walkers may turn round and come at a walk. The
-assumed speeds are data (`MotionLimits`), and below the 1.6 m/s of the standard, with which a robot
-would never get beside a seat. Only motion that brings a person nearer than standing still counts: a
-robot may drive away from a person who walks up to it.
+The robot keeps the distance that it needs to stop before it meets a person. It assumes that people
+keep their velocity and approach a little faster, and that walkers may turn round and approach at
+walking speed. The assumed speeds are settings (`MotionLimits`), below the 1.6 m/s of the standard,
+with which a robot could never drive up to a seat. Only motion that brings the robot nearer to a
+person than stopping does is limited: the robot may drive away from a person who approaches it.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.poses import Floats, lengths
 
-SHARES = (1.0, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2, 0.12)  # of a command that are tried
-REACH = 3.0  # metres beyond which nobody is met while the robot stops
-STEP = 0.1  # seconds between the moments that are looked at
-NEARER = 0.005  # metres by which driving must bring who stands nearer than standing, to count
-FURTHER, WALKS = 0.01, 0.25  # m by which it must move away from walkers; m/s of a walker
+SHARES = (1.0, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2, 0.12)  # shares of a command that are tried
+REACH = 3.0  # metres beyond which people are out of reach while the robot stops
+STEP = 0.1  # seconds between the checked moments
+NEARER = 0.005  # metres by which driving must be worse than stopping, for standing people
+FURTHER, WALKS = 0.01, 0.25  # m by which driving must be better, for walkers; m/s of a walker
 SPOT = 0.02  # m/s below which a robot turns on the spot
-FRESH = 0.5  # seconds for which a person who has just appeared is taken to come fast
-END = 0.15  # metres that a body reaches out beyond a return of which nothing more is known
+FRESH = 0.5  # seconds for which a new track is assumed to approach fast
+END = 0.15  # metres of a body beyond a return without a track
 
 
 class Around(NamedTuple):
@@ -37,9 +37,10 @@ class Around(NamedTuple):
 
 
 def passed(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
-    """Return how much of a twist may be driven, on the same arc: all of it, less, or nothing.
+    """Return the part of a twist that is safe near people, on the same arc: all, less, or none.
 
-    A round robot may always turn on the spot; one that has corners, where they come near nobody.
+    A round robot may always turn on the spot; a robot with corners only if they stay clear of
+    people.
     """
     twist = _slower_before_followers(twist, around, limits)
     spins = abs(twist.forward) < SPOT
@@ -56,9 +57,9 @@ def passed(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
 
 
 def _slower_before_followers(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
-    """Return a twist no faster than `gentle` while somebody who walks is out of sight behind it.
+    """Return a twist limited to `gentle` while a walker is hidden behind the robot.
 
-    They may overtake it, or come up against it where its scanner does not look.
+    The walker may overtake the robot, or approach where the scanner does not see.
     """
     follows = any(
         one.hidden and one.x < 0.0 and one.pace > WALKS and np.hypot(one.x, one.y) < REACH
@@ -71,11 +72,11 @@ def _slower_before_followers(twist: Twist, around: Around, limits: MotionLimits)
 
 
 class _Bodies(NamedTuple):
-    """Positions (n, 2) in m, velocities (n, 2), separations, and speeds of approach.
+    """Positions (n, 2) in m, velocities (n, 2), required separations, and speeds of approach.
 
-    If driving and standing are both too near, driving must gain `leeway` m over standing: slightly
-    negative for standing bodies, positive for walkers. Walkers may also turn on the spot, and come
-    at `turned` m/s; 0 for standing bodies.
+    If both driving and stopping come too near, driving must gain `leeway` m over stopping: slightly
+    negative for standing people, positive for walkers. Walkers may also turn and approach at
+    `turned` m/s; 0 for standing people.
     """
 
     at: Floats
@@ -110,14 +111,14 @@ def _bodies(around: Around, limits: MotionLimits) -> _Bodies:
 
 
 def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
-    """Say whether the robot, driving so and then braking, comes too near to nobody."""
+    """Return whether a robot that drives this twist and then brakes stays clear of people."""
     fast, brakes = abs(twist.forward), limits.stops
     if not fast:
         fast, brakes = abs(twist.turn), limits.spin_up
     until = limits.late + fast / brakes
     times = np.append(np.arange(STEP, until, STEP), until)
     braking = np.maximum(times - limits.late, 0.0)
-    gone = (fast * times - brakes * braking**2 / 2) / fast  # s at full speed: the same way
+    gone = (fast * times - brakes * braking**2 / 2) / fast  # equivalent time at full speed, in s
     along, turned = twist.forward * gone, twist.turn * gone
     half = turned / 2
     chord = along * np.sinc(half / np.pi)
@@ -137,7 +138,7 @@ def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
 
 
 def _off(people: Floats, turned: Floats, limits: MotionLimits) -> Floats:
-    """Return how far people (times, n, 2) are from a robot's edge that has turned so (times,)."""
+    """Return the distances of people (times, n, 2) from a robot turned by (times,) rad."""
     if not limits.corners:
         return np.asarray(np.hypot(people[..., 0], people[..., 1]) - limits.radius)
     c, s = np.cos(turned)[:, None], np.sin(turned)[:, None]
@@ -147,7 +148,7 @@ def _off(people: Floats, turned: Floats, limits: MotionLimits) -> Floats:
 
 
 def outside(points: Floats, corners: Floats) -> Floats:
-    """Return how far points (..., 2) are from a shape with corners (m, 2), in m; inside it < 0."""
+    """Return the signed distance in m of points (..., 2) from a polygon (m, 2); negative inside."""
     sides = np.roll(corners, -1, axis=0) - corners
     far = np.hypot(sides[:, 0], sides[:, 1])
     to = points[..., None, :] - corners

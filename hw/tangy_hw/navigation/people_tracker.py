@@ -1,9 +1,9 @@
 """Tracks people and other objects from scan to scan: positions and velocities.
 
-Each track is a Kalman filter of constant velocity (Y. Bar-Shalom et al., "Estimation with
-applications to tracking and navigation", 2001, ch. 6) in the odometry frame, which never jumps as
-the map frame does. A scan cannot tell a standing person from a chair, so that all objects are
-tracked; `person` is only a word for staff.
+Each track is a constant-velocity Kalman filter (Y. Bar-Shalom et al., "Estimation with applications
+to tracking and navigation", 2001, ch. 6) in the odometry frame, which does not jump as the map
+frame does. A scan cannot tell a standing person from a chair, so all objects are tracked; `person`
+is only used for what staff are told.
 """
 
 from __future__ import annotations
@@ -20,27 +20,27 @@ from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.leg_detection import REACH, TORSO, LegSighting, sightings, turned
 from tangy_hw.navigation.poses import HERE, between, compose, wrap
 
-ACCELERATION = 3.0  # m/s^2, the deviation of how people change their pace
-MEASURED = 0.07  # metres, the deviation of a person's middle as a scan shows it
-MEASURED_LEG = 0.15  # the same where one leg is seen alone, which swings to and fro
-FIRST_SPEED = 1.0  # m/s, the deviation of the speed of a person who has just appeared
-GATE = 0.55  # metres from where a person is expected within which a sighting is of them
-STRIDE, BETWEEN = 0.9, 0.3  # metres between legs at most, and off where a person is expected
-SURE = 3  # sightings from which on a track counts
-DROPPED, DROPPED_HIDDEN = 0.5, 1.5  # seconds unseen; hidden behind something, or out of view
-SETTLED, SETTLED_WAY, SETTLED_SECONDS = 1.0, 0.15, 0.9  # s of age, metres in so many s: it stands
-RUNS = 0.5  # m/s from which on it does not stand, however little way it has made
-SLOWS = 1.0  # m/s^2 by which somebody who walked is less and less expected to go on so
-WALKED, WALKED_SECONDS = 0.8, 0.8  # metres and seconds of walking that make a person
-LEGS_SHARE, LEGS_SECONDS = 0.7, 2.0  # of so many s with two legs that make a person
+ACCELERATION = 3.0  # m/s^2, standard deviation of changes of velocity
+MEASURED = 0.07  # metres, standard deviation of a measured centre
+MEASURED_LEG = 0.15  # the same for a single leg, which swings
+FIRST_SPEED = 1.0  # m/s, standard deviation of the speed of a new track
+GATE = 0.55  # metres from the predicted position within which a sighting matches
+STRIDE, BETWEEN = 0.9, 0.3  # metres: between two legs; from their centre to the predicted position
+SURE = 3  # sightings that confirm a track
+DROPPED, DROPPED_HIDDEN = 0.5, 1.5  # seconds unseen until a track is dropped: visible, occluded
+SETTLED, SETTLED_WAY, SETTLED_SECONDS = 1.0, 0.15, 0.9  # standing: age in s; less than m in s
+RUNS = 0.5  # m/s from which on a track does not count as standing
+SLOWS = 1.0  # m/s^2 by which the remembered pace of a walker decreases
+WALKED, WALKED_SECONDS = 0.8, 0.8  # metres and seconds of walking that make a track a person
+LEGS_SHARE, LEGS_SECONDS = 0.7, 2.0  # share of so many s with a pair of legs that makes a person
 
 
 @dataclass(frozen=True)
 class Track:
-    """Somebody or something around: its middle in m, velocity in m/s, in one frame.
+    """A tracked person or object: its centre in m, and velocity in m/s, in one frame.
 
-    `half` is how far it reaches out from its middle, in m; `age` and `stood` are since when it has
-    been followed, and has stood still, in s. `hidden` says that it is not seen just now.
+    `half` is its radius in m; `age` and `stood` say for how many s it has been tracked and has
+    stood still. `hidden` says that it is currently occluded or out of view.
     """
 
     x: float
@@ -53,11 +53,11 @@ class Track:
     person: bool
     hidden: bool
     pace: float = 0.0
-    """How fast it has moved lately, in m/s: so fast it may come towards the robot at once."""
+    """Recent speed in m/s, at which it may approach the robot at any moment."""
 
     @property
     def speed(self) -> float:
-        """How fast it moves, in m/s."""
+        """Speed in m/s."""
         return hypot(self.vx, self.vy)
 
     def seen_from(self, pose: Pose) -> Track:
@@ -70,9 +70,9 @@ class Track:
 
 @dataclass
 class _Followed:
-    """One track as it is followed; x and y share a covariance of place and velocity."""
+    """State of a track; x and y share one covariance of position and velocity."""
 
-    state: NDArray[np.float64]  # (2, 2): place and velocity, x and y
+    state: NDArray[np.float64]  # (2, 2): position and velocity, x and y
     half: float
     covariance: NDArray[np.float64] = field(
         default_factory=lambda: np.diag([MEASURED**2, FIRST_SPEED**2])
@@ -106,7 +106,7 @@ class _Followed:
         self.hidden = False
 
     def note(self, legs: bool, dt: float) -> None:
-        """Record its position, and judge from that whether it stands, and its kind."""
+        """Record the position, and update whether it stands and whether it is a person."""
         x, y = self.state[0]
         self.past.append((self.age, float(x), float(y), legs))
         while self.age - self.past[0][0] > LEGS_SECONDS:
@@ -129,7 +129,7 @@ class _Followed:
         return hypot(x - then[1], y - then[2])
 
     def _strays(self, seconds: float) -> float:
-        """Return how far off its place it was at most: who goes to and fro does not stand."""
+        """Return its largest distance from its current position lately: pacing is not standing."""
         x, y = self.state[0]
         lately = (one for one in self.past if self.age - one[0] <= seconds)
         return max(hypot(x - one[1], y - one[2]) for one in lately)
@@ -148,10 +148,10 @@ class _Followed:
 
 
 class PeopleTracker:
-    """Follows everybody and everything that a scanner sees and a map does not have."""
+    """Tracks all people and objects that a scanner sees and a map lacks."""
 
     def __init__(self, laser: Pose = HERE) -> None:
-        """Begin, with the scanner at a pose on the robot."""
+        """Start without tracks; `laser` is the pose of the scanner on the robot."""
         self._laser = laser
         self._followed: list[_Followed] = []
 
@@ -165,10 +165,11 @@ class PeopleTracker:
         """Update the tracks with a scan, and return them in the odometry frame.
 
         Args:
-            odometry: where the wheels count the robot.
-            scan: the scan from there.
-            dt: seconds since the scan before.
-            unmapped: (n,) for each beam, whether it ends off all that is on the map; None: all do.
+            odometry: pose of the robot by wheel odometry.
+            scan: the scan.
+            dt: seconds since the previous scan.
+            unmapped: (n,) for each beam, whether it ends away from everything on the map; None: all
+                do.
         """
         for one in self._followed:
             one.predict(dt)
@@ -196,11 +197,11 @@ class PeopleTracker:
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """The confirmed tracks, in the odometry frame."""
+        """Confirmed tracks, in the odometry frame."""
         return tuple(one.track for one in self._followed if one.hits >= SURE)
 
     def _joined(self, found: list[LegSighting]) -> list[LegSighting]:
-        """Put two legs that are far apart together where a person is expected between them."""
+        """Join two legs that are far apart if a track predicts a person between them."""
         for one in self._followed:
             if one.hits < SURE:
                 continue
@@ -218,7 +219,7 @@ class PeopleTracker:
         return found
 
     def _matched(self, found: Sequence[LegSighting]) -> dict[int, int]:
-        """Return which sighting belongs to which track: to sure ones first, then the nearest."""
+        """Match tracks with sightings (track -> sighting), confirmed tracks first."""
         if not found or not self._followed:
             return {}
         at = np.array([one.state[0] for one in self._followed])
@@ -243,7 +244,7 @@ def _placed(one: LegSighting, pose: Pose) -> LegSighting:
 
 
 def _hidden(one: _Followed, scan: Scan, eye: Pose) -> bool:
-    """Say whether a track could not be seen: something is before it, or no beam looks there."""
+    """Return whether a track is occluded or out of view."""
     x, y = one.state[0]
     there = between(eye, Pose(float(x), float(y), 0.0))
     beam = round((wrap(atan2(there.y, there.x) - scan.first)) % (2 * np.pi) / scan.step)

@@ -1,8 +1,8 @@
 """Path planning on a map: costs near obstacles, and the cheapest path.
 
-Obstacles are inflated by their Euclidean distance; the cheapest way over the grid is found by
-Dijkstra's algorithm in its geometric form (`skimage.graph.MCP_Geometric`: the cost of a step is its
-length times the mean of the costs at its ends), and is then straightened where that costs nothing.
+Obstacles are inflated by Euclidean distance. Dijkstra's algorithm in its geometric form
+(`skimage.graph.MCP_Geometric`: a step costs its length times the mean of the costs at its ends)
+finds the cheapest path over the grid, which is then straightened where that costs nothing.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.poses import Floats, lengths
 from tangy_profiles.errors import TangyError
 
-FOOTPRINT = 0.25  # metres from the robot's middle to its edge
-RADIUS = FOOTPRINT + 0.07  # metres from its centre within which it would touch the map's obstacles
+FOOTPRINT = 0.25  # metres from the robot's centre to its edge
+RADIUS = FOOTPRINT + 0.07  # metres that the robot's centre keeps from obstacles on the map
 KEEP = FOOTPRINT + 0.37
-"""Metres from its centre to obstacles not on the map, which may be people: a torso of .22 m
-stands over the legs that are seen, with .15 m to spare."""
+"""Metres that the robot's centre keeps from obstacles that are not on the map and may be people:
+the torso extends .22 m beyond the visible legs, with .15 m to spare."""
 BESIDE = FOOTPRINT + 0.2
-"""Metres kept from a person who stands beside an end of the path. The end does not move for that,
-and the torso over the legs is still not touched."""
-COMFORT = 0.25  # metres over which the cost of being near something falls to a third
-DISLIKE = 4.0  # factor on the cost of a metre right beside an obstacle
-SQUEEZE = 12.0  # factor on the cost of a metre nearer to a person than paths keep
+"""Metres kept from a person beside an end of the path. The end does not move, and the robot still
+does not touch the torso."""
+COMFORT = 0.25  # metres in which the extra cost near an obstacle falls to 1/e
+DISLIKE = 4.0  # extra cost factor right beside an obstacle
+SQUEEZE = 12.0  # extra cost factor nearer to people than `keep`
 YIELD, YIELD_WITHIN = 6.0, 0.45
-"""Factor on the cost of a metre at a walking person; the m in which it falls to a third."""
+"""Extra cost factor at a walking person, and the m in which it falls to 1/e."""
 STEP = 0.05  # metres between the points of a path
-OUT = 0.5  # metres by which a robot that stands too near to something may get away from it
-SLACK = 0.1  # metres: two cells, within which an end and its surroundings are distinguished
+OUT = 0.5  # metres that a robot too near to an obstacle may move to get free
+SLACK = 0.1  # metres (two cells) of tolerance around an end of a path
 
 
 class PlanError(TangyError):
@@ -45,9 +45,9 @@ class PlanError(TangyError):
 
 @dataclass(frozen=True, eq=False)
 class Costs:
-    """Cost of a metre in each cell (rows, columns); inf where the robot would touch something.
+    """Cost factor of each cell (rows, columns); inf where the robot would touch an obstacle.
 
-    `distance` is how far the nearest obstacle is, in metres.
+    `distance` is the distance to the nearest obstacle, in m.
     """
 
     map: OccupancyMap
@@ -55,7 +55,7 @@ class Costs:
     distance: Floats
 
     def at(self, x: float, y: float) -> float:
-        """Return the cost (times the way's length) at a point in m; inf outside the map."""
+        """Return the cost factor (ratio to the path length) at a point in m; inf off the map."""
         row, column = self.map.cell(x, y)
         return float(self.cost[row, column]) if self.map.inside(row, column) else inf
 
@@ -77,15 +77,15 @@ def inflate(
     ends: Sequence[tuple[float, float]] = (),
     walking: Floats | None = None,
 ) -> Costs:
-    """Return the cost of each cell, with more obstacles at the points `blocked` (n, 2).
+    """Return the cost of each cell, with additional obstacles at `blocked` (n, 2).
 
     Args:
         map_: the map.
-        blocked: further obstacles, which may be people.
-        radius: least distance of the robot's centre from the map's obstacles, in m.
-        keep: least distance from `blocked`, in m.
-        ends: the ends of the path, where it may come nearer to obstacles.
-        walking: where those who walk are and will be (n, 2): ways avoid that where they can.
+        blocked: additional obstacles, which may be people.
+        radius: minimum distance of the robot's centre from obstacles on the map, in m.
+        keep: minimum distance from `blocked`, in m.
+        ends: ends of the path, where it may come nearer to obstacles.
+        walking: current and predicted positions of walkers (n, 2), which paths avoid if possible.
     """
     distance = _distance(map_, ~map_.obstacles)
     spare = distance - radius
@@ -114,7 +114,7 @@ def inflate(
 def near_ends(
     blocked: Floats, ends: Sequence[tuple[float, float]], keep: float = KEEP
 ) -> NDArray[np.bool_]:
-    """Say of points (n, 2) in m whether a way that begins and ends there cannot keep off them."""
+    """Return which points (n, 2) are within `keep` m of an end of the path."""
     near = np.zeros(len(blocked), dtype=np.bool_)
     for end in ends:
         near |= lengths(blocked - end) < keep + SLACK
@@ -122,19 +122,19 @@ def near_ends(
 
 
 def _distance(map_: OccupancyMap, free: NDArray[np.bool_]) -> Floats:
-    """Return how far it is from each cell to the nearest that is not free, in metres."""
+    """Return the distance of each cell to the nearest cell that is not free, in m."""
     if free.all():
         return np.full(map_.shape, max(map_.size))
-    # exact, as scipy's, in a sixth of its time
+    # exact, as scipy's version, in a sixth of the time
     cells = cv2.distanceTransform(free.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     return np.asarray(cells, dtype=np.float64) * map_.resolution
 
 
 def nearest_free(costs: Costs, x: float, y: float, within: float = inf) -> tuple[float, float]:
-    """Return the point nearest to another at which the robot can stand; all in m.
+    """Return the nearest point to (x, y) at which the robot can stand; all in m.
 
     Raises:
-        PlanError: there is none so near.
+        PlanError: there is none within so many m.
     """
     rows, columns = np.nonzero(np.isfinite(costs.cost))
     if len(rows):
@@ -157,15 +157,14 @@ def plan(
     keep: float = KEEP,
     walking: Floats | None = None,
 ) -> Path | None:
-    """Find the cheapest way from one point to another; None if there is none.
+    """Find the cheapest path from one point to another; return None if there is none.
 
-    A robot that stands nearer to something than it should first gets away from it. A goal that only
-    the obstacles of `blocked` (n, 2) take away is no error: there is no way to it just now. From
-    those the way keeps `keep` metres, but where somebody stands beside its beginning or its end;
-    it avoids where those are `walking` (m, 2) if it can.
+    A robot that is too near to an obstacle moves away from it first. A goal that is free on the map
+    but covered by `blocked` (n, 2) is no error: there is no path just now. The path keeps `keep` m
+    from `blocked`, except beside its ends, and avoids `walking` (m, 2) if possible.
 
     Raises:
-        PlanError: the goal lies outside the map, or where the map says that something is.
+        PlanError: the goal lies outside the map, or too near to an obstacle on it.
     """
     costs = inflate(map_, None, radius)
     _check(costs, goal, radius)
@@ -193,10 +192,10 @@ def plan(
 
 
 def check_goal(map_: OccupancyMap, goal: tuple[float, float], radius: float = RADIUS) -> None:
-    """Make sure that the map has room for the robot (its radius in m) at a goal.
+    """Check that the map has room for the robot (its radius in m) at a goal.
 
     Raises:
-        PlanError: it has not.
+        PlanError: there is not enough room.
     """
     _check(inflate(map_, None, radius), goal, radius)
 
@@ -218,12 +217,12 @@ def _check(costs: Costs, goal: tuple[float, float], radius: float) -> None:
 def cheapest(
     costs: Costs, start: tuple[int, int], goal: tuple[int, int]
 ) -> tuple[NDArray[np.intp], float] | None:
-    """Return the cells (n, 2: row, column) of the cheapest way over the grid, and its cost."""
+    """Return the cells (n, 2: row, column) of the cheapest path over the grid, and its cost."""
     passable = np.isfinite(costs.cost)
     if not passable[start] or not passable[goal]:
         return None
     rows, columns = np.flatnonzero(passable.any(axis=1)), np.flatnonzero(passable.any(axis=0))
-    corner = np.array([rows[0], columns[0]])  # nothing outside of this part can be driven on
+    corner = np.array([rows[0], columns[0]])  # everything outside this part is impassable
     part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     search = MCP_Geometric(np.where(passable[part], costs.cost[part], -1.0))
     begin, end = (tuple(np.array(cell) - corner) for cell in (start, goal))
@@ -235,7 +234,7 @@ def cheapest(
 
 
 def line_cost(costs: Costs, start: Floats, end: Floats) -> float:
-    """Return the cost in m of the line between two points (2,); inf if it touches something."""
+    """Return the cost in m of the line between two points (2,); inf if it touches an obstacle."""
     length = hypot(*(end - start))
     count = max(2, ceil(length / (costs.map.resolution / 2)) + 1)
     points = start + np.linspace(0.0, 1.0, count)[:, None] * (end - start)
@@ -244,7 +243,7 @@ def line_cost(costs: Costs, start: Floats, end: Floats) -> float:
 
 
 def straighten(costs: Costs, points: Floats, slack: float = 1.01) -> Floats:
-    """Leave out points of a way (n, 2) that a straight line does without; slack is a cost ratio."""
+    """Drop points of a path (n, 2) that a straight line can replace; `slack` is a cost ratio."""
     steps = np.array([line_cost(costs, a, b) for a, b in pairwise(points)])
     spent = np.concatenate(([0.0], np.cumsum(np.where(np.isfinite(steps), steps, 1e6))))
     kept, here, last = [0], 0, len(points) - 1
@@ -265,7 +264,7 @@ def straighten(costs: Costs, points: Floats, slack: float = 1.01) -> Floats:
 
 
 def resample(points: Floats, step: float = STEP) -> Floats:
-    """Return points (n, 2) every `step` m along a way, with both its ends."""
+    """Return points (n, 2) every `step` m along a path, with both its ends."""
     along = np.concatenate(([0.0], np.cumsum(lengths(np.diff(points, axis=0)))))
     if along[-1] < 1e-9:
         return points[[0, -1]]

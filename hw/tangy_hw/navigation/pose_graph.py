@@ -1,8 +1,8 @@
-"""Closes loops: poses at which neighbouring scans and places that a robot came back to agree.
+"""Closes loops with a pose graph (Lu and Milios, 1997).
 
-A graph of poses (Lu and Milios, 1997): its edges are the steps from each scan to the next one, and
-the matches of scans that were taken at one place. Gauss-Newton spreads over the way what the wheels
-missed; after that, loops that still do not fit are left out, as places that only look alike.
+Edges are the steps between successive scans, and the matches between scans of the same place.
+Gauss-Newton distributes the odometry error over the path. Loops that still do not fit afterwards
+are dropped: they join places that only look alike.
 """
 
 from __future__ import annotations
@@ -22,28 +22,28 @@ from tangy_hw.navigation.poses import Floats, between, wrap
 from tangy_hw.navigation.revisits import Loop
 
 STEP = (0.02, 0.02, 0.005)
-"""Standard deviations (m, m, rad) of a step between neighbouring scans that were matched."""
+"""Standard deviations (m, m, rad) of a matched step between successive scans."""
 LOOP = (0.05, 0.05, 0.02)
-"""Standard deviations (m, m, rad) of a match of two scans of one place."""
+"""Standard deviations (m, m, rad) of a match between two scans of the same place."""
 ASTRAY = 10.0
-"""Standard deviations from which on a loop is left out."""
+"""Standard deviations of a residual above which a loop is dropped."""
 ROUNDS, STEPS = 3, 12
-"""How often loops are left out, and the iterations of Gauss-Newton between."""
+"""Rounds of dropping loops, and Gauss-Newton iterations in each."""
 DONE = 1e-4
-"""Metres or radians of an iteration that need no other one."""
+"""Update in m or rad below which the iteration has converged."""
 
 Ends: TypeAlias = NDArray[np.intp]
-"""Numbers (n, 2) of the scans that an edge joins."""
+"""Numbers (n, 2) of the scans that edges join."""
 
 
 def close_loops(scans: Sequence[Placed], loops: Sequence[Loop]) -> list[Placed]:
-    """Return scans at the poses at which their steps and loops agree best.
+    """Return the scans at the poses at which their steps and loops agree best.
 
     The first scan stays where it is.
 
     Args:
-        scans: in the order in which they were taken, at poses that drift.
-        loops: the places that the robot came back to.
+        scans: successive scans, at poses with drift.
+        loops: the revisited places.
     """
     if len(scans) < 2 or not loops:
         return list(scans)
@@ -70,7 +70,7 @@ def close_loops(scans: Sequence[Placed], loops: Sequence[Loop]) -> list[Placed]:
 
 
 def _solved(poses: Floats, ends: Ends, told: Floats, spread: Floats) -> Floats:
-    """Return the poses (n, 3) at which edges fit best (Gauss-Newton)."""
+    """Return the poses (n, 3) at which the edges fit best (Gauss-Newton)."""
     for _ in range(STEPS):
         errors = _errors(poses, ends, told, spread).ravel()
         slopes = _slopes(poses, ends, spread)
@@ -83,7 +83,7 @@ def _solved(poses: Floats, ends: Ends, told: Floats, spread: Floats) -> Floats:
 
 
 def _errors(poses: Floats, ends: Ends, told: Floats, spread: Floats) -> Floats:
-    """Return the residuals of edges (n, 3), in standard deviations."""
+    """Return the residuals of the edges (n, 3), in standard deviations."""
     start, end = poses[ends[:, 0]], poses[ends[:, 1]]
     c, s = np.cos(start[:, 2]), np.sin(start[:, 2])
     x, y, turn = (end - start).T
@@ -93,7 +93,7 @@ def _errors(poses: Floats, ends: Ends, told: Floats, spread: Floats) -> Floats:
 
 
 def _slopes(poses: Floats, ends: Ends, spread: Floats) -> csc_matrix:
-    """Return the derivatives (3 edges, 3 poses but the first) of the errors."""
+    """Return the Jacobian of the residuals (3 edges, 3 poses without the first)."""
     start, end = poses[ends[:, 0]], poses[ends[:, 1]]
     c, s = np.cos(start[:, 2]), np.sin(start[:, 2])
     x, y = (end - start)[:, :2].T

@@ -1,8 +1,8 @@
-"""Looking for the places at which a scan fits, when nothing is known of where it was taken.
+"""Global search for the poses at which a scan fits a map.
 
-Very many poses are tried in a field so broad that one of them is near enough; the best are then
-moved about in the fine field until they fit as well as they can. Without that, a right place would
-lose against a wrong one only because no pose was tried quite there.
+Very many poses are scored in a likelihood field so broad that some of them are near enough; the
+best are then refined in the fine field. Without refinement, the right place could lose against a
+wrong one only because no tried pose was close enough.
 """
 
 from __future__ import annotations
@@ -15,22 +15,22 @@ from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.particles import anywhere, resample
 from tangy_hw.navigation.poses import Floats, wrap
 
-BROAD = 0.3  # metres: the width of the broad field
-GLANCE = 12.0  # the exponent with which that one judges
-NUDGES = ((0.2, 0.15), (0.1, 0.07), (0.05, 0.03), (0.02, 0.015))  # metres and radians
-EACH = 16  # poses that are tried around each place with each of the nudges
+BROAD = 0.3  # metres: sigma of the broad field
+GLANCE = 12.0  # exponent on its scores
+NUDGES = ((0.2, 0.15), (0.1, 0.07), (0.05, 0.03), (0.02, 0.015))  # deviations: metres, radians
+EACH = 16  # poses tried around each pose, for each of the nudges
 
 
 class Search:
-    """Proposes places on a map."""
+    """Proposes poses on a map."""
 
     def __init__(self, map_: OccupancyMap, field: LikelihoodField, rng: Generator) -> None:
-        """Begin.
+        """Start.
 
         Args:
-            map_: where places are looked for.
-            field: the fine field of that map.
-            rng: where chance comes from.
+            map_: the map to search.
+            field: the fine likelihood field of that map.
+            rng: the random generator.
         """
         self._fine = field
         self._broad = LikelihoodField(map_, BROAD)
@@ -39,12 +39,12 @@ class Search:
         self._rng = rng
 
     def places(self, points: Floats, count: int, tried: int) -> tuple[Floats, Floats]:
-        """Return poses (count, 3) at which beams fit, and how well (count,), 0 to 1.
+        """Return poses (count, 3) at which beams fit, and their scores (count,), 0 to 1.
 
         Args:
-            points: where the beams end (n, 2), in the robot's frame.
-            count: how many poses are returned; several may be of one place.
-            tried: how many are tried first.
+            points: ends of the beams (n, 2) in the robot's frame.
+            count: number of poses to return; several may be at the same place.
+            tried: number of poses to try first.
         """
         drawn = anywhere(self._free, self._resolution, tried, self._rng)
         some = points[:: max(1, len(points) // 60)]
@@ -56,13 +56,13 @@ class Search:
         return poses, scores
 
     def anywhere(self, count: int) -> Floats:
-        """Return poses (count, 3) anywhere on the free floor."""
+        """Return random poses (count, 3) on the free floor."""
         return anywhere(self._free, self._resolution, count, self._rng)
 
     def _nudged(
         self, poses: Floats, scores: Floats, points: Floats, metres: float, radians: float
     ) -> tuple[Floats, Floats]:
-        """Return the best of some poses around each, or that pose itself."""
+        """Return the best of random poses around each pose, or the pose itself."""
         nudges = self._rng.normal(0.0, 1.0, (len(poses), EACH, 3)) * (metres, metres, radians)
         around = (poses[:, None] + nudges).reshape(-1, 3)
         fits = self._fine.scores(around, points).reshape(len(poses), EACH)

@@ -1,6 +1,6 @@
-"""Arithmetic of poses on the floor, and scans as points.
+"""Arithmetic of planar poses, and scans as points.
 
-Poses are `devices.Pose` or rows of arrays (n, 3): x and y in metres, heading in radians.
+Poses are `Pose` values or rows of arrays (n, 3): x and y in m, heading in rad.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ HERE = Pose(0.0, 0.0, 0.0)
 
 
 def wrap(angle: Angle) -> Angle:
-    """Return an angle, or an array of them, between -pi and pi."""
+    """Return an angle in rad, or an array of angles, wrapped to [-pi, pi)."""
     return (angle + pi) % (2 * pi) - pi
 
 
 def compose(start: Pose, step: Pose) -> Pose:
-    """Return the pose after a step given in the frame of its starting pose."""
+    """Return the pose after a step given in the frame of the start."""
     c, s = cos(start.heading), sin(start.heading)
     return Pose(
         start.x + c * step.x - s * step.y,
@@ -35,7 +35,7 @@ def compose(start: Pose, step: Pose) -> Pose:
 
 
 def between(start: Pose, end: Pose) -> Pose:
-    """Return the step that leads from one pose to another, in the frame of the first."""
+    """Return the step from one pose to another, in the frame of the first."""
     c, s = cos(start.heading), sin(start.heading)
     x, y = end.x - start.x, end.y - start.y
     return Pose(c * x + s * y, c * y - s * x, wrap(end.heading - start.heading))
@@ -49,25 +49,25 @@ def placed(points: Floats, pose: Pose) -> Floats:
 
 
 def lengths(steps: Floats) -> Floats:
-    """Return how long vectors (n, 2) are."""
+    """Return the lengths of vectors (n, 2)."""
     return np.asarray(np.hypot(steps[:, 0], steps[:, 1]), dtype=np.float64)
 
 
 def bearings(scan: Scan) -> Floats:
-    """Return which way each beam looks (n,), from straight ahead."""
+    """Return the bearing of each beam (n,) in rad, relative to straight ahead."""
     return scan.first + scan.step * np.arange(len(scan.ranges), dtype=np.float64)
 
 
 def endpoints(
     scan: Scan, farthest: float = np.inf, laser: Pose = HERE, nearest: float = 0.0
 ) -> Floats:
-    """Return where beams end (m, 2), in the robot's frame; those that met nothing are left out.
+    """Return the ends of the beams with a return (m, 2), in the robot's frame.
 
     Args:
         scan: the scan.
-        farthest: metres beyond which a beam does not count.
-        laser: where the scanner sits on the robot.
-        nearest: metres short of which a beam does not count.
+        farthest: metres from which on returns are ignored.
+        laser: pose of the scanner on the robot.
+        nearest: metres up to which returns are ignored.
     """
     met = (scan.ranges > nearest) & (scan.ranges < min(farthest, scan.farthest))
     angles, ranges = bearings(scan)[met], scan.ranges[met]

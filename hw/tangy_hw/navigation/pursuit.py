@@ -1,9 +1,9 @@
-"""Driving along a path: pure pursuit with limits, turns on the spot, and a stop for obstacles.
+"""Path following: pure pursuit with limits, turns on the spot, and stops for obstacles.
 
-The base is round and turns on the spot, so that turning is always possible; it drives forwards
-only, because that is where its laser looks. The steering law is that of R. Coulter, "Implementation
-of the pure pursuit path tracking algorithm", 1992: curvature = 2 y / L^2, where y is how far to the
-left a point of the path at the distance L lies.
+The base is round and can always turn on the spot; it only drives forwards, where its laser looks.
+Steering law: R. Coulter, "Implementation of the pure pursuit path tracking algorithm", 1992:
+curvature = 2 y / L^2, where y is the lateral offset, positive to the left, of the point of the path
+at the look-ahead distance L.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, wrap
 
 State = Literal["driving", "turning", "waiting", "arrived"]
-"""Along the path; on the spot; for an obstacle to go away; there."""
+"""On the path; turning on the spot; waiting for an obstacle to go away; at the goal."""
 
-NEAREST, PER_SPEED, FURTHEST = 0.3, 0.6, 0.8  # metres looked ahead: at least, per m/s, at most
-AIM = 0.6  # radians off the path beyond which the robot first turns towards it
-AIMED = 0.1  # radians off at which it begins to drive
-THERE, FACING = 0.05, 0.04  # metres and radians off the goal at which it has arrived
-PASSED = 0.15  # metres from the goal from which on it is not driven after any more
-CREEP = 0.03  # m/s: slower than this is standing
+NEAREST, PER_SPEED, FURTHEST = 0.3, 0.6, 0.8  # metres of look-ahead: minimum, per m/s, maximum
+AIM = 0.6  # radians off the path beyond which the robot turns on the spot first
+AIMED = 0.1  # radians off at which it starts to drive
+THERE, FACING = 0.05, 0.04  # metres and radians off the goal within which it has arrived
+PASSED = 0.15  # metres from the goal within which it does not turn back to it
+CREEP = 0.03  # m/s below which it stands still
 
 
 class Pursuit:
-    """Follows one path to its end, and there turns to the final heading."""
+    """Follows one path to its end, and turns to the final heading there."""
 
     def __init__(
         self,
@@ -39,13 +39,13 @@ class Pursuit:
         limits: MotionLimits | None = None,
         laser: Pose = HERE,
     ) -> None:
-        """Begin.
+        """Start at the beginning of a path.
 
         Args:
             path: points (n, 2) some centimetres apart, as `planning.plan` returns them.
-            heading: which way the robot faces at the end, in rad; None: as it comes.
-            limits: how it may drive.
-            laser: where the scanner sits on the robot.
+            heading: final heading in rad; None: any.
+            limits: the motion limits.
+            laser: pose of the scanner on the robot.
         """
         self.path = path
         self.heading = heading
@@ -60,12 +60,12 @@ class Pursuit:
 
     @property
     def left(self) -> float:
-        """Metres of the path that are left."""
+        """Remaining metres of the path."""
         return float(self._left[self._at])
 
     @property
     def ahead(self) -> Floats:
-        """The points of the path that are left (n, 2)."""
+        """Remaining points of the path (n, 2)."""
         return self.path[self._at :]
 
     def command(
@@ -76,14 +76,14 @@ class Pursuit:
         dt: float,
         wary_of: Floats | None = None,
     ) -> Twist:
-        """Return how to drive for the next `dt` seconds.
+        """Return the twist for the next `dt` s.
 
         Args:
-            pose: where the robot is, in the frame of the path.
-            twist: how fast it drives now.
+            pose: pose of the robot in the frame of the path.
+            twist: its current twist.
             scan: the current scan.
             dt: seconds until the next command.
-            wary_of: where people may be (n, 2), in the frame of the path.
+            wary_of: positions where people may be (n, 2), in the frame of the path.
         """
         if self.state == "arrived":
             return STILL
@@ -96,7 +96,7 @@ class Pursuit:
         return self._drive(pose, twist, endpoints(scan, REACH, self.laser), dt, wary_of)
 
     def _advance(self, pose: Pose) -> None:
-        """Go along the path to the point nearest to the robot, never back."""
+        """Advance to the point of the path nearest to the robot, never back."""
         window = self.path[self._at : self._at + 40]
         self._at += int(np.argmin(lengths(window - (pose.x, pose.y))))
 
@@ -130,7 +130,7 @@ class Pursuit:
         if abs(curvature) > 0.01:
             most = min(most, limits.turn / abs(curvature))
         room = room_ahead(seen, curvature, limits)
-        if room + limits.gap > left:  # obstacles behind the goal leave it free
+        if room + limits.gap > left:  # obstacles behind the goal do not block it
             room = max(room, left)
         most = min(most, speed_in(room, limits))
         if wary_of is not None and len(wary_of):
@@ -144,9 +144,9 @@ class Pursuit:
         return Twist(forward, float(np.clip(curvature * forward, -limits.turn, limits.turn)))
 
     def _turn(self, off: float, twist: Twist, dt: float) -> Twist:
-        """Turn on the spot by an angle, as fast as it can be braked."""
+        """Turn on the spot by an angle in rad, no faster than the robot can brake."""
         limits = self.limits
-        if abs(twist.forward) > 2 * CREEP:  # first stand
+        if abs(twist.forward) > 2 * CREEP:  # stop first
             return Twist(max(0.0, twist.forward - limits.brake * dt), 0.0)
         fast = min(limits.turn, sqrt(limits.spin_up * abs(off)) * 0.7, 2.5 * abs(off))
         fast = max(fast, min(0.15, abs(off) / max(dt, 1e-3)))

@@ -1,15 +1,15 @@
-"""Revisited places: do the poses agree that it is the same place?
+"""Finds revisited places, and checks whether the poses agree there.
 
-A scan is matched with older ones in all of which it may have been taken, as far as wheels can have
-gone astray since then. Where it fits an older one in both directions of the floor, the two were
-taken at one place. If the poses agree, a loop is closed there; if they do not, it is torn, and no
-beam need contradict the map, for the two copies of a corridor can lie apart.
+A scan is matched with older scans that may show the same place, given the possible odometry drift
+between them. If it matches one in both directions of the floor, both were taken at one place. If
+the poses agree, the loop is closed; if not, it is torn, even if no beam contradicts the map,
+because the two copies of a corridor can lie apart.
 
 The limits were chosen on simulated corridors, rooms and rows of rooms (6 seeds of each of 6 shapes,
-with and without wheels that slip for 6% of the way). With those of `agreement` they accept 35 of 36
-maps of other seeds that close, and refuse 33 of 36 that are torn; a building whose parts look alike
-is the one that is refused wrongly. Freiburg's building 079: 43 scans agree and none does not in the
-corrected log; matched anew, 9 agree and 13 do not.
+with and without wheels that slip for 6% of the way). Together with those of `agreement`, they
+accept 35 of 36 maps of other seeds that close, and reject 33 of 36 that are torn; the one wrongly
+rejected is a building whose parts look alike. On Freiburg's building 079, 43 scans agree and none
+disagrees in the corrected log; matched anew, 9 agree and 13 disagree.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ from tangy_hw.navigation.mapping import Placed
 from tangy_hw.navigation.poses import Floats, between, compose
 from tangy_hw.navigation.scan_matching import Reference
 
-LOOP = 8.0  # metres driven between two scans from which on they can close a loop
-EVERY = 0.5  # metres between the scans that are looked at
-ASTRAY = 0.2  # of the way driven between: how far off the poses may be
-FARTHEST = 8.0  # metres off at most
-FITS = 0.85  # share of points that must fit
+LOOP = 8.0  # metres driven between two scans that can close a loop
+EVERY = 0.5  # metres between the checked scans
+ASTRAY = 0.2  # of the way driven in between: how much the poses may drift
+FARTHEST = 8.0  # metres of drift at most
+FITS = 0.85  # share of points that must match
 FULLY = 1.5  # trace of the observable directions: both directions of the floor
 AGREES, DISAGREES = 0.3, 0.6  # metres between the poses and the match
 
 
-MOST, NEAREST, CANDIDATES = 400, 12, 40  # scans looked at; older ones for each, near and far
-SURE = 2  # torn places after the last closed one from which on that counts
+MOST, NEAREST, CANDIDATES = 400, 12, 40  # checked scans; older candidates for each, near and far
+SURE = 2  # torn places after the last closed one that make the map torn
 
 
 class Loop(NamedTuple):
-    """A place that a robot came back to: two scans by number, and the step between them.
+    """A revisited place: two scans by number, and the step between them.
 
-    `step` is by their match, `off` how far the later one's pose is from there, in metres.
+    `step` is the result of matching, `off` its distance in m from the later scan's pose.
     """
 
     earlier: int
@@ -53,11 +53,11 @@ class Loop(NamedTuple):
 
 @dataclass(frozen=True)
 class Revisits:
-    """The places that a robot came back to: where its poses say so (`closed`), and not (`torn`).
+    """The revisited places: those where the poses agree (`closed`), and disagree (`torn`).
 
-    `off` is how far apart, in metres, the poses of a torn place are, in the middle of all of them;
-    `last` how many were torn after the last one that closed; `crossed` how often the poses say that
-    it came back at all. `loops` are all of these places, torn or not.
+    `off` is the median distance, in m, between the poses and the matches of torn places, `last` the
+    number of torn places after the last closed one, and `crossed` how often the robot came back
+    according to its poses. `loops` are all revisited places, torn or not.
     """
 
     closed: int = 0
@@ -71,19 +71,19 @@ class Revisits:
     def tears(self) -> bool:
         """Whether the loops as a whole are torn.
 
-        New scans that resemble earlier ones count as torn until the robot is back at a known
-        place; so torn ones must outnumber those that close, or come last.
+        New scans that resemble earlier ones count as torn until the robot is back at a known place;
+        so torn ones must outnumber closed ones, or come last.
         """
         return self.torn > self.closed or self.last >= SURE
 
     @property
     def unconfirmed(self) -> bool:
-        """Whether the robot came back, and no scan fits the earlier ones there."""
+        """Whether the robot came back, and no scan matches the earlier ones there."""
         return not self.closed and self.crossed >= SURE
 
 
 def revisits(scans: Sequence[Placed]) -> Revisits:
-    """Look at every place that the robot may have come back to."""
+    """Check every place that the robot may have revisited."""
     places = np.array([(one.pose.x, one.pose.y) for one in scans]).reshape(-1, 2)
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))))
     chosen = _every(way[: len(scans)])
@@ -106,7 +106,7 @@ def revisits(scans: Sequence[Placed]) -> Revisits:
 
 
 def _every(way: Floats) -> list[int]:
-    """Return the numbers of scans that lie `EVERY` metres of the way apart."""
+    """Return the numbers of scans that are `EVERY` m of the way apart."""
     chosen = [0] if len(way) else []
     for number, at in enumerate(way):
         if at - way[chosen[-1]] >= EVERY:
@@ -139,7 +139,7 @@ def _loop(
             if match.fits < FITS or np.trace(match.told) < FULLY:
                 continue
             if hypot(match.pose.x, match.pose.y) > 2 * EVERY:
-                continue  # that is another's place
+                continue  # the match is at another place
             found = compose(scans[earlier].pose, match.pose)
             off = hypot(found.x - one.pose.x, found.y - one.pose.y)
             loop = Loop(earlier, later, match.pose, off)

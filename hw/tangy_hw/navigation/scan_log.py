@@ -1,8 +1,8 @@
-"""Logs of laser scans, as CARMEN and the programs after it write them.
+"""Reads logs of laser scans in CARMEN's format.
 
-A line is a message; of interest are `FLASER` (front laser, half a circle: readings, pose of the
-laser, pose of the wheels), `ROBOTLASER1` (its newer form, with the angles in it) and `ODOM` (the
-wheels alone). In a log that a mapping program has gone over, the pose of the laser is corrected.
+Each line is a message. Used are `FLASER` (front laser, 180 degrees: readings, laser pose, odometry
+pose), `ROBOTLASER1` (its newer form, with angles) and `ODOM` (odometry alone). In a log corrected
+by a mapping program, the laser pose is the corrected one.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.given_file import open_given
 from tangy_profiles.reading import plain
 
-FARTHEST = 80.0  # metres; an old FLASER does not say how far its scanner sees: SICK's say 81.91
-LARGEST_FILE, LARGEST = 200_000_000, 500_000_000  # bytes, as it is and unpacked
-LONGEST_LINE = 1_000_000  # signs
-MOST_SCANS = 200_000  # five hours and a half, ten a second
-MOST_READINGS = 40_000_000  # of all scans: they take 320 MB
+FARTHEST = 80.0  # metres; FLASER has no maximum range, and SICK scanners report 81.91 for no return
+LARGEST_FILE, LARGEST = 200_000_000, 500_000_000  # bytes, packed and unpacked
+LONGEST_LINE = 1_000_000  # characters
+MOST_SCANS = 200_000  # five and a half hours at ten a second
+MOST_READINGS = 40_000_000  # of all scans: 320 MB
 BEAMS = 10_000  # no scanner has more
 
 
 class LogError(TangyError):
-    """A log that cannot be used; one sentence with file and line."""
+    """An unusable log; one sentence with file and line."""
 
 
 @dataclass(frozen=True, eq=False)
 class LoggedScan:
     """A scan of a log.
 
-    `pose` is that of the laser as logged, `odometry` that of the wheels by the same line, and
-    `wheels` that of the last ODOM line before it, if there was one; `stamp` is in s.
+    `pose` is the logged pose of the laser, `odometry` the odometry pose of the same line, and
+    `wheels` that of the last ODOM line before it, if any; `stamp` is in s.
     """
 
     scan: Scan
@@ -50,10 +50,10 @@ class LoggedScan:
 
 
 def read_log(path: Path) -> list[LoggedScan]:
-    """Read all scans of a log, packed with gzip or not.
+    """Read all scans of a log, plain or gzipped.
 
     Raises:
-        LogError: it cannot be read, a line is broken, or it has no scans.
+        LogError: the log cannot be read, a line is invalid, or it has no scans.
     """
     name = plain(str(path))
     found: list[LoggedScan] = []
@@ -138,7 +138,7 @@ def _ranges(
 def _flaser(words: Sequence[str], wheels: Pose | None) -> LoggedScan:
     count = _count(words[1] if len(words) > 1 else "")
     numbers = _numbers(words[2:], count + 7)
-    # 181 and 361 readings reach from -90 to +90 degrees, 180 and 360 end one step before
+    # 181 and 361 readings cover -90 to +90 degrees; 180 and 360 end one step before
     step = pi / (count - 1 if count % 2 else count)
     scan = Scan(-pi / 2, step, _ranges(numbers[:count], FARTHEST), FARTHEST)
     pose, odometry = Pose(*numbers[count : count + 3]), Pose(*numbers[count + 3 : count + 6])

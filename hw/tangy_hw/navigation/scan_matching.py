@@ -1,8 +1,8 @@
-"""Matching a scan with an earlier one: how did the robot move between them, by the walls alone?
+"""Scan matching: how the robot moved between two scans, from the walls alone.
 
-Points of the one are moved onto lines of the other (iterative closest point with point-to-line
-distances; A. Censi, 2008). Along a bare corridor a scan does not tell how far it went: what the
-walls do not tell is left as it was guessed, and the answer says so.
+Iterative closest point with point-to-line distances (A. Censi, 2008). Along a bare corridor, a scan
+does not show how far the robot went: directions that the walls do not constrain stay as guessed,
+and the result says which.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ from scipy.spatial import cKDTree
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed, wrap
 
-REACH = 12.0  # metres beyond which points lie too thinly
-POINTS = 120  # of a scan that are matched
-STRAIGHT = 0.03  # metres a point may lie off the line of its neighbours
-GAP = 0.4  # metres between neighbours that are on one wall
-RINGS = (0.5, 0.35, 0.25, 0.15, 0.1, 0.1)  # metres to a partner, step by step
-FITS = 0.05  # metres off its line at which a point fits
-TOLD = 0.04  # mean square of normals along a direction from which on walls tell about it
+REACH = 12.0  # metres beyond which points are too sparse
+POINTS = 120  # of a scan to match
+STRAIGHT = 0.03  # metres that a point may be off the line through its neighbours
+GAP = 0.4  # metres between neighbouring points on one wall
+RINGS = (0.5, 0.35, 0.25, 0.15, 0.1, 0.1)  # metres to a matching point, in each iteration
+FITS = 0.05  # metres off its line within which a point matches
+TOLD = 0.04  # mean square of normals along a direction that makes it observable
 
 
 @dataclass(frozen=True, eq=False)
 class ScanMatch:
-    """How a scan fits an earlier one.
+    """Match of a scan with an earlier one.
 
-    `pose` is where it was taken, seen from the earlier one; `fits` the share of points on lines;
-    `told` (2, 2) projects steps on the floor onto the directions that the walls tell about.
+    `pose` is the scan's pose relative to the earlier one, `fits` the share of points that match,
+    and `told` (2, 2) projects planar steps onto the observable directions.
     """
 
     pose: Pose
@@ -48,7 +48,7 @@ class Reference:
 
     @classmethod
     def joined(cls, parts: Sequence[tuple[Reference, Pose]]) -> Reference:
-        """Join scans at their poses, so that another is matched with all of them at once."""
+        """Join scans at their poses into one reference."""
         made = cls(None)
         made._take(
             np.vstack([placed(part._points, pose) for part, pose in parts]),
@@ -61,7 +61,7 @@ class Reference:
         self._tree = cKDTree(points) if len(points) else None
 
     def match(self, scan: Scan, guess: Pose, laser: Pose = HERE) -> ScanMatch:
-        """Find where another scan was taken, beginning at a guess."""
+        """Find the relative pose of another scan, starting from a guess."""
         points = endpoints(scan, REACH, laser)
         if len(points) > POINTS:
             points = points[np.linspace(0, len(points) - 1, POINTS).round().astype(np.intp)]
@@ -99,7 +99,7 @@ class Reference:
 
 
 def _lines(points: Floats) -> tuple[Floats, Floats]:
-    """Return the points that lie on a line with their neighbours, and the normals there."""
+    """Return the points that lie on a line with their neighbours, and their normals."""
     if len(points) < 5:
         return points[:0], points[:0]
     before, middle, after = points[:-4], points[2:-2], points[4:]
@@ -119,8 +119,8 @@ def _directions(matrix: Floats) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 def _solve(hessian: Floats, gradient: Floats) -> tuple[float, float, float]:
-    """Solve for a step in the observable directions, and stay in the others."""
-    # on the floor alone first, with the turn that belongs to each step
+    """Solve for the step in the observable directions; it is zero in the others."""
+    # eliminate the rotation first (Schur complement)
     if hessian[2, 2] < 1e-6:
         turn = np.zeros(2)
         left = 0.0

@@ -1,7 +1,7 @@
-"""Recording of a drive: scans with the wheels' pose, as a log that `scan_log` reads.
+"""Records scans with odometry poses while driving, as a log that `scan_log` reads.
 
-Each line is a ROBOTLASER1 message of CARMEN's log format. Both poses in it are those of the laser
-by wheel odometry; nothing has corrected them.
+Each line is a ROBOTLASER1 message of CARMEN's log format. Both of its poses are the laser pose by
+wheel odometry, without correction.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from tangy_hw.device_protocols import DeviceError, Pose, Scan
 from tangy_hw.navigation.poses import between
 
 MOVED, TURNED = 0.05, 0.05
-"""m and rad after which the next scan is recorded: matching needs no more than one in 10 cm."""
+"""m and rad between recorded scans: matching needs no more than one in 10 cm."""
 
 
 class ScanRecorder:
     """Appends a scan to a log whenever the laser has moved."""
 
     def __init__(self, path: Path) -> None:
-        """Begin a log.
+        """Create the log file.
 
         Args:
-            path: the log's file, which must not exist yet.
+            path: the log file, which must not exist yet.
 
         Raises:
             DeviceError: the file exists, or cannot be written.
@@ -45,7 +45,7 @@ class ScanRecorder:
         self._file.write(robot_laser_line(scan, pose, stamp))
 
     def close(self) -> None:
-        """End the log."""
+        """Close the log."""
         self._file.close()
 
 

@@ -1,8 +1,8 @@
-"""Whether wheels and laser agree about how the robot moved.
+"""Detects wheel slip: compares wheel odometry with laser scans.
 
-Wheels that turn on a wet floor, or a count of them with the wrong sign, lead a robot astray slowly,
-because localisation follows for a while. So the wheels are compared with matched scans, step by
-step, over the last stretch of the way.
+Wheels that slip on a wet floor, or count with the wrong sign, lead a robot astray slowly, because
+localisation compensates for a while. So odometry is compared with matched scans, step by step, over
+the last stretch of the way.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.poses import HERE, Floats, between, wrap
 from tangy_hw.navigation.scan_matching import Reference, ScanMatch
 
-STEP, TURN = 0.1, 0.15  # metres and radians by the wheels after which scans are compared
-STEPS = 8  # that are summed up: most of a metre
-KEPT = 50  # scans after which a step does not count any more: 5 s at ten a second
-FITS = 0.6  # share of points that must fit for a match to be believed
-FARTHEST = 0.4  # metres: a match that is further off the wheels than that is not believed
-ARM = 0.25  # metres from the robot's centre to its wheels: converts a turn into metres of wheel
+STEP, TURN = 0.1, 0.15  # metres and radians of odometry between compared scans
+STEPS = 8  # steps in the sum: most of a metre
+KEPT = 50  # scans after which a step is dropped: 5 s at ten a second
+FITS = 0.6  # share of points that must match
+FARTHEST = 0.4  # metres off the odometry above which a match is rejected
+ARM = 0.25  # metres from the robot's centre to its wheels: converts a turn into metres
 
 
 class Disagreement:
-    """Compares the wheels with matched scans over the last stretch of the way."""
+    """Difference between wheel odometry and matched scans over the last stretch of the way."""
 
     def __init__(self, laser: Pose = HERE) -> None:
         self._laser = laser
@@ -35,7 +35,7 @@ class Disagreement:
         self._from = HERE
 
     def update(self, odometry: Pose, scan: Scan) -> float:
-        """Take in wheels and laser at one moment; return by how many metres they disagree."""
+        """Update with simultaneous odometry and scan; return the disagreement in m."""
         self._count += 1
         while self._steps and self._steps[0][0] < self._count - KEPT:
             self._steps.popleft()
@@ -50,7 +50,7 @@ class Disagreement:
 
     @property
     def metres(self) -> float:
-        """Their disagreement in m: the sum of the steps' differences."""
+        """Disagreement in m: length of the sum of the steps' differences."""
         if not self._steps:
             return 0.0
         return float(np.linalg.norm(np.sum([step for _, step in self._steps], axis=0)))
@@ -65,7 +65,7 @@ class Disagreement:
 
     def _compare(self, reference: Reference, step: Pose, scan: Scan) -> None:
         match = reference.match(scan, step, self._laser)
-        if match.fits < FITS:  # perhaps it stood still, or went the other way
+        if match.fits < FITS:  # perhaps the robot stood still, or went the other way
             others = (HERE, Pose(-step.x, -step.y, step.heading))
             match = max(
                 (match, *(reference.match(scan, other, self._laser) for other in others)),
@@ -77,6 +77,6 @@ class Disagreement:
 
 
 def _off(step: Pose, match: ScanMatch) -> Floats:
-    """Return by how much wheels and a match differ: on the floor, and by the turn, in metres."""
+    """Return the difference between odometry and a match: x, y, and rotation, in m."""
     floor = match.told @ np.array([step.x - match.pose.x, step.y - match.pose.y])
     return np.array([*floor, ARM * wrap(step.heading - match.pose.heading)])

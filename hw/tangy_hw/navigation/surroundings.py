@@ -1,4 +1,4 @@
-"""The surroundings that are not on the map: obstacles, and people who walk by."""
+"""Surroundings that are not on the map: obstacles, and people who walk by."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
 
 Held = Literal["", "walking", "standing"]
-"""The kind of person the robot waits for: nobody, one who walks, one who stands."""
+"""Kind of person that the robot waits for: nobody, a walking one, a standing one."""
 
-SURE = 0.3  # metres of spread of the pose up to which points go onto the map
-WALKS = 0.25  # m/s from which on somebody walks
+SURE = 0.3  # metres of pose spread up to which points become obstacles
+WALKS = 0.25  # m/s from which on a track walks
 WALKERS = 0.5  # metres around a walking person within which points belong to them
-AHEAD = (0.0, 0.7, 1.4, 2.1)  # seconds after which ways avoid those who walk
+AHEAD = (0.0, 0.7, 1.4, 2.1)  # seconds ahead for which paths avoid walkers
 
 
 class Surroundings:
-    """Keeps points of the scanner that are not on the map: as things, people and obstacles."""
+    """Keeps scanned points that are not on the map: as tracks, people and obstacles."""
 
     def __init__(self, map_: OccupancyMap, laser: Pose, limits: MotionLimits) -> None:
-        """Begin with nothing around.
+        """Start empty.
 
         Args:
             map_: the map, whose walls are ignored.
-            laser: where the scanner sits on the robot.
-            limits: how the robot may drive past people.
+            laser: pose of the scanner on the robot.
+            limits: motion limits, also near people.
         """
         self._obstacles = Obstacles(map_, laser)
         self._tracker = PeopleTracker(laser)
@@ -45,7 +45,7 @@ class Surroundings:
         self._ends: Floats = np.zeros((0, 2))
 
     def see(self, estimate: Estimate, odometry: Pose, scan: Scan, dt: float) -> None:
-        """Take in a scan, `dt` s after the one before, from where the robot thinks that it is."""
+        """Update with a scan at the estimated pose, `dt` s after the previous one."""
         self._pose = estimate.pose
         if estimate.spread < SURE:
             self._obstacles.see(estimate.pose, scan, dt)
@@ -58,22 +58,22 @@ class Surroundings:
         self._ends = points
 
     def forget(self) -> None:
-        """Forget all obstacles, for example after the pose estimate was wrong."""
+        """Forget all obstacles, for example if the estimated pose was wrong."""
         self._obstacles.forget()
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """The tracks, in the robot's frame."""
+        """Tracks, in the robot's frame."""
         return self._tracks
 
     @property
     def points(self) -> Floats:
-        """Where something is that is not on the map (n, 2), in the map's frame."""
+        """Points of obstacles that are not on the map (n, 2), in the map's frame."""
         return self._obstacles.points
 
     @property
     def standing(self) -> Floats:
-        """The same (n, 2) without those who walk."""
+        """Points of obstacles (n, 2) without those of walking people."""
         points, walkers = self.points, self._walkers
         if not len(points) or not walkers:
             return points
@@ -92,11 +92,11 @@ class Surroundings:
         return placed(np.array(found, dtype=np.float64).reshape(-1, 2), self._pose)
 
     def passed(self, twist: Twist) -> Twist:
-        """Return how much of a command may be driven past everybody who is around."""
+        """Return the part of a command that may be driven near the people around."""
         return passed(twist, Around(self._tracks, self._ends), self._limits)
 
     def held(self, twist: Twist) -> Held:
-        """Return the person in the way of a forbidden command."""
+        """Return the kind of person who blocks a command; "" if it is not blocked."""
         if self.passed(twist) != STILL or twist == STILL:
             return ""
         walkers = self._walkers
