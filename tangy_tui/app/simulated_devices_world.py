@@ -228,7 +228,9 @@ class BenchedWorld(LiveWorld):
         if not self.over:
             self._let_faults_come(action)
             step = self.tracker.step + 1
-            self.injection_log.look(step, lambda kind: self.can_show(kind, action))
+            self.injection_log.look(
+                step, lambda kind: kind.name in self.present and self.can_show(kind, action)
+            )
         outcome = super().execute(action)
         if action.behaviour.effect in DRIVES:
             self._note_place()

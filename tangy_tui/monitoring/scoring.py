@@ -66,7 +66,8 @@ def score_game(
 
     A fault is named right by the code of its kind, or by that which it gives together with others
     that came (no voice and no screen: mute). A diagnosis of another code, while one that could show
-    is not named yet, has seen that one and named it wrong. The others are false alarms.
+    is not named yet, has seen that one and named it wrong. The others are false alarms, except for
+    that which takes over from a fault that was named: its requests were in vain.
     """
     told = [fault for fault in faults if not fault.asks_only]
     right = {id(one): _codes(one, injected, book) for one in injected}
@@ -79,7 +80,10 @@ def score_game(
         if new:
             together = fault.code != new[0].kind.code
             named |= dict.fromkeys(map(id, new if together else new[:1]), fault)
-        elif not any(fault.code in right[id(one)] for one in there):
+        elif not (
+            any(fault.code in right[id(one)] for one in there)
+            or any(takes_over(fault, one) for one in named.values())
+        ):
             open_ = [one for one in there if id(one) not in named and one.could_show is not None]
             if open_:
                 mistaken.setdefault(id(open_[-1]), fault)
@@ -103,6 +107,13 @@ def score_game(
             )
         )
     return GameScore(tuple(scored), tuple(false))
+
+
+def takes_over(fault: Fault, earlier: Fault) -> bool:
+    """Say whether an earlier fault was left at this one, which speaks for it as well."""
+    last = earlier.moves[-1] if earlier.moves else None
+    left = last is not None and last.kind == "left" and last.seconds == fault.seconds
+    return left and earlier.person == fault.person is not None
 
 
 def _codes(one: Injected, injected: Sequence[Injected], book: FaultBook) -> frozenset[str]:

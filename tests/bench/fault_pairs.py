@@ -5,8 +5,9 @@ pair both come at one step, in the second one comes while Tangy recovers from th
 are simulated (about a minute); with --bench so many pairs, drawn by the seed, are played on the
 bench instead, each in one game, by turns in the first and in the second way. A fault is missed if
 it could show and was not named; it is told twice if a second diagnosis has its code while it came
-once. Who never complies is told of in each visit, which counts once. What neither of the two calls
-for is a false alarm.
+once. Who never complies is told of in each visit, which counts once; so does what Tangy asked a
+person for in vain, and finds again in a later visit. What neither of the two calls for is a false
+alarm.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED
+from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.scoring import score_game, share_interval
 from tangy_tui.monitoring.supervision import Supervision
 from tests.bench.fault_latency import teach
@@ -72,12 +74,22 @@ def judged(game: Supervision, one: PairGame) -> PairGame:
         if came.named is None:
             one.wrong.append(f"missed {came.kind} (called {came.called or 'nothing'})")
     came_often = Counter(came.kind.code for came in world.injection_log.all)
-    told = Counter(fault.code for fault in game.faults if not fault.asks_only)
+    told = Counter(
+        fault.code
+        for number, fault in enumerate(game.faults)
+        if not fault.asks_only and not any(left_at(one, fault) for one in game.faults[:number])
+    )
     for code, times in told.items():
         if code != ANEW and came_often[code] and times > came_often[code]:
             one.wrong.append(f"told {times} times: {code}")
     one.wrong += [f"false alarm {code}" for code in score.false_alarms]
     return one
+
+
+def left_at(earlier: Fault, fault: Fault) -> bool:
+    """Say whether a person was left in peace about a fault that a later visit finds again."""
+    same = (earlier.code, earlier.person) == (fault.code, fault.person)
+    return same and any(move.kind == "left" for move in earlier.moves)
 
 
 def play(control: GameController, one: PairGame) -> PairGame:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
 
@@ -99,3 +100,35 @@ def test_every_kind_that_is_brought_about_in_a_game_is_in_the_list(
     told = score_game(1, world.injection_log.all, game.faults, game.book)
     assert [one.kind for one in told.injections] == [name for _, name in world.came]
     assert all(one.named is not None for one in told.injections if one.could_show is not None)
+
+
+def test_leaving_a_person_in_peace_about_a_fault_is_no_false_alarm() -> None:
+    asked = replace(fault("card-out-of-sight", 3, ("asked", 32.0), ("left", 40.0)), person="user1")
+    peace = replace(fault("never-complies", 4), person="user1")
+    assert scored([came("card-out-of-sight", 3)], asked, peace).false_alarms == ()
+    for other in (replace(peace, person="user2"), replace(peace, seconds=90.0)):
+        told = scored([came("card-out-of-sight", 3)], asked, other)
+        assert told.false_alarms == ("never-complies",)
+
+
+@pytest.mark.parametrize(
+    ("pair", "hidden"),
+    [
+        (("card-out-of-sight@4", "never-complies@4"), "card-out-of-sight"),
+        (("requests-silent@9", "request-withdrawn@9"), "request-withdrawn"),
+    ],
+)
+def test_what_another_fault_hides_counts_as_none_that_could_show(
+    supervise: Supervise, pair: tuple[str, str], hidden: str
+) -> None:
+    shown = 0
+    for seed in range(1, 7):
+        game = supervise(*pair, seed=seed)
+        play(game)
+        world = game.world
+        assert isinstance(world, FaultyWorld)
+        score = score_game(1, world.injection_log.all, game.faults, game.book)
+        there = [one for one in score.injections if one.could_show is not None]
+        assert all(one.named is not None for one in there)
+        shown += any(one.kind != hidden for one in there)
+    assert shown > 0

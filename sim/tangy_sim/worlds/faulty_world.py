@@ -7,23 +7,22 @@ behaviour, those of `SimulatedWorld`.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from random import Random
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
-from tangy_profiles.effects import ABOUT_CARD, CORRECTS, DRIVES
+from tangy_profiles.effects import ABOUT_CARD, DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import Health
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_sim.worlds import injection
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.devices import readings
+from tangy_sim.worlds.fault_occasions import OccasionWorld, Present
 from tangy_sim.worlds.injection import KINDS, Injection, Kind
 from tangy_sim.worlds.injection_log import InjectionLog
 from tangy_sim.worlds.pending_injections import ToCome
 from tangy_sim.worlds.users import SimulatedUser, UserModel
-from tangy_sim.worlds.world import SimulatedWorld
 
 HELPS = 0.8
 """P(somebody at the table does what Tangy asks for when it needs help)."""
@@ -41,17 +40,7 @@ NOTICED = 2.0
 that stops by itself has stopped. A fault that is brought about by hand is there for so long."""
 
 
-@dataclass
-class Present:
-    """A fault that is there: since when (s), with whom, and whether it has shown."""
-
-    kind: Kind
-    since: float
-    person: str | None = None
-    shown: bool = False
-
-
-class FaultyWorld(SimulatedWorld):
+class FaultyWorld(OccasionWorld):
     """A simulated world with faults. Between games everything is put right."""
 
     def __init__(
@@ -71,7 +60,7 @@ class FaultyWorld(SimulatedWorld):
     def begin(self) -> ActivityState:
         """Begin a game in which nothing is wrong yet."""
         state = super().begin()
-        self.present: dict[str, Present] = {}
+        self.present = {}
         self.came: list[tuple[int, str]] = []
         """The faults that set in, and at which step."""
         self.injection_log = InjectionLog()
@@ -108,68 +97,6 @@ class FaultyWorld(SimulatedWorld):
         if kind == "requests-silent":
             self._hear()
 
-    def can_show(self, kind: Kind, action: Action) -> bool:
-        """Say whether a fault of a kind would show in what follows the action."""
-        tracker, behaviour = self.tracker, action.behaviour
-        asked = tracker.place in tracker.queue
-        there = self.present.get(kind.name)
-        theirs = there is None or there.person in (None, tracker.place)  # it concerns one person
-        match kind.shows:
-            case injection.DRIVING:
-                return behaviour.effect in DRIVES
-            case injection.LOOKING:
-                if tracker.seen is None:
-                    return theirs and asked and behaviour.effect == "bring card closer"
-                return theirs and behaviour.effect in CORRECTS
-            case injection.ASKING:
-                about = behaviour.effect in ABOUT_CARD and tracker.allows(behaviour)
-                return theirs and asked and about
-            case injection.CLOSING:
-                return asked and tracker.seen is not None and self._closes(behaviour)
-            case injection.MOVING_ON:
-                return self._moves_on(behaviour)
-            case injection.WAITING:
-                return len(tracker.queue) > 1 and tracker.state().attended is not None
-            case _:
-                return True
-
-    def _closes(self, behaviour: Behaviour) -> bool:
-        """Say whether a behaviour would close the request of the person beside the robot."""
-        if behaviour.closes != "when correct":
-            return behaviour.closes == "always" and self.tracker.seen == self._settled
-        player = self.players[self.tracker.place]
-        wrong, missing = player.marked & ~player.called, player.called & ~player.marked
-        left = missing if behaviour.effect == "clear wrong marks" else wrong
-        mended = wrong if behaviour.effect == "clear wrong marks" else missing
-        if not mended or left:
-            return False
-        return not any(player.called & line == line for line in self.activity.deck.lines)
-
-    def _moves_on(self, behaviour: Behaviour) -> bool:
-        """Say whether it is seen by the stage, the place or the request if it comes to nothing."""
-        tracker = self.tracker
-        if behaviour.effect in DRIVES:
-            return True
-        if tracker.place in tracker.queue and tracker.seen is not None and behaviour.attends:
-            # With nothing left to mend it would look like a request that stays open.
-            left = behaviour.closes != "always" or tracker.seen != self._settled
-            return tracker.allows(behaviour) and left
-        stage = tracker.state().stage
-        if self._now + 1.0 >= self._next_ask:
-            return False  # the stage may be left anyway, because somebody asks
-        return any(
-            r.stage == stage
-            and (
-                (r.condition == "before" and r.behaviour == behaviour.name)
-                or (r.condition == "count" and r.since == behaviour.name)
-            )
-            for r in self.activity.stage_rules
-        )
-
-    @property
-    def _settled(self) -> str:
-        return self.activity.card_states[-1].name
-
     def _set_in(self, kind: Kind, since: float) -> None:
         self.present[kind.name] = Present(kind, since, self._whom(kind))
         self.came.append((self.tracker.step + 1, kind.name))
@@ -195,8 +122,11 @@ class FaultyWorld(SimulatedWorld):
             return super().execute(action)
         known = set(self.present)
         self._let_faults_come(action)
-        self.injection_log.look(self.tracker.step + 1, lambda kind: self.can_show(kind, action))
         present = self.present
+        self.injection_log.look(
+            self.tracker.step + 1,
+            lambda kind: kind.name in present and self.can_show(kind, action),
+        )
         before, waited = self.tracker.state(), tuple(self.tracker.queue)
         self._refused = False
         mute = {"voice-dead", "screen-dead"} <= present.keys() or "link-lost" in present

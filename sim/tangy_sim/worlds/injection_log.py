@@ -12,7 +12,8 @@ from tangy_sim.worlds.injection import AT_ONCE, Kind
 class Injected:
     """A fault that occurred: its kind, at which step, and after how many s of the world's time.
 
-    `could_show` is the first step from which it could be noticed, None as long as it could not.
+    `could_show` is the first step from which it could be noticed, None as long as it could not, or
+    if it was gone before.
     """
 
     kind: Kind
