@@ -1,1 +1,1 @@
-"""The demonstration learning sub-system (III-A): commands, demonstrations, policy, effects."""
+"""Demonstration learning (paper, section III-A): commands, demonstrations, policy, effects."""

@@ -1,4 +1,4 @@
-"""Announcements of a guided game: each coming situation once, as early as possible."""
+"""Announcements of a guided game: each upcoming situation once, as early as possible."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from tangy_tui.world import Arranging, World
 
 
 class Announcements:
-    """Looks at a world after each step, and announces each coming event once."""
+    """Checks a world after each step, and announces each upcoming event once."""
 
     def __init__(self) -> None:
         self._coming: Arranged | ArrangedSituation | None = None
 
     def news(self, world: World) -> list[Announced]:
-        """Return what the world is about to bring about, if that was not told yet."""
+        """Return the event that the world will bring about next, unless already announced."""
         coming = world.coming if isinstance(world, Arranging) and not world.over else None
         before, self._coming = self._coming, coming
         return [Announced(coming)] if coming is not None and coming != before else []

@@ -1,4 +1,4 @@
-"""Comparing policies row by row: teacher against teacher, before against after."""
+"""Comparison of policies situation by situation: two teachers, or before and after a change."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tangy_tui.learning.policy import Decision, Policy, learn_policy
 
 @dataclass(frozen=True, slots=True)
 class SituationComparison:
-    """One situation and what two policies decide there."""
+    """One situation and the decisions of two policies in it."""
 
     situation: Situation
     a: Decision
@@ -27,34 +27,34 @@ class SituationComparison:
 
     @property
     def same(self) -> bool:
-        """Whether both do the same: the same behaviour, or both would ask."""
+        """Whether both policies choose the same behaviour, or both would ask."""
         if self.a.sure and self.b.sure:
             return self.a.behaviour == self.b.behaviour
         return self.a.sure == self.b.sure
 
 
 def compare(activity: Activity, a: Policy, b: Policy) -> list[SituationComparison]:
-    """Return what two policies decide in every situation that can occur."""
+    """Compare the decisions of two policies in every situation that can occur."""
     return [SituationComparison(s, a.decide(s), b.decide(s)) for s in activity.situations]
 
 
 def choices(store: Store, activity: Activity) -> list[str]:
-    """Return what can be compared: names of policies, the latest first, and of teachers."""
+    """Return the names that can be compared: policies, newest first, then teachers."""
     names = [kept.name for kept in reversed(stored_policies(store, activity.name))]
     teachers = _teachers(read_library(store, activity.name).finished)
     return list(dict.fromkeys([*names, *teachers]))
 
 
 def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, list[PolicyNotice]]:
-    """Return the policy that a word means, and a notice about it.
+    """Find the policy that a word refers to, and return it with notices about it.
 
-    It means, the first that fits: `last` or `last~N` (the last policy learnt, or the N-th before
-    it), the name of a policy or how its digest begins, or the name of a teacher, from whose
-    finished demonstrations, as they were shown, a policy is learnt for the occasion. `policy:` or
-    `teacher:` before it says which is meant.
+    The first of these that matches is used: `last` or `last~N` (the newest policy, or the N-th
+    before it), the name of a policy or a prefix of its digest, or the name of a teacher. For a
+    teacher, a policy is fitted to the steps that this teacher showed in finished demonstrations.
+    The prefix `policy:` or `teacher:` selects the kind.
 
     Raises:
-        TangyError: nothing matches; names the nearest one.
+        TangyError: nothing matches; the message suggests the nearest name.
     """
     kind, _, name = wanted.partition(":") if ":" in wanted else ("", "", wanted)
     kept = stored_policies(store, activity.name)
@@ -74,12 +74,12 @@ def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, 
 
 
 def _teachers(demonstrations: Iterable[Demonstration]) -> dict[str, None]:
-    """Return who showed a step, in the order in which they first did."""
+    """Return everyone who showed a step, in order of their first step."""
     return dict.fromkeys(shown.teacher for shown in shown_steps(demonstrations))
 
 
 def _shown_by(teacher: str, demonstrations: Iterable[Demonstration]) -> list[Demonstration]:
-    """Return demonstrations with just the steps that one teacher showed."""
+    """Return demonstrations reduced to the steps that one teacher showed."""
     found = []
     for demonstration in demonstrations:
         steps = tuple(

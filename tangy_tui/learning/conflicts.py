@@ -1,7 +1,7 @@
-"""Conflicts: situations in which demonstrations, one or several, give different answers.
+"""Conflicts: situations in which demonstrations give different answers.
 
-A forest outvotes a rare answer silently (notes: one of three vanishes, two of four flip with the
-seed), so a conflict is looked for before training, and a teacher says which answer is right.
+A forest outvotes a rare answer silently (one of three vanishes; two of four depend on the seed). So
+conflicts are searched for before training, and a teacher decides which answer is right.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tangy_profiles.state import Situation
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """One demonstrated step and where it stands: step `number` (from 1) of a demonstration."""
+    """One demonstrated step, as step `number` (from 1) of a demonstration."""
 
     demonstration: str
     teacher: str
@@ -27,27 +27,27 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A situation with the different answers to it, most often shown first, and their steps."""
+    """A situation with the steps of each answer to it, most frequent answer first."""
 
     situation: Situation
     answers: Mapping[str, tuple[Shown, ...]]
 
     @property
     def steps(self) -> tuple[Shown, ...]:
-        """All steps in the situation."""
+        """All steps that were shown in this situation."""
         return tuple(shown for steps in self.answers.values() for shown in steps)
 
     def resolved(self, *right: str) -> Resolution:
-        """Return the resolution by which these answers are right, and the other steps wrong."""
+        """Return the resolution that calls these answers right, and all other steps wrong."""
         wrong = (s.step.id for s in self.steps if s.step.behaviour not in right)
         return Resolution(self.situation, tuple(dict.fromkeys(right)), frozenset(wrong))
 
 
 def joined(resolutions: Iterable[Resolution]) -> dict[Situation, Resolution]:
-    """Merge the resolutions of each situation, in order of time.
+    """Merge the resolutions of each situation, oldest first.
 
-    What was called right last is right; a step that was set aside once stays so, unless its
-    answer is right by now.
+    The latest resolution decides which answers are right. A step that was set aside stays set aside
+    unless its answer is now right.
     """
     settled: dict[Situation, Resolution] = {}
     for said in resolutions:
@@ -58,7 +58,7 @@ def joined(resolutions: Iterable[Resolution]) -> dict[Situation, Resolution]:
 
 
 def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[Shown]:
-    """Yield every step with where it stands; a step that was copied, only where it is first."""
+    """Yield every step with its demonstration and number; skip copies of earlier steps."""
     known: set[int] = set()
     for demonstration in demonstrations:
         for number, step in enumerate(demonstration.steps, 1):
@@ -72,10 +72,9 @@ def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[Shown]:
 def find_conflicts(
     demonstrations: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
 ) -> list[Conflict]:
-    """Return the conflicts that no resolution settles, in the order in which they occurred.
+    """Find the conflicts that no resolution settles, in order of occurrence.
 
-    Two answers that were both called right are no conflict; a step with another answer, made
-    since, is one.
+    Two answers that were both called right are no conflict. A later step with a third answer is.
     """
     settled = joined(resolutions)
     answers: dict[Situation, dict[str, list[Shown]]] = {}
@@ -98,11 +97,10 @@ def find_conflicts(
 def training_rows(
     demonstrations: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
 ) -> tuple[list[tuple[Situation, str]], list[tuple[Situation, str]]]:
-    """Return the training set of situations and behaviours, shown or only told.
+    """Split the training rows (situation, behaviour) into those shown and those only told.
 
-    Shown is every step, in order, but for those that a resolution calls wrong and copies of a
-    step. Said is an answer that a resolution calls right where all steps showed others, or
-    that a rule covers.
+    The shown rows are all steps in order, without copies and without steps that a resolution sets
+    aside. The told rows are answers from a resolution that no step shows, or that a rule covers.
     """
     settled = joined(resolutions)
     rows: list[tuple[Situation, str]] = []

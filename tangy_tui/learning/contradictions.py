@@ -1,7 +1,6 @@
-"""Contradictions, reported while teaching: another behaviour in the same situation.
+"""Contradictions, reported during teaching: a different behaviour in the same situation.
 
-The list of conflicts tells them afterwards, when the teacher who could say which answer is right
-may have gone.
+The list of conflicts reports them only later, when the teacher who knows the answer may have left.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from tangy_tui.learning.conflicts import Resolution, Shown, joined, shown_steps
 
 
 class Contradictions:
-    """Earlier answers, by situation. Finds each contradiction once."""
+    """Earlier answers by situation; reports each contradiction once."""
 
     def __init__(
         self,
@@ -23,9 +22,9 @@ class Contradictions:
         *,
         teacher: str = "",
     ) -> None:
-        """Take the demonstrations there are, and what teachers said of their conflicts.
+        """Index earlier demonstrations and the resolutions of their conflicts.
 
-        What `teacher` was told of when it was taught is no news any more.
+        Contradictions that `teacher` has been told about already are not reported again.
         """
         self._settled = joined(resolutions)
         self._shown: dict[Situation, dict[str, list[Shown]]] = {}
@@ -37,10 +36,10 @@ class Contradictions:
                 self._add(shown)
 
     def found(self, now: Shown) -> Shown | None:
-        """Take a new step; return the last one that was shown differently, if it is news.
+        """Add a step and return the latest step that contradicts it, if that is new.
 
-        None if nothing else was shown, where a teacher has said that this answer is right, or
-        where these two answers were found to differ before.
+        Return None if no other behaviour was shown, if a teacher called this answer right, or if
+        this pair of answers was reported before.
         """
         situation, behaviour = now.step.state.situation, now.step.behaviour
         self._add(now)
@@ -62,7 +61,7 @@ class Contradictions:
         return other
 
     def usual(self, situation: Situation) -> tuple[str, ...]:
-        """Return the behaviours that were shown in a situation, the one shown most often first."""
+        """Return the behaviours shown in a situation, most frequent first."""
         answers = self._shown.get(situation, {})
         shown = [behaviour for behaviour, steps in answers.items() if steps]
         return tuple(sorted(shown, key=lambda behaviour: -len(answers[behaviour])))
@@ -71,9 +70,9 @@ class Contradictions:
         """Return the resolution that makes these answers right.
 
         Args:
-            situation: of what.
-            right: the answers.
-            keep: what was called right before stays so, and nothing is set aside.
+            situation: the situation.
+            right: the right answers.
+            keep: keep earlier right answers too, and set no step aside.
         """
         if keep:
             before = self._settled.get(situation)
@@ -84,7 +83,7 @@ class Contradictions:
         return Resolution(situation, right, frozenset(wrong))
 
     def take_back(self, demonstration: str, number: int) -> None:
-        """Forget a step that was undone; what it contradicted is news again."""
+        """Remove a step that was undone; its contradictions may be reported again."""
         for situation, answers in self._shown.items():
             for behaviour, steps in answers.items():
                 kept = [s for s in steps if (s.demonstration, s.number) != (demonstration, number)]

@@ -1,4 +1,4 @@
-"""Coverage: which of the situations that an activity can bring about were demonstrated."""
+"""Coverage: which of the situations that can occur in an activity were demonstrated."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ class Coverage:
 
     @property
     def missing(self) -> list[Situation]:
-        """The situations that nobody has shown yet."""
+        """The situations that were never shown."""
         return [situation for situation, times in self.times.items() if not times]
 
     @property
     def complete(self) -> bool:
-        """Whether all of them were shown, so that the policy is exact."""
+        """Whether every situation was shown, so that the policy is exact."""
         return not self.missing
 
 
 def coverage(activity: Activity, demonstrations: Iterable[Demonstration]) -> Coverage:
-    """Count the steps shown in each situation that can occur."""
+    """Count the demonstrated steps in each situation that can occur."""
     counts = Counter(shown.step.state.situation for shown in shown_steps(demonstrations))
     return Coverage({situation: counts[situation] for situation in activity.situations})
 
 
 def missing_words(activity: Activity, found: Coverage) -> list[str]:
-    """Say in plain words, a line each, what Tangy has not been shown yet."""
+    """Describe in plain words, one line each, the situations that were not shown yet."""
     return [activity.not_yet(situation) for situation in found.missing]

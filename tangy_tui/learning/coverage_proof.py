@@ -1,4 +1,4 @@
-"""The proof that everything was shown: a search of all games that a policy can bring about."""
+"""Proof of full coverage: a search of all games that can occur under a policy."""
 
 from __future__ import annotations
 
@@ -13,58 +13,58 @@ from tangy_profiles.state import Situation
 from tangy_tui.learning.policy import Policy
 
 PLAYERS = ("1", "2", "3")
-"""The players of the largest group that is searched."""
+"""The players of the largest group to search."""
 LIMIT = Limit(states=60_000, seconds=10.0)
-"""How far the searches of one and two players go, and for how many s of CPU all together."""
+"""Limit of the searches of one and two players: states of each, CPU time (s) of all together."""
 LARGEST = Limit(states=15_000, seconds=4.0)
-"""How far the search of the largest group goes, whose states are many."""
+"""Limit of the search of the largest group, which has many states."""
 
 
 @dataclass(frozen=True, slots=True)
 class CoverageProof:
-    """Searches of all games that a policy can bring about, one for each size of the group.
+    """Searches of all games that can occur under a policy, one for each group size.
 
-    `searches` are by the number of players, ascending. They end with the first one that was cut.
+    `searches` maps the number of players, ascending, to a result. They stop at the first search
+    that reached its limit.
     """
 
     searches: tuple[tuple[int, Reach], ...]
 
     @property
     def proved(self) -> tuple[int, ...]:
-        """The sizes of which every game was searched."""
+        """The group sizes whose games were searched completely."""
         return tuple(size for size, one in self.searches if one.whole)
 
     @property
     def whole(self) -> bool:
-        """Whether every game of all groups but the largest was searched."""
+        """Whether the games of all groups, except perhaps the largest, were searched completely."""
         return all(one.whole or size == len(PLAYERS) for size, one in self.searches)
 
     @property
     def reached(self) -> tuple[Situation, ...]:
-        """The situations that can come about in any of them."""
+        """The situations that can occur in any of the searched games."""
         return tuple(dict.fromkeys(s for _, one in self.searches for s in one.reached))
 
     @property
     def open(self) -> dict[Situation, str]:
-        """The situations in which Tangy would ask: "" nobody showed it, else for whom it is."""
+        """The situations in which Tangy would ask: "" if never shown, else for whom is unclear."""
         return {s: why for _, one in self.searches for s, why in one.open.items()}
 
     @property
     def stuck(self) -> Situation | None:
-        """A situation from which no game ends, if there is one."""
+        """A situation from which no game can end, or None."""
         return next((one.stuck for _, one in self.searches if one.stuck is not None), None)
 
 
 def prove_coverage(activity: Activity, policy: Policy) -> CoverageProof | None:
-    """Search all games that can occur under the policy's sure decisions.
+    """Search all games that can occur under the sure decisions of a policy.
 
     Args:
         activity: the activity to search.
         policy: the policy learnt so far.
 
     Returns:
-        What can occur, and in which of it Tangy would ask; None for an activity with cards,
-        whose situations its stage rules tell.
+        The search results; None for an activity with cards, whose stage rules give its situations.
     """
     if not isinstance(activity, DeclaredActivity):
         return None
@@ -82,11 +82,11 @@ def search_groups(
     limit: Limit = LIMIT,
     largest: Limit = LARGEST,
 ) -> CoverageProof:
-    """Search all games of one to three players, or of the teams, under the demonstrations.
+    """Search all games of one to three players, or of the teams, under the shown moves.
 
     Args:
         activity: the activity to search.
-        shown: what follows in which situation.
+        shown: the behaviour shown in each situation.
         limit: the states of each search, and the CPU time of all of them in s.
         largest: the same for the largest group.
     """

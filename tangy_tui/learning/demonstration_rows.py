@@ -1,4 +1,4 @@
-"""The list of demonstrations as people see it: one row each, the same on screens and in lines."""
+"""The list of demonstrations, one row each, for screens and the command line."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from tangy_tui.learning.quality import quality_notes
 
 @dataclass(frozen=True, slots=True)
 class ListRow:
-    """One demonstration: `number` in the list (from 1), who showed it, when (UTC, ISO 8601).
+    """One row: the demonstration's `number` in the list (from 1), its teacher and time (UTC).
 
-    `seen` of the `situations` of the activity occur in it; `state` says whether it is learnt
-    from ("in use"), and if not, why; `notes` are what else is to be known of it.
+    `seen` of the activity's `situations` occur in it. `state` is "in use", or why it is not learnt
+    from. `notes` are quality notes.
     """
 
     number: int
@@ -34,11 +34,11 @@ class ListRow:
 
     @property
     def in_use(self) -> bool:
-        """Whether it is learnt from."""
+        """Whether the demonstration is learnt from."""
         return self.state == IN_USE
 
     def to_json(self) -> dict[str, Any]:
-        """Return the row as a document."""
+        """Return the row as JSON."""
         return {
             "number": self.number,
             "id": self.id,
@@ -56,14 +56,14 @@ UNFINISHED = "unfinished"
 
 
 def state_of(entry: LibraryEntry) -> str:
-    """Say whether a demonstration is learnt from, or why it is not."""
+    """Return "in use", or why a demonstration is not learnt from."""
     if entry.hidden:
         return entry.hidden
     return IN_USE if entry.demonstration.finished else UNFINISHED
 
 
 def list_rows(activity: Activity, library: Library) -> list[ListRow]:
-    """Return a row for every demonstration there ever was, in the order of their numbers."""
+    """Return a row for every demonstration, also deleted ones, in order of number."""
     conflicts = library.conflicts
     rows = []
     for number, entry in enumerate(library.entries.values(), 1):
@@ -86,7 +86,7 @@ def list_rows(activity: Activity, library: Library) -> list[ListRow]:
 
 
 def heard_words(store: Store, shown: Demonstration) -> dict[int, str]:
-    """Return the words in which each step was commanded, where they are known, by its number."""
+    """Return the spoken or typed words of each step, where known, by step number."""
     numbers = {step.id: number for number, step in enumerate(shown.steps, 1) if step.id}
     events = (event for event in store.events(DemonstrationStep) if event.seq in numbers)
     return {numbers[e.seq]: e.record.heard for e in events if e.record.heard}

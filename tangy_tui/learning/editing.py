@@ -1,6 +1,6 @@
-"""Editing the library: delete, restore, merge, split, settle a conflict; undo and redo of each.
+"""Edits of the library: delete, restore, merge, split, settle a conflict; undo and redo.
 
-Every change is one event, so it is there as a whole or not at all, and nothing is ever lost.
+Each edit is one event in the log, so it is atomic and nothing is ever lost.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ MakeId = Callable[[], str]
 
 
 class NotPossible(TangyError):
-    """A change that cannot be made, and why."""
+    """The edit is not possible; the message says why."""
 
 
 def new_id() -> str:
-    """Return a name for a new demonstration."""
+    """Return a new id for a demonstration."""
     return uuid4().hex[:12]
 
 
 class Editor:
-    """Changes the library of one activity. Each method returns the edit that it made.
+    """Edits the library of one activity. Each method returns the edit that it made.
 
     Raises:
-        NoDemonstration: there is none of that name.
-        NotPossible: it cannot be done; says why.
+        NoDemonstration: no demonstration has this name.
+        NotPossible: the edit is not possible; the message says why.
     """
 
     def __init__(self, store: Store, activity: Activity, make_id: MakeId = new_id) -> None:
@@ -54,11 +54,11 @@ class Editor:
 
     @property
     def library(self) -> Library:
-        """The library as it is now."""
+        """The current library."""
         return read_library(self._store, self.activity.name)
 
     def delete(self, *wanted: str) -> Edit:
-        """Put demonstrations away: they are not learnt from until they are restored."""
+        """Delete demonstrations: they are not learnt from until they are restored."""
         entries = self._choose(wanted)
         for entry in entries:
             if entry.hidden:
@@ -67,7 +67,7 @@ class Editor:
         return self._edit(Deletion(ids=_ids(entries)))
 
     def restore(self, *wanted: str) -> Edit:
-        """Take demonstrations into use again that were deleted."""
+        """Restore deleted demonstrations."""
         library, entries = self.library, self._choose(wanted)
         for entry in entries:
             name = library.name(entry.demonstration.id)
@@ -88,7 +88,7 @@ class Editor:
         return self._edit(Restoration(ids=_ids(entries)))
 
     def merge(self, *wanted: str) -> Edit:
-        """Make one demonstration of several, in the given order; they give way to it."""
+        """Merge several demonstrations into one, in the given order; the new one replaces them."""
         entries = self._choose(wanted)
         self._need_use(entries)
         if len(entries) < 2:
@@ -96,7 +96,7 @@ class Editor:
         return self._edit(Merger(ids=_ids(entries), made=(self._make_id(),)))
 
     def split(self, wanted: str, kept: int) -> Edit:
-        """Make two demonstrations of one: the first `kept` steps, and those after them."""
+        """Split a demonstration into its first `kept` steps and the rest."""
         entries = self._choose([wanted])
         self._need_use(entries)
         steps = len(entries[0].demonstration.steps)
@@ -111,19 +111,19 @@ class Editor:
         return self._edit(Division(ids=whole, made=made, kept=kept))
 
     def resolve(self, conflict: Conflict, *right: str) -> Edit:
-        """Say which answers to a situation are right, shown or not; the other steps are wrong."""
+        """Settle a conflict: these answers, shown or not, are right; the other steps are wrong."""
         if not right:
             raise NotPossible("Say which answer is right.")
         return self.settle(conflict.resolved(*right))
 
     def settle(self, resolution: Resolution) -> Edit:
-        """Note what a teacher says of a situation."""
+        """Log a teacher's resolution of a situation."""
         for behaviour in resolution.right:
             self.activity.behaviour(behaviour)
         return self._edit(Settlement(resolution=resolution))
 
     def undo(self) -> Edit:
-        """Take back the last edit."""
+        """Undo the last edit."""
         done = self.library.done
         if not done:
             raise NotPossible("There is no change of the demonstrations to undo.")
@@ -132,7 +132,7 @@ class Editor:
         return done[-1]
 
     def redo(self) -> Edit:
-        """Make the edit again that was taken back last."""
+        """Redo the edit that was undone last."""
         undone = self.library.undone
         if not undone:
             raise NotPossible("There is no change of the demonstrations to do again.")
@@ -162,7 +162,7 @@ class Editor:
     def _edit(self, done: EditDone) -> Edit:
         seq = self._store.append(DemonstrationsEdited(activity=self.activity.name, edit=done))
         edit = self.library.done[-1]
-        if edit.seq != seq:  # one writer, so nobody can come between
+        if edit.seq != seq:  # there is only one writer
             raise NotPossible("The log was changed meanwhile.")
         return edit
 

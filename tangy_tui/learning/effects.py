@@ -1,9 +1,9 @@
 """Behaviour effects (III-A-4): the observed transitions of each behaviour.
 
-The paper keeps the next state itself. Compared literally that raises several false alarms a game,
-because the next state also holds what others happened to do. So each transition is read as a few
-variables that a behaviour can change, and for each behaviour and variable the values that were
-demonstrated are kept: an unseen value is unexpected.
+The paper stores the next state itself. A literal comparison raises several false alarms per game,
+because the next state also depends on what other people did. So each transition is described by a
+few variables that a behaviour can change. For each behaviour and variable, the demonstrated values
+are stored; any other value is unexpected.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from tangy_tui.learning.conflicts import Resolution, joined
 
 @dataclass(frozen=True)
 class Effects:
-    """The learnt effects: behaviour -> variable -> the values that may follow."""
+    """The learnt effects: behaviour -> variable -> the values that were observed."""
 
     values: Mapping[str, Mapping[str, frozenset[str]]]
 
     def joined(self, other: Effects) -> Effects:
-        """Return the effects that either of the two knows."""
+        """Return the union of both effects."""
         values = {
             behaviour: MappingProxyType(
                 {
@@ -45,9 +45,9 @@ class Effects:
     def mismatches(
         self, behaviour: str, before: ActivityState, after: ActivityState, activity: Activity
     ) -> list[Mismatch]:
-        """Compare an observed transition with the learnt effects (the fault detection test).
+        """Compare an observed transition with the learnt effects (fault detection test).
 
-        A behaviour or variable that was never demonstrated is reported with nothing expected.
+        For a behaviour or variable that was never demonstrated, the expected values are empty.
         """
         known = self.values.get(behaviour, {})
         return [
@@ -64,8 +64,7 @@ def learn_effects(
 ) -> Effects:
     """Collect, for each behaviour, the values that each variable took after it.
 
-    What follows a behaviour that the world could not carry out, or that a teacher called wrong
-    there, is no effect to be expected of it.
+    Steps that the world could not carry out, or that a teacher called wrong, are skipped.
     """
     settled = joined(resolutions)
     values: dict[str, dict[str, set[str]]] = {}
@@ -90,9 +89,9 @@ def learn_effects(
 def transition(
     before: ActivityState, after: ActivityState, activity: Activity
 ) -> dict[Variable, str]:
-    """Describe a transition by the variables (`VARIABLES`) that a behaviour can change, in words.
+    """Describe a transition by the variables (`VARIABLES`) that a behaviour can change.
 
-    Variables about the person who was attended to are left out when there was none.
+    Variables about the attended person are left out if nobody was attended.
     """
     opening = {r.stage for r in activity.stage_rules if r.condition == "before"}
     closing = {r.stage for r in activity.stage_rules if r.condition == "after"}
@@ -117,8 +116,8 @@ def transition(
         if before.place != after.place:
             changes["request"] = "closed" if closed else "open"
         elif before.place == person and shown != activity.unread:
-            # Whether it closes depends on the card, which need not have been shown in every way;
-            # a request that stays open when nothing is left to be done never should.
+            # Whether it closes depends on the card, and not every card need have been demonstrated.
+            # But a request must never stay open when nothing is left to do.
             finished = now == activity.card_states[-1].name and not closed
             changes["request"] = "open with nothing left" if finished else "as the card asks"
         if before.place == person:
@@ -134,9 +133,9 @@ def transition(
 
 
 def who_waits(gone: int, waiting: int) -> str:
-    """Describe the requests of `waiting` people of whom `gone` no longer ask.
+    """Describe how the requests of `waiting` people changed, `gone` of whom no longer ask.
 
-    One person, or some, may change their minds; that all do at the same moment is another matter.
+    Some people may change their minds; all of several people at the same moment is suspicious.
     """
     if not gone:
         return "kept"

@@ -1,7 +1,6 @@
-"""Why a decision: the situation, the votes, the steps it rests on, what else was considered.
+"""Explanation of a decision: the situation, the votes, the steps behind it, the alternatives.
 
-For every decision alike: one that Tangy takes in a game, one that it would take while it is
-taught, and one that somebody looks up.
+The same explanation is used in games, during teaching, and for look-ups.
 """
 
 from __future__ import annotations
@@ -20,11 +19,11 @@ from tangy_tui.learning.policy import Decision, Policy, learn_policy
 
 @dataclass(frozen=True, slots=True)
 class Why:
-    """The grounds of one decision.
+    """The reasons for one decision.
 
-    `rests_on` are the steps in this situation that gave the answer decided for, `against` those
-    that gave another one (set aside or not); `near` are, where the situation was never shown, the
-    steps in situations that differ from it in one part, from which the trees guess.
+    `rests_on` are the steps in this situation that show the chosen behaviour, `against` those that
+    show another (set aside or not). If the situation was never shown, `near` are the steps in
+    situations that differ from it in one part, from which the trees generalise.
     """
 
     situation: Situation
@@ -35,20 +34,20 @@ class Why:
 
     @property
     def steps(self) -> tuple[Shown, ...]:
-        """All of these steps, in the order in which they are told."""
+        """All of these steps, in the order in which they are presented."""
         return (*self.rests_on, *self.against, *self.near)
 
 
 def explain(policy: Policy, demonstrations: Sequence[Demonstration], situation: Situation) -> Why:
-    """Find the grounds of a policy's decision among the demonstrations that it rests on.
+    """Find the steps behind a policy's decision.
 
     Args:
-        policy: by which is played.
-        demonstrations: all there are; those that the policy was not learnt from are passed over.
-        situation: which one.
+        policy: the policy that decides.
+        demonstrations: all demonstrations; those the policy was not learnt from are ignored.
+        situation: the situation to explain.
 
     Raises:
-        KeyError: the situation is none of the activity's.
+        KeyError: the activity has no such situation.
     """
     decision = policy.decide(situation)
     used = set(policy.demonstrations)
@@ -65,12 +64,10 @@ def explain(policy: Policy, demonstrations: Sequence[Demonstration], situation: 
 
 
 def foresee(store: Store, activity: Activity, present: Demonstration | None) -> Policy:
-    """Learn a policy for a preview, from finished demonstrations and the current one.
-
-    Nothing of it is kept.
+    """Learn a preview policy from finished demonstrations and the current one; store nothing.
 
     Raises:
-        NothingToLearnFrom: nobody has shown anything yet.
+        NothingToLearnFrom: nothing has been demonstrated yet.
     """
     library = read_library(store, activity.name)
     shown = {d.id: d for d in library.finished}
@@ -82,5 +79,5 @@ def foresee(store: Store, activity: Activity, present: Demonstration | None) -> 
 
 
 def _differ(shown: Shown, situation: Situation) -> int:
-    """Count the parts of the triple in which a step's situation is another one."""
+    """Count the parts of the triple in which two situations differ."""
     return sum(a != b for a, b in zip(shown.step.state.situation, situation, strict=True))

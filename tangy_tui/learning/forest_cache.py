@@ -1,7 +1,7 @@
-"""Cache of forests' answers beside the log, so that a learnt policy loads without training.
+"""Cache of forests' votes beside the log, so that a stored policy loads without training.
 
-To load scikit-learn and to grow a hundred trees takes seconds; to read what they said takes
-milliseconds. A cache is never trusted: loading a policy compares the digest.
+Loading scikit-learn and growing a hundred trees takes seconds; reading cached votes takes
+milliseconds. The cache is never trusted: loading a policy compares the digest.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from tangy_tui.learning.policy import Forest, ForestSettings, grown
 
 FOLDER = "forests"
 MOST = 64
-"""Kept at most: the forests that were asked for last."""
+"""The number of forests to keep, the most recently used ones."""
 LARGEST = 1_000_000
-"""Bytes of a file that is read at most; one of Bingo's has 3,000."""
+"""The largest file to read (bytes); a forest of Bingo has 3,000."""
 
 _log = logging.getLogger(__name__)
 
@@ -33,13 +33,13 @@ _log = logging.getLogger(__name__)
 class ForestCache:
     """Grows forests, and caches their votes in a folder.
 
-    A file is named after what was learnt from, the settings, and the versions of Python, numpy and
-    scikit-learn: where any of them is another, so is the forest. A file that cannot be read, or
-    holds something else, is passed over and written anew.
+    The file name is a hash of the training rows, the settings, and the versions of Python, numpy
+    and scikit-learn: any change gives another file. A file that is unreadable or invalid is
+    replaced.
     """
 
     def __init__(self, folder: Path) -> None:
-        """Use a folder inside a data folder; it need not exist yet."""
+        """Use a subfolder of a data folder; it need not exist yet."""
         self.folder = folder / FOLDER
 
     def grown(
@@ -48,7 +48,7 @@ class ForestCache:
         rows: tuple[tuple[Situation, str], ...],
         situations: tuple[Situation, ...],
     ) -> Forest:
-        """Return what a forest answers, as it was kept or else by growing it (see `grown`)."""
+        """Return a forest's votes from the cache, or grow it (see `grown`)."""
         path = self.folder / f"{_key(settings, rows, situations)}.json"
         forest = _read(path, len(situations), {behaviour for _, behaviour in rows})
         if forest is None:
@@ -68,7 +68,7 @@ class ForestCache:
         return forest
 
     def _keep(self, path: Path, forest: Forest) -> None:
-        """Write a file atomically; ignore a folder that cannot be written to."""
+        """Write a file atomically, and delete the oldest files; ignore write errors."""
         part = path.with_suffix(f".{os.getpid()}.part")
         try:
             self.folder.mkdir(mode=0o700, exist_ok=True)
@@ -98,20 +98,20 @@ def _key(
 
 
 def _versions() -> list[str]:
-    """Return the versions that a forest depends on, without loading the libraries."""
-    from importlib.metadata import PackageNotFoundError, version  # brings the e-mail package along
+    """Return the versions that a forest depends on, without importing the libraries."""
+    from importlib.metadata import PackageNotFoundError, version  # imports the email package
 
     found = [platform.python_version()]
     for library in ("numpy", "scikit-learn"):
         try:
             found.append(version(library))
-        except PackageNotFoundError:  # it is imported from somewhere else
+        except PackageNotFoundError:  # not installed as a package
             found.append("?")
     return found
 
 
 def _read(path: Path, situations: int, behaviours: set[str]) -> Forest | None:
-    """Read a file; None if there is none, or it does not hold votes for such situations."""
+    """Read a file; return None if it is missing or has no valid votes for these situations."""
     try:
         if path.stat().st_size > LARGEST:
             return None

@@ -1,4 +1,4 @@
-"""Demonstrated games, played again step by step in worlds of their own."""
+"""Replay of demonstrated games, step by step, each in its own world."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from tangy_tui.learning.teaching_events import Again
 from tangy_tui.world import World
 
 MakeWorld: TypeAlias = Callable[[Demonstration], World]
-"""Make the world of a demonstration (its seed, people, guided), ready at its first state."""
+"""Make the world of a demonstration (its seed, people, guided), in its first state."""
 
 
 class NotAsBefore(Exception):
-    """A step that was done again did not come out as it did."""
+    """A redone step had a different result."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReplayedGame:
-    """The world that a demonstration led to, and the numbers that each step was about."""
+    """The world after a demonstration, and the numbers drawn or called in each step."""
 
     world: World
     numbers: tuple[tuple[int, ...], ...]
@@ -33,7 +33,7 @@ class ReplayedGame:
 def replay_game(
     activity: Activity, make_world: MakeWorld, demonstration: Demonstration
 ) -> ReplayedGame | None:
-    """Play a demonstration again; None if its states come out differently."""
+    """Replay a demonstration; return None if its states differ."""
     world = make_world(demonstration)
     numbers: list[tuple[int, ...]] = []
     for step in demonstration.steps:
@@ -47,10 +47,10 @@ def replay_game(
 
 
 def shown_again(library: Library, again: Again, teacher: str) -> Demonstration:
-    """Return the demonstration that shows another one again, with the steps that it keeps.
+    """Return a new demonstration that repeats another one's first steps, ready to continue.
 
     Raises:
-        TangyError: it cannot be shown again; says why.
+        TangyError: it cannot be shown again; the message says why.
     """
     entry = library.find(again.demonstration)
     source, kept = entry.demonstration, again.kept
@@ -72,7 +72,7 @@ def shown_again(library: Library, again: Again, teacher: str) -> Demonstration:
 
 
 def unfinished(library: Library, teacher: str, *, guided: bool) -> LibraryEntry | None:
-    """Return the last unfinished demonstration of a teacher; `guided`: a guided one is wanted."""
+    """Return a teacher's latest unfinished demonstration; with `guided`, only a guided one."""
     for entry in reversed(library.entries.values()):
         kept = entry.demonstration
         wanted = kept.guided or not guided

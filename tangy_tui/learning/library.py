@@ -1,8 +1,8 @@
-"""The library of demonstrations: read from the events of the log, never kept beside it.
+"""The library of demonstrations, derived from the events of the log.
 
-A demonstration is a chain of step events. Each later change of whole demonstrations (deleting,
-merging, resolving a conflict, ...) is one event, an edit; edits are undone and done
-again like typing, the latest first, by events of their own.
+A demonstration is a chain of step events. A later change of whole demonstrations (deletion, merger,
+resolution of a conflict, ...) is one event, an edit. Undo and redo of edits, latest first, are
+events too.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from tangy_profiles.teaching_records import (
 )
 from tangy_tui.learning.library_entries import Edit, Library, LibraryEntry, takes_place
 
-if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
+if TYPE_CHECKING:  # the home screen counts demonstrations before a forest is needed
     from tangy_profiles.activity import Activity
     from tangy_profiles.events import EventRecord
     from tangy_profiles.store import Event, Store
@@ -50,24 +50,23 @@ _EDITS = (DemonstrationsEdited, DemonstrationsEditUndone, DemonstrationsEditRedo
 
 
 _ERASING = (PersonForgotten, Renamed)
-"""Kinds of events by which earlier ones read otherwise."""
+"""Kinds of events that change how earlier events read."""
 
 _Newest: TypeAlias = tuple[str, ...]
 
 _read: WeakKeyDictionary[Store, dict[str, tuple[_Newest, Library]]] = WeakKeyDictionary()
-"""What was read of each log for each activity, and the newest events of all kinds then (uuids)."""
+"""The library read from each log, by activity, with the uuids of the newest events of all kinds."""
 
 
 class OutOfPlace(Exception):
-    """An event makes no sense where it stands in the log."""
+    """An event is inconsistent with the events before it."""
 
 
 def read_library(store: Store, activity: str) -> Library:
-    """Read the library of an activity from the log, or return it as it was read before.
+    """Read the library of an activity from the log, or return the cached one.
 
-    A screen asks for it several times a key, and a log of 200 demonstrations takes a second to
-    read. An event that makes no sense where it stands, because one before it is damaged, is set
-    aside.
+    A screen asks for it several times per key press, and reading a log of 200 demonstrations takes
+    a second. An event that is inconsistent, because one before it is damaged, is set aside.
     """
     kinds = (*_STEPS, *_EDITS, *_ERASING)
     newest = tuple(event.uuid if (event := store.last(kind)) else "" for kind in kinds)
@@ -124,7 +123,7 @@ def _read_anew(store: Store, activity: str) -> Library:
         else:
             _apply(library, edit, edit.seq in in_force)
     in_order = sorted(library.entries.items(), key=lambda entry: made[entry[0]])
-    library.entries = dict(in_order)  # so that nobody's number changes when more is shown
+    library.entries = dict(in_order)  # so that numbers do not change when more is shown
     _replace_repeated(library)
     return library
 
@@ -135,7 +134,7 @@ def read_demonstrations(store: Store, activity: str) -> list[Demonstration]:
 
 
 def effects_of(store: Store, activity: Activity, policy: Policy) -> Effects:
-    """Learn the effects from the demonstrations that a policy rests on."""
+    """Learn the effects from the demonstrations that a policy was learnt from."""
     from tangy_tui.learning.effects import learn_effects
 
     entries = read_library(store, activity.name).entries
@@ -170,7 +169,7 @@ def _begin(library: Library, begun: DemonstrationBegun, at: str) -> None:
 def _stepped(
     entry: LibraryEntry, event: Event[EventRecord], aside: Collection[int]
 ) -> LibraryEntry:
-    """Return a demonstration after one more event; `aside` are the events that are left out."""
+    """Return a demonstration after one more event; `aside` are the events that were set aside."""
     shown = entry.demonstration
     match event.record:
         case DemonstrationStep(step=step):
@@ -190,16 +189,16 @@ def _stepped(
 def _step_undone(
     entry: LibraryEntry, number: int | None, at: int, aside: Collection[int]
 ) -> LibraryEntry:
-    """Take back the step that event `at` means; its number counts where others are left out."""
+    """Undo the step that event `at` refers to; `number` counts steps that may be set aside."""
     steps = entry.demonstration.steps
     number = len(steps) if number is None else number
     newest = steps[-1].id if steps else 0
     if number > len(steps) and any(newest < seq < at for seq in aside):
-        # The one that was taken back is left out itself.
+        # The undone step was itself set aside.
         return replace(entry, undone=(), taken_back=entry.taken_back + 1)
     if not steps or number < 1:
         raise OutOfPlace("there is no step to take back")
-    kept = steps[: min(number, len(steps))]  # the others' undo events were left out
+    kept = steps[: min(number, len(steps))]  # the undo events of the others were set aside
     return replace(
         entry,
         demonstration=replace(entry.demonstration, steps=kept[:-1], finished=False),
@@ -218,7 +217,7 @@ def _edit(library: Library, event: Event[EventRecord], done: EditDone) -> Edit:
 
 
 def _taken(edits: list[Edit], seq: int) -> Edit:
-    """Take the edit that an undo or a redo means out of those that it can mean."""
+    """Remove the edit that an undo or redo event refers to from a list, and return it."""
     for place, edit in enumerate(edits):
         if edit.seq == seq:
             return edits.pop(place)
@@ -226,12 +225,12 @@ def _taken(edits: list[Edit], seq: int) -> Edit:
 
 
 def _sources_of(edit: Edit) -> set[str]:
-    """Return the demonstrations that an edit was done to and of which it kept no copy."""
+    """Return the demonstrations that an edit refers to but holds no copy of."""
     return set(edit.ids) - set(edit.found)
 
 
 def _as_it_was(library: Library, edit: Edit, id: str) -> Demonstration:
-    """Return a demonstration as an edit found it."""
+    """Return a demonstration as it was at the time of an edit."""
     return edit.found[id] if id in edit.found else library.entries[id].demonstration
 
 
@@ -242,14 +241,14 @@ def _hide(library: Library, ids: Sequence[str], why: str) -> None:
 
 
 def _apply(library: Library, edit: Edit, in_force: bool) -> None:
-    """Do what an edit did; what it made is there even where the edit was undone."""
+    """Apply an edit; demonstrations that it made exist even if it was undone."""
     match edit.done:
         case Deletion():
             hidden = "deleted"
         case Restoration():
             hidden = ""
         case Settlement():
-            return  # it changes no demonstration; `Library.resolutions` reads it
+            return  # changes no demonstration; see `Library.resolutions`
         case Merger(made=(id,)):
             sources = [_as_it_was(library, edit, id) for id in edit.ids]
             steps = tuple(step for source in sources for step in source.steps)
@@ -277,7 +276,7 @@ def _make(
     origin: Origin,
     in_force: bool,
 ) -> None:
-    """Add what an edit made; where the edit was undone it stays, hidden, for old policies."""
+    """Add a demonstration made by an edit; if the edit was undone, hidden, for older policies."""
     made = replace(
         source, id=id, steps=steps, finished=True, origin=origin, of=edit.ids, guided=False
     )
@@ -286,7 +285,7 @@ def _make(
 
 
 def _replace_repeated(library: Library) -> None:
-    """Hide demonstrations that a complete newer one shows again from some step."""
+    """Hide demonstrations that a finished newer one repeats."""
     for entry in list(library.entries.values()):
         if takes_place(entry):
             for id in entry.demonstration.of:

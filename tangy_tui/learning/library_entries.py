@@ -1,4 +1,4 @@
-"""The demonstrations of an activity, and what became of each: the library as a value."""
+"""The demonstrations of an activity and their edits: the library as a value."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from tangy_profiles.teaching_records import EditDone, Settlement
 from tangy_tui.learning.conflicts import Conflict, Resolution, find_conflicts, joined
 
 SHORTEST_PREFIX = 3
-"""Characters of an id that are enough to name a demonstration, if only one begins so."""
+"""Characters of an id that identify a demonstration, if the prefix is unique."""
 
 
 class NoDemonstration(TangyError):
-    """There is no demonstration of that name."""
+    """No demonstration has this name."""
 
 
 @dataclass(frozen=True, slots=True)
 class LibraryEntry:
-    """One demonstration of the library and what became of it.
+    """One demonstration of the library and its state.
 
     `at` and `last` are the UTC times (ISO 8601) of its first and last event, `undone` the steps
-    that redo brings back (the next one last), `taken_back` how often a step was undone, and
-    `hidden` says why it is not learnt from (empty: it is).
+    that redo brings back (the next one last), and `taken_back` the number of undone steps. `hidden`
+    says why it is not learnt from ("" if it is).
     """
 
     demonstration: Demonstration
@@ -38,10 +38,10 @@ class LibraryEntry:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A change of the library by the event `seq`: an edit and its demonstrations.
+    """An edit of the library, logged as event `seq`.
 
-    `found` are the demonstrations as they were then, those that other edits made left out: a
-    demonstration may grow or shrink afterwards, and what was made of it does not.
+    `found` are the demonstrations as they were at that time, without those that edits made: a
+    demonstration may change afterwards, but the result of the edit does not.
     """
 
     seq: int
@@ -51,13 +51,13 @@ class Edit:
 
     @property
     def ids(self) -> tuple[str, ...]:
-        """The demonstrations that it was done to."""
+        """The ids of the demonstrations that were edited."""
         return () if isinstance(self.done, Settlement) else self.done.ids
 
 
 @dataclass
 class Library:
-    """The demonstrations of one activity in the order in which they were begun."""
+    """The demonstrations of one activity, in the order in which they were begun."""
 
     activity: str
     entries: dict[str, LibraryEntry] = field(default_factory=dict)
@@ -68,35 +68,35 @@ class Library:
 
     @property
     def demonstrations(self) -> list[Demonstration]:
-        """Those that are learnt from when they are finished: all that are not hidden."""
+        """The demonstrations that are not hidden, finished or not."""
         return [e.demonstration for e in self.entries.values() if not e.hidden]
 
     @property
     def finished(self) -> list[Demonstration]:
-        """Those that are learnt from."""
+        """The demonstrations that are learnt from."""
         return [d for d in self.demonstrations if d.finished]
 
     @property
     def resolutions(self) -> tuple[Resolution, ...]:
-        """Teachers' resolutions of conflicts, joined for each situation."""
+        """Teachers' resolutions of conflicts, merged for each situation."""
         said = (e.done.resolution for e in self.done if isinstance(e.done, Settlement))
         return tuple(joined(said).values())
 
     @property
     def conflicts(self) -> list[Conflict]:
-        """Conflicts of the finished demonstrations that nobody has resolved."""
+        """Unresolved conflicts of the finished demonstrations."""
         return find_conflicts(self.finished, self.resolutions)
 
     @property
     def all_conflicts(self) -> list[Conflict]:
-        """The same, unfinished demonstrations included."""
+        """Unresolved conflicts, including unfinished demonstrations."""
         return find_conflicts(self.demonstrations, self.resolutions)
 
     def find(self, wanted: str) -> LibraryEntry:
-        """Return a demonstration by its number in the list (from 1), its id, or how that begins.
+        """Find a demonstration by its number in the list (from 1), its id, or a prefix of its id.
 
         Raises:
-            NoDemonstration: there is none, or more than one.
+            NoDemonstration: no demonstration matches, or more than one.
         """
         entries = list(self.entries.values())
         if wanted in self.entries:
@@ -117,7 +117,7 @@ class Library:
         raise NoDemonstration(plain(f"No demonstration is called {wanted!r}: {choice}."))
 
     def repeats(self, entry: LibraryEntry) -> bool:
-        """Say whether a demonstration was shown again by one that is complete and in use."""
+        """Return whether a finished demonstration in use repeats this one."""
         return any(
             entry.demonstration.id in other.demonstration.of
             for other in self.entries.values()
@@ -125,19 +125,19 @@ class Library:
         )
 
     def number(self, id: str) -> int:
-        """Return the number in the list, from 1, of a demonstration (0: it is not there)."""
+        """Return the number of a demonstration in the list, from 1; 0 if it is not there."""
         return list(self.entries).index(id) + 1 if id in self.entries else 0
 
     def name(self, id: str) -> str:
-        """Return what a demonstration is called in front of people."""
+        """Return the name of a demonstration for people."""
         return f"demonstration {self.number(id) or id}"
 
 
 STILL_USED = ("", "merged", "split", "shown again")
-"""States in which the steps of a demonstration are learnt from, there or in what took its place."""
+"""States in which the steps of a demonstration, or of its replacement, are learnt from."""
 
 
 def takes_place(entry: LibraryEntry) -> bool:
-    """Say whether a demonstration replaces those that it shows again."""
+    """Return whether a demonstration replaces those that it repeats."""
     made = entry.demonstration
     return made.origin == "again" and made.finished and entry.hidden in STILL_USED

@@ -1,7 +1,7 @@
-"""Learning from an answer: a teacher says in a game what to do, and Tangy learns it at once.
+"""Online learning: a teacher says during a game what to do, and Tangy learns it at once.
 
-The answer becomes a demonstration of one step, the forest is fitted anew, and all earlier
-demonstrations are gone through with the old and the new policy, to show that nothing else changed.
+The answer becomes a demonstration of one step and the forest is refitted. Then all earlier
+demonstrations are replayed with the old and the new policy, to show that nothing else changed.
 """
 
 from __future__ import annotations
@@ -27,17 +27,16 @@ from tangy_tui.learning.policies import Change, does, keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 
 Unsettled = Literal["", "new", "otherwise"]
-"""The open question about an answer: none, nobody gave it before, or a teacher gave another
-one."""
+"""Open question about an answer: none, nobody gave it before, or a teacher gave another one."""
 
 
 @dataclass(frozen=True, slots=True)
 class PolicyReplay:
     """Replay of all demonstrated steps with two policies.
 
-    `steps` were looked at, `changed` are the other situations that are answered otherwise now,
-    `overruled` are the earlier steps in the answered situation that the answer sets aside, and
-    `unsettled` is what a teacher has still to settle there.
+    `steps` is the number of replayed steps, `changed` the other situations whose decision changed,
+    `overruled` the number of earlier steps that the answer sets aside, and `unsettled` the question
+    that a teacher still has to settle.
     """
 
     steps: int
@@ -56,7 +55,7 @@ class Lesson:
 
 
 class OnlineLearning:
-    """Makes demonstrations and policies of the answers that teachers give in games."""
+    """Turns the answers that teachers give in games into demonstrations and policies."""
 
     def __init__(self, store: Store, activity: Activity) -> None:
         self._store = store
@@ -69,10 +68,10 @@ class OnlineLearning:
 
         Args:
             policy: the policy that was not sure.
-            step: the situation, the answer, and what followed.
+            step: the situation, the answer, and the next state.
             teacher: who answered.
-            seed: of the random generators.
-            people: the ids of those who take part.
+            seed: seed of the random generators.
+            people: the ids of the participants.
         """
         with self._store.transaction():
             made = self._log(step, teacher, seed, tuple(people))
@@ -96,10 +95,10 @@ class OnlineLearning:
         )
 
     def _settle_library(self, library: Library, settled: Resolution) -> None:
-        """Settle the conflict for later learning too, unless a teacher has settled it otherwise."""
+        """Settle the conflict in the library too, unless a teacher has settled it differently."""
         said = joined(library.resolutions).get(settled.situation)
         if said is not None and not set(settled.right) <= set(said.right):
-            return  # both will be shown before Tangy learns again
+            return  # the teacher sees both before Tangy learns again
         for conflict in library.conflicts:
             if conflict.situation == settled.situation:
                 Editor(self._store, self._activity).resolve(conflict, *settled.right)
@@ -107,7 +106,7 @@ class OnlineLearning:
     def _learn(
         self, policy: Policy, shown: Sequence[Demonstration], settled: Resolution | None
     ) -> Policy:
-        """Fit the forest again; an answer that agrees with demonstrations suffices to act."""
+        """Refit the forest; if one answer is not enough to be sure, settle it as right."""
         said = [*policy.resolutions, *([settled] if settled is not None else [])]
         answer = shown[-1].steps[-1]
         situation = answer.state.situation
@@ -141,7 +140,7 @@ def replay(
     demonstrations: Sequence[Demonstration],
     answered: Situation,
 ) -> PolicyReplay:
-    """Go through demonstrations with two policies; `answered` is where they are meant to differ."""
+    """Replay demonstrations with two policies; `answered` is where they are meant to differ."""
     steps = list(shown_steps(demonstrations))
     situations = dict.fromkeys(shown.step.state.situation for shown in steps)
     changed = tuple(
@@ -155,7 +154,7 @@ def replay(
 def _settle(
     policy: Policy, earlier: Sequence[Demonstration], made: Demonstration
 ) -> Resolution | None:
-    """Settle a conflict by an answer that somebody has given before; a new one settles nothing."""
+    """Settle a conflict if the answer was demonstrated before; a new answer settles nothing."""
     answer = made.steps[-1]
     for conflict in find_conflicts([*earlier, made], policy.resolutions):
         if conflict.situation == answer.state.situation:

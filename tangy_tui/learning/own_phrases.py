@@ -1,7 +1,7 @@
-"""Words of a teacher's own: said, not understood or not for sure, and then typed or chosen.
+"""A teacher's own phrases: spoken, not understood or uncertain, and then typed or chosen.
 
-They become phrases of that teacher's for the behaviour that was meant, if the teacher wants them
-to, and are listened for and understood like those of the activity.
+If the teacher agrees, they become personal phrases for the behaviour that was meant. Speech
+recognition and understanding then treat them like the phrases of the activity.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tangy_tui.language.words import bare, words_of
 from tangy_tui.learning.verification import NotUnderstood, Offered, Say, Verification
 
 MOST_WORDS = 12
-"""More are no phrase that somebody says twice."""
+"""Longer sentences are unlikely to be repeated."""
 _SPOKEN = re.compile(r"[a-z']+( [a-z']+)*")  # as the phrases of activities are written
 
 
@@ -35,7 +35,7 @@ def own_phrases(store: Store, activity: str, teacher: str) -> dict[str, str]:
 
 
 def forget_phrase(store: Store, activity: str, teacher: str, text: str) -> bool:
-    """Remove a phrase of a teacher's; return whether there was one. It is not offered again."""
+    """Remove a teacher's phrase, never to be offered again; return whether it existed."""
     said = " ".join(text.split()).casefold()
     behaviour = own_phrases(store, activity, teacher).get(said)
     if behaviour is None:
@@ -45,7 +45,7 @@ def forget_phrase(store: Store, activity: str, teacher: str, text: str) -> bool:
 
 
 def personal_activity(activity: Activity, own: Mapping[str, str]) -> Activity:
-    """Return an activity with phrases more; those of behaviours it does not have are left out."""
+    """Return an activity with more phrases; phrases of unknown behaviours are ignored."""
     behaviours = {
         name: replace(behaviour, phrases=(*behaviour.phrases, *_more(behaviour, own)))
         for name, behaviour in activity.behaviours.items()
@@ -59,10 +59,10 @@ def personal_phrasebook(
     own: Mapping[str, str],
     learnt: Learnt | None,
 ) -> Phrasebook:
-    """Make a phrasebook with phrases more; what was `learnt` is that of the activity as it is."""
+    """Make a phrasebook with more phrases; `learnt` is the intent model of the plain activity."""
 
     def by_activity(_: Activity) -> IntentModel:
-        assert learnt is not None  # noqa: S101 - else nobody asks
+        assert learnt is not None  # noqa: S101 - else it is never called
         return learnt(activity)
 
     more = personal_activity(activity, own)
@@ -76,22 +76,22 @@ def _more(behaviour: Behaviour, own: Mapping[str, str]) -> Iterator[str]:
 
 
 class OwnPhrases:
-    """Follows what a teacher says, and what it turns out to have meant."""
+    """Tracks a teacher's words and the behaviours that they turn out to mean."""
 
     def __init__(self, store: Store, activity: Activity, teacher: str) -> None:
-        """Begin to follow a teacher."""
+        """Track a teacher."""
         self._store = store
         self._activity = activity
         self._teacher = teacher
-        self._unclear = ""  # what was said last, and not understood
+        self._unclear = ""  # the last words that were not understood
 
     def phrasebook(self, people: Sequence[Person], learnt: Learnt | None) -> Phrasebook:
-        """Build the phrasebook for some people, with the teacher's own phrases."""
+        """Build the phrasebook for the participants, with the teacher's own phrases."""
         own = own_phrases(self._store, self._activity.name, self._teacher)
         return personal_phrasebook(self._activity, people, own, learnt)
 
     def followed(self, said: Say, came: Verification) -> Verification:
-        """Take note of what came of words that were typed or spoken, and return it."""
+        """Remember words that were not understood or uncertain; return the verification."""
         if isinstance(came, NotUnderstood | Offered) and said.commands is not None:
             self._unclear = _plain(came.heard)
         elif isinstance(came, NotUnderstood):
@@ -99,9 +99,9 @@ class OwnPhrases:
         return came
 
     def wording(self, behaviour: str) -> str:
-        """Return the words that meant a behaviour which was done now; "" if none are to be kept."""
+        """Return the unclear words that led to this behaviour; "" if there are none to keep."""
         words, self._unclear = self._unclear, ""
-        goes = self._activity.behaviour(behaviour).effect == "go to user"  # to one, not to another
+        goes = self._activity.behaviour(behaviour).effect == "go to user"  # it names one person
         if goes or not _can_be_kept(words):
             return ""
         known = {*_noted(self._store, self._activity.name, self._teacher)}
@@ -109,12 +109,12 @@ class OwnPhrases:
         return "" if words in known | listed else words
 
     def note(self, text: str, behaviour: str, *, kept: bool) -> None:
-        """Store words for a behaviour, or note not to ask about them again."""
+        """Store words for a behaviour, or that they are not to be offered again."""
         _note(self._store, self._activity.name, self._teacher, text, behaviour, kept=kept)
 
 
 def _can_be_kept(words: str) -> bool:
-    """Say whether words can be a phrase: they mean nothing else, and are not too many."""
+    """Return whether words can be a phrase: no other meaning, and not too many."""
     split = words_of(words)
     if not _SPOKEN.fullmatch(words) or not bare(split) or len(split) > MOST_WORDS:
         return False
@@ -136,7 +136,7 @@ def _note(
 
 
 def _noted(store: Store, activity: str, teacher: str) -> dict[str, OwnPhraseNoted]:
-    """Return the last note on each of a teacher's phrases."""
+    """Return the latest note on each of a teacher's phrases."""
     found: dict[str, OwnPhraseNoted] = {}
     for event in store.events(OwnPhraseNoted):
         one = event.record

@@ -1,7 +1,7 @@
-"""The policies in the log: kept by name with what they were learnt from, and learnt again from it.
+"""The policies in the log: stored as their training data, and refitted from it.
 
-A policy is not stored but its demonstrations, settings, versions and digest are; it is refitted
-when it is loaded, and never used silently if it does not come out as it was.
+A stored policy is its demonstrations, settings, versions and digest. It is refitted when it is
+loaded, and never used silently if the digest differs.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ ASKS = "to ask"
 """The decision of a policy in situations where it is not sure."""
 GONE = "no situation any more"
 MANY = 20
-"""Where one step in so many, or more, is not of the activity, the activity was changed."""
+"""If one step in this many is unknown to the activity, the activity itself was changed."""
 RESERVED = ("last", "policy", "teacher")
-"""Words that a name must not begin with: they say which policy is meant."""
+"""Words that a policy's name must not begin with, because they select a policy."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A situation that a policy learnt again answers otherwise than it did."""
+    """A situation whose decision changed when the policy was refitted."""
 
     situation: Situation
     before: str
@@ -43,7 +43,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A step `number` of a demonstration that an activity, by its title, does not know."""
+    """Step `number` of a demonstration that the activity (by its title) does not know."""
 
     demonstration: str
     number: int
@@ -54,12 +54,12 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class NotAsKept:
-    """A policy that does not come out as it was kept.
+    """A policy that differs from the stored one after refitting.
 
     Args:
         policy: its name.
-        versions: of a part, what it was and what it is now; none: its demonstrations have changed.
-        changes: what it does otherwise; none: only the votes differ.
+        versions: changed versions (part, then, now); if empty, its demonstrations have changed.
+        changes: changed decisions; if empty, only the votes differ.
     """
 
     policy: str
@@ -68,7 +68,7 @@ class NotAsKept:
 
 
 PolicyNotice: TypeAlias = LeftOut | NotAsKept
-"""What a person must be told of a policy before it is used."""
+"""A notice that people must see before a policy is used."""
 
 
 class NoPolicy(TangyError):
@@ -76,7 +76,7 @@ class NoPolicy(TangyError):
 
 
 def keep_policy(store: Store, policy: Policy) -> None:
-    """Log a policy: how to learn it again, and the digest of what that must give."""
+    """Log a policy: its training data, settings and digest."""
     store.append(policy.record())
 
 
@@ -90,19 +90,19 @@ def stored_policies(store: Store, activity: str) -> list[PolicyLearnt]:
 
 
 def last_policy(store: Store, activity: str) -> PolicyLearnt | None:
-    """Return the last stored policy of an activity, or None."""
+    """Return the latest stored policy of an activity, or None."""
     kept = stored_policies(store, activity)
     return kept[-1] if kept else None
 
 
 def need_policy(store: Store, activity: Activity, wanted: str = "") -> PolicyLearnt:
-    """Return a stored policy: the last one, or the last one of a name or digest.
+    """Return a stored policy: the latest, or the latest that matches `wanted`.
 
-    `wanted` is `last` or `last~N` (the N-th before it), a name, or how a digest begins (four
+    `wanted` is `last` or `last~N` (the N-th before it), a name, or a prefix of a digest (four
     characters or more).
 
     Raises:
-        NoPolicy: none has been learnt, says how to; or there is none of that name.
+        NoPolicy: no policy was learnt yet, or none matches.
     """
     kept = stored_policies(store, activity.name)
     if not kept:
@@ -126,7 +126,7 @@ def need_policy(store: Store, activity: Activity, wanted: str = "") -> PolicyLea
 
 
 def place_of(word: str) -> int | None:
-    """Return how far before the last policy a word points: last is 0, last~2 is 2."""
+    """Return how far before the latest policy a word points: 0 for last, 2 for last~2."""
     head, tilde, number = word.partition("~")
     if head != "last" or (tilde and not number.isdecimal()):
         return None
@@ -134,17 +134,17 @@ def place_of(word: str) -> int | None:
 
 
 def check_name(name: str) -> None:
-    """Refuse a name by which a policy could not be found again.
+    """Reject a policy name that is reserved.
 
     Raises:
-        TangyError: it is a word that means another policy.
+        TangyError: the name is a word that selects another policy.
     """
     if name.partition("~")[0].partition(":")[0] in RESERVED:
         raise TangyError(plain(f"A policy cannot be called {name!r}: choose another name."))
 
 
 def unused_name(store: Store, policy: Policy) -> Policy:
-    """Give a policy that is only named by count a name that no other one has."""
+    """Make the name of a policy unique, if it was named by count."""
     taken = {kept.name: kept.digest for kept in stored_policies(store, policy.activity)}
     name, count = policy.name, 1
     while policy.named_by_count and taken.get(name, policy.digest) != policy.digest:
@@ -156,11 +156,11 @@ def unused_name(store: Store, policy: Policy) -> Policy:
 def load_policy(
     store: Store, activity: Activity, wanted: str = ""
 ) -> tuple[Policy, list[PolicyNotice]]:
-    """Learn a kept policy again from its demonstrations (see `need_policy`).
+    """Refit a stored policy from its demonstrations (see `need_policy`).
 
     Returns:
-        The policy, and what a person must be told: a digest that does not match is said, with
-        the rows that differ, because then the policy is not the one that was looked at.
+        The policy, and notices for people: if the digest differs, the changed situations, because
+            then it is not the policy that people looked at.
 
     Raises:
         NoPolicy: there is none, or its demonstrations are gone.
@@ -190,7 +190,7 @@ def load_policy(
 
     policy = again(cache.grown)
     if policy.digest != kept.digest:
-        policy = again(cache.afresh)  # the cache may be wrong; a policy learnt again is not
+        policy = again(cache.afresh)  # the cache may be corrupt; grow the forest again
     if policy.digest != kept.digest:
         return policy, [*left_out, _explain(kept, policy)]
     return policy, [*left_out]
@@ -199,9 +199,9 @@ def load_policy(
 def without_strange_steps(
     activity: Activity, demonstrations: Sequence[Demonstration]
 ) -> tuple[list[Demonstration], list[LeftOut]]:
-    """Leave out single steps that the activity does not know, and name them: bad rows of a log.
+    """Leave out single steps that the activity does not know, and report them.
 
-    Where they are many the activity was changed, and all of them are left as they are.
+    If there are many, the activity was changed, and all steps are kept.
     """
     situations = frozenset(all_situations(activity))
     kept, notices, count = list[Demonstration](), list[LeftOut](), 0
@@ -221,7 +221,7 @@ def without_strange_steps(
 
 
 def changes(kept: PolicyLearnt, policy: Policy) -> list[Change]:
-    """Compare a stored policy with a policy: behaviours, or that it asks."""
+    """Compare a stored policy with a refitted one: changed behaviours, or that it asks."""
     was: dict[Situation, str] = {}
     for row in kept.rows:
         asks = row.share < SURE if kept.asks is None else row.situation in kept.asks
@@ -238,7 +238,7 @@ def changes(kept: PolicyLearnt, policy: Policy) -> list[Change]:
 
 
 def does(decision: Decision) -> str:
-    """Say what a policy does by a decision: the behaviour, or that it asks."""
+    """Return the behaviour of a decision, or `ASKS` if it is not sure."""
     return decision.behaviour if decision.sure else ASKS
 
 

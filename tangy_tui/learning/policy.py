@@ -1,8 +1,8 @@
 """Activity learning (III-A-4): a random forest maps the attended-user triple to a behaviour.
 
-The state space is finite, so the forest is asked once about every triple and decisions are looked
-up. The settings are those that are exact after one covering demonstration; `PAPER` is the paper's
-bagging, which decides alike but with lower votes.
+The state space is finite, so the forest is evaluated once for every triple and decisions are looked
+up. The default settings are exact after one demonstration that covers all situations. `PAPER` is
+the paper's bagging: the same decisions, with fewer votes.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
 
 SURE = 0.7
-"""The vote share below which a decision is called unsure."""
+"""A decision with a smaller share of votes is unsure."""
 
 
 class NothingToLearnFrom(TangyError):
-    """There is no demonstration with a step in it."""
+    """No demonstration has a step."""
 
 
 class NotOfThisActivity(TangyError):
-    """A demonstration shows what the activity, as it is now, does not have."""
+    """A demonstration has a step that the activity, as it is now, does not have."""
 
 
 EXACT = ForestSettings()
@@ -49,11 +49,11 @@ FORESTS: Mapping[str, ForestSettings] = MappingProxyType({"exact": EXACT, "paper
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """The decision in a situation: pi(s) = b, with the share of the trees that voted for it.
+    """The decision in a situation: pi(s) = b, with the share of trees that voted for it.
 
-    `votes` lists every behaviour that got votes, most first; `seen` counts the steps in exactly
-    this situation that were learnt from. `contested`: demonstrations disagree about it, and no
-    teacher has said who is right; `right` are the answers that a teacher called right.
+    `votes` lists every behaviour with votes, most first. `seen` counts the training steps in
+    exactly this situation. `contested`: demonstrations disagree, and no teacher has said who is
+    right. `right` are the answers that a teacher called right.
     """
 
     behaviour: str
@@ -63,13 +63,13 @@ class Decision:
     contested: bool = False
     right: tuple[str, ...] = ()
     whatever: tuple[str, ...] = ()
-    """The facts of a teacher's rule that covers it: whatever they are, it is the same."""
+    """The facts that a teacher's rule ignores here, if a rule covers this situation."""
 
     @property
     def sure(self) -> bool:
-        """Whether it may be acted on: demonstrated, not contested, and most trees agree.
+        """Whether the decision may be carried out: demonstrated, not contested, enough votes.
 
-        Where a teacher has called answers right, no majority is needed among them.
+        If a teacher has called answers right, they need no majority.
         """
         if self.contested:
             return False
@@ -78,7 +78,7 @@ class Decision:
 
 @dataclass(frozen=True)
 class Policy:
-    """A learnt policy: one decision for every triple of the activity, and what it rests on."""
+    """A learnt policy: one decision for every triple of the activity, and its training data."""
 
     name: str
     activity: str
@@ -89,30 +89,30 @@ class Policy:
     versions: Mapping[str, str]
     resolutions: tuple[Resolution, ...] = ()
     whom: Whom = field(default_factory=dict)
-    """Which selectors say whom a behaviour is for, by stage and behaviour."""
+    """The selectors of the addressee of a behaviour, by stage and behaviour."""
 
     def decide(self, situation: Situation) -> Decision:
         """Look up the decision for a situation.
 
         Raises:
-            KeyError: no stage, request or user state of the activity makes this situation.
+            KeyError: the situation is not one of the activity.
         """
         return self.table[situation]
 
     @property
     def named_by_count(self) -> bool:
-        """Whether its name only says how many demonstrations it rests on."""
+        """Whether its name is only the activity and the number of demonstrations."""
         return self.name == _name_by_count(self.activity, self.demonstrations)
 
     def exact(self, activity: Activity) -> bool:
-        """Say whether it agrees with all that is expected of a facilitator of the activity.
+        """Return whether it agrees with every expected behaviour of the activity.
 
-        False if the activity does not declare the expected behaviours.
+        Return False if the activity does not declare the expected behaviours.
         """
         return bool(activity.expected) and not self.errors(activity)
 
     def errors(self, activity: Activity) -> dict[Situation, str]:
-        """Return the expected situations that are answered otherwise, and with what."""
+        """Return the situations with an unexpected decision, and that decision."""
         return {
             situation: self.table[situation].behaviour
             for situation, behaviour in activity.expected.items()
@@ -120,7 +120,7 @@ class Policy:
         }
 
     def record(self) -> PolicyLearnt:
-        """Return what the log keeps: how to learn it again, and what that must give."""
+        """Return the log record: the training data, settings, digest and decisions."""
         known = {s: one for s, one in self.table.items() if one.seen or one.right}
         return PolicyLearnt(
             name=self.name,
@@ -149,15 +149,15 @@ def learn_policy(
     name: str = "",
     grow: Grow | None = None,
 ) -> Policy:
-    """Fit the forest to demonstrations and ask it about every situation.
+    """Fit the forest to demonstrations and evaluate it for every situation.
 
-    The same demonstrations in the same order give the same policy, bit for bit, on the same
-    version of scikit-learn. A situation with a conflict that no resolution settles is contested.
-    `grow` answers for a forest (see `grown`, which is the default).
+    The same demonstrations in the same order give the same policy, bit for bit, with the same
+    version of scikit-learn. A situation with an unresolved conflict is contested. `grow` returns
+    the votes of a forest (default: `grown`).
 
     Raises:
-        NothingToLearnFrom: the demonstrations hold no step.
-        NotOfThisActivity: they were made before the activity was changed.
+        NothingToLearnFrom: the demonstrations have no step.
+        NotOfThisActivity: the activity was changed after they were made.
     """
     shown, told = training_rows(demonstrations, resolutions)
     rows = shown + told
@@ -209,17 +209,17 @@ def _name_by_count(activity: str, ids: Sequence[str]) -> str:
 
 
 class Forest(NamedTuple):
-    """A forest's answers: in each situation the behaviours voted for, most votes first."""
+    """A forest's votes: for each situation the behaviours voted for, most votes first."""
 
     votes: tuple[tuple[tuple[str, float], ...], ...]
     versions: tuple[tuple[str, str], ...]
 
 
 Grow = Callable[[ForestSettings, tuple[tuple[Situation, str], ...], tuple[Situation, ...]], Forest]
-"""Gives what a forest of these settings, learnt from these rows, answers in these situations."""
+"""Returns a forest's votes for situations, given its settings and training rows."""
 
 MANY_CLASSES = r"The number of unique classes is greater than \d+% of the number of samples"
-"""Begins the one warning of scikit-learn that does not apply to behaviours."""
+"""Start of a scikit-learn warning that does not apply to behaviours."""
 
 
 @lru_cache(maxsize=256)
@@ -228,10 +228,10 @@ def grown(
     rows: tuple[tuple[Situation, str], ...],
     situations: tuple[Situation, ...],
 ) -> Forest:
-    """Grow a forest from rows and ask it about every situation; from the same rows only once.
+    """Train a forest on rows and evaluate it for every situation; cached by its arguments.
 
-    A hundred trees take a tenth of a second, and the same demonstrations are learnt from again
-    whenever a policy is looked at, compared, or learnt after a conflict that there was not.
+    A hundred trees take a tenth of a second, and the same rows are used again whenever a policy is
+    displayed, compared, or learnt after a conflict check that found nothing.
     """
     import numpy as np
     import sklearn
@@ -244,8 +244,8 @@ def grown(
         min_samples_leaf=settings.min_samples_leaf,
         random_state=settings.seed % 2**32,
     )
-    # After a short game most steps are of different behaviours. They are names, whatever their
-    # number, and scikit-learn's guess that numbers were meant would stand in staff's terminal.
+    # After a short game most steps have different behaviours. Class labels are names, so the
+    # warning that they look like regression targets is wrong, and staff would see it.
     warnings.filterwarnings("ignore", MANY_CLASSES, UserWarning)
     forest.fit(np.array([encode(s) for s, _ in rows]), [behaviour for _, behaviour in rows])
     shares = forest.predict_proba(np.array([encode(s) for s in situations]))
@@ -275,7 +275,7 @@ def grown(
 def encoder(situations: Sequence[Situation]) -> Callable[[Situation], list[float]]:
     """Return the one-hot encoder of situations (stage, request, user state).
 
-    Of an activity declared by facts, each fact of the user state is encoded by itself.
+    For an activity declared by facts, each fact of the user state is a feature of its own.
     """
     features = {
         situation: [
@@ -285,7 +285,7 @@ def encoder(situations: Sequence[Situation]) -> Callable[[Situation], list[float
         for situation in situations
     }
     words = dict.fromkeys(word for found in features.values() for word in found)
-    order = sorted(words, key=lambda word: word[0])  # it keeps the order within each part
+    order = sorted(words, key=lambda word: word[0])  # stable: keeps the order within each part
     place = {word: index for index, word in enumerate(order)}
 
     def encode(situation: Situation) -> list[float]:
@@ -304,7 +304,7 @@ def _digest(
     resolutions: Sequence[Resolution],
     whom: Whom,
 ) -> str:
-    """Return a SHA-256 over the training data and the learnt behaviours."""
+    """Return the SHA-256 of the training data and the votes."""
     body: list[object] = [
         asdict(settings),
         [[*situation, behaviour] for situation, behaviour in rows],

@@ -1,6 +1,6 @@
-"""Quality notes: what a teacher should know of a demonstration before learning from it.
+"""Quality notes: what a teacher should know about a demonstration before learning from it.
 
-Each note is a fact of the log in a few plain words; none of them is a mark out of ten.
+Each note states a fact of the log in a few plain words; there is no score.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from tangy_tui.learning.conflicts import Conflict, find_conflicts
 from tangy_tui.learning.library_entries import Library, LibraryEntry
 
 MUCH_LONGER = 2.0
-"""Times the usual length from which on a demonstration is called long."""
+"""A demonstration is long if it has more steps than this many times the usual number."""
 
 ENOUGH_TO_COMPARE = 3
-"""Other complete games that there must be before anything is called usual."""
+"""Complete games needed before a usual length is defined."""
 
 
 def quality_notes(
@@ -26,13 +26,13 @@ def quality_notes(
     library: Library,
     conflicts: Sequence[Conflict] | None = None,
 ) -> list[str]:
-    """List notes about a demonstration, a few words each; [] if there are none.
+    """List notes about a demonstration, a few words each.
 
     Args:
         activity: the activity demonstrated.
         entry: the demonstration.
         library: all demonstrations.
-        conflicts: those of the library, if they are known already; they cost a look at every step.
+        conflicts: those of the library if known, because finding them visits every step.
     """
     if conflicts is None:
         conflicts = library.conflicts
@@ -46,7 +46,7 @@ def quality_notes(
 
 
 def _origin(shown: Demonstration, library: Library) -> Iterator[str]:
-    """Name its origin, unless it was shown in a game from the beginning."""
+    """Describe its origin, unless it was shown as one whole game."""
     sources = [library.number(id) for id in shown.of if id in library.entries]
     match shown.origin:
         case "asked":
@@ -61,7 +61,7 @@ def _origin(shown: Demonstration, library: Library) -> Iterator[str]:
 
 
 def _kept(shown: Demonstration, library: Library) -> int:
-    """Count the first steps that it shares with the demonstration that it was made from."""
+    """Count the first steps that it shares with its source demonstration."""
     source = library.entries[shown.of[0]].demonstration
     pairs = zip(shown.steps, source.steps, strict=False)
     return next(
@@ -71,7 +71,7 @@ def _kept(shown: Demonstration, library: Library) -> int:
 
 
 def _course(activity: Activity, entry: LibraryEntry) -> Iterator[str]:
-    """Say how it went: whether it came to an end, and what did not go as it was meant."""
+    """Describe how the game went: its end, undone steps, and failed steps."""
     shown = entry.demonstration
     if not shown.finished:
         yield "not finished"
@@ -85,17 +85,17 @@ def _course(activity: Activity, entry: LibraryEntry) -> Iterator[str]:
 
 
 def missed_end(activity: Activity, shown: Demonstration) -> str:
-    """Return the behaviour that ends a game, where a demonstration never came to that stage; ""."""
+    """Return the behaviour that ends a game, if the demonstration never got there; else ""."""
     ends = {r.stage: r.behaviour for r in activity.stage_rules if r.condition == "after"}
     reached = {step.state.stage for step in shown.steps}
     return "" if reached.intersection(ends) else next(iter(ends.values()), None) or ""
 
 
 def _answers(entry: LibraryEntry, library: Library, conflicts: Sequence[Conflict]) -> Iterator[str]:
-    """Say where it gives another answer than itself, than others, and than a teacher."""
+    """Describe its contradictions: with itself, with others, and with a teacher's resolutions."""
     shown = entry.demonstration
     if not entry.hidden:
-        if not shown.finished:  # it is not learnt from yet, and so in none of the library's
+        if not shown.finished:  # not in the library's conflicts yet, as it is not learnt from
             conflicts = find_conflicts([*library.finished, shown], library.resolutions)
         alone = find_conflicts([shown], library.resolutions)
         if alone:
@@ -113,7 +113,7 @@ def _answers(entry: LibraryEntry, library: Library, conflicts: Sequence[Conflict
 
 
 def _opponents(id: str, conflict: Conflict) -> set[str]:
-    """Return the demonstrations that give an answer to a situation which this one does not."""
+    """Return the demonstrations that give an answer to a situation that this one does not."""
     mine = {b for b, steps in conflict.answers.items() if any(s.demonstration == id for s in steps)}
     if not mine:
         return set()
@@ -122,7 +122,7 @@ def _opponents(id: str, conflict: Conflict) -> set[str]:
 
 
 def _length(shown: Demonstration, library: Library) -> Iterator[str]:
-    """Say that it took many more steps than games usually take."""
+    """Describe that it took many more steps than usual."""
     usual = [len(d.steps) for d in library.finished if d.id != shown.id and d.replayable]
     if shown.replayable and len(usual) >= ENOUGH_TO_COMPARE:
         middle = median(usual)

@@ -1,4 +1,4 @@
-"""All joint activity states that the stage rules can reach, for checking a whole policy."""
+"""All joint activity states that the stage rules can reach, to check a whole policy."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from tangy_profiles.state import FRONT, ActivityState, Request, Situation, UserS
 def joint_states(activity: Activity, people: Sequence[str]) -> Iterator[ActivityState]:
     """Yield every reachable joint state.
 
-    In words: one for each stage without requests; every set of requests with the robot at the
-    front or beside somebody who does not ask; the robot beside somebody who asks, for every user
-    state and every set of other requests; and the same after the win. With Bingo's stages that
-    is 242 for four people. Of an activity declared by facts there are none here: its
-    states are searched (`coverage_proof`).
+    These are: one for each stage without requests; every set of requests with the robot at the
+    front or beside someone who does not ask; the robot beside someone who asks, for every user
+    state and every set of other requests; and the same after the win. For Bingo's stages and four
+    people that is 242. There are none for an activity declared by facts, whose states
+    `coverage_proof` searches.
     """
     for rule in () if isinstance(activity, DeclaredActivity) else activity.stage_rules:
         yield from _states_of(rule, activity, tuple(people))
@@ -40,7 +40,7 @@ def _states_of(
                     head = place if place in asking else min(asking, default=None)
                     yield _state(rule.stage, people, asking, place, head, unread, unread)
             case "requested or away" if asking:
-                head = min(asking)  # which one is the head does not matter to the triple
+                head = min(asking)  # the triple does not depend on who comes first
                 for place in (FRONT, *idle):
                     yield _state(rule.stage, people, asking, place, head, unread, unread)
             case "requested or away":

@@ -1,8 +1,8 @@
-"""Remarks about a teacher's possible mistakes, made once and at once.
+"""Remarks about a teacher's possible mistakes, each made once and immediately.
 
-A step that differs from what was shown before, a stage that was passed over, a person who did not
-ask, a game that ends too early: the teacher who knows the right answer is there now, and may have
-left when Tangy learns from the demonstrations.
+They report a step that contradicts an earlier one, a skipped stage, a person who did not ask, and a
+game that ends too early. The teacher who knows the right answer may have left by the time Tangy
+learns from the demonstrations.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Kind = Literal["stage", "person", "end"]
 
 
 def answers_to(remark: Remark) -> tuple[RemarkAnswer, ...]:
-    """Return what can be answered to a remark, in the order of the numbers it is answered by."""
+    """Return the possible answers to a remark, in the order of their numbers."""
     match remark:
         case Contradicted():
             return ("this", "earlier", "both", "undo")
@@ -48,10 +48,10 @@ def answers_to(remark: Remark) -> tuple[RemarkAnswer, ...]:
 
 
 class Remarks:
-    """Looks at each step that is taught; `open` is the remark that can be answered now."""
+    """Checks each step during teaching; `open` is the remark that can be answered now."""
 
     def __init__(self, activity: Activity, teacher: str, store: Store) -> None:
-        """Make it for a teacher; what was shown before is read when it is needed first."""
+        """Prepare for a teacher; earlier demonstrations are read when first needed."""
         self.open: Remark | None = None
         self.phrases = OwnPhrases(store, activity, teacher)
         self._activity = activity
@@ -59,7 +59,7 @@ class Remarks:
         self._store = store
         self._contradictions: Contradictions | None = None
         self._told: set[tuple[Kind, Situation]] = set()
-        self._settled: dict[int, int] = {}  # by step: the edit that its answer made
+        self._settled: dict[int, int] = {}  # step id -> the edit that its answer made
 
     @property
     def _shown(self) -> Contradictions:
@@ -72,29 +72,29 @@ class Remarks:
         return self._contradictions
 
     def usual(self, situation: Situation) -> tuple[str, ...]:
-        """Return the behaviours that were shown in a situation, the one shown most often first."""
+        """Return the behaviours shown in a situation, most frequent first."""
         return self._shown.usual(situation)
 
     def read(self) -> None:
-        """Read earlier demonstrations unless they are known; the newest step is not among them."""
+        """Read earlier demonstrations unless they are cached; call it before logging a step."""
         _ = self._shown
 
     def reread(self) -> None:
-        """Read earlier demonstrations again: one was discarded."""
+        """Discard the cache of earlier demonstrations, because one was deleted."""
         self._contradictions, self.open = None, None
 
     def notice(self, shown: Shown, *, over: bool) -> None:
-        """Take a new step; a remark about it, if it is new, stays open from then on.
+        """Check a step; a new remark about it becomes the open one.
 
         Args:
             shown: the step.
-            over: the game is over with it.
+            over: whether the game is over after it.
         """
         known = self.usual(shown.step.state.situation)
         earlier = self._shown.found(shown)
         self.open = None
         overlooked = self._overlooked(shown, over=True) if over else None
-        if isinstance(overlooked, EndedEarly):  # the game is gone with it: that comes first
+        if isinstance(overlooked, EndedEarly):  # it comes first, because the game is over
             self.open = overlooked
         elif earlier is not None:
             own = earlier.teacher == self._teacher
@@ -106,10 +106,10 @@ class Remarks:
             self.open = NewWording(shown.number, shown.step, words)
 
     def answer(self, answer: RemarkAnswer) -> Settled | None:
-        """Note a teacher's answer to the open remark, or that its conflict is settled later.
+        """Log a teacher's answer to the open remark, or postpone its conflict.
 
         Returns:
-            What was settled; None if there is no remark that could be.
+            What was settled; None if there is no open remark.
         """
         remark, self.open = self.open, None
         if remark is None:
@@ -129,11 +129,11 @@ class Remarks:
             said = self._shown.resolved(situation, right, keep=answer == "both")
             editor = Editor(self._store, self._activity)
             self._settled[remark.step.id] = editor.settle(said).seq
-            self._contradictions = None  # it is read anew, with what was said
+            self._contradictions = None  # read again, with the resolution
         return Settled(remark, answer, right)
 
     def take_back(self, demonstration: str, number: int, step: Step) -> None:
-        """Forget an undone step and its answer; a remark about it may come again."""
+        """Forget an undone step and undo its answer; a remark about it may be made again."""
         self.open = None
         self._told = {(kind, of) for kind, of in self._told if of != step.state.situation}
         if self._contradictions is not None:
@@ -145,7 +145,7 @@ class Remarks:
             self._contradictions = None
 
     def _goes(self, shown: Shown) -> bool:
-        """Say whether a step goes to a person: the same behaviour may be right for another one."""
+        """Return whether a step goes to a person: it may be right for another person too."""
         return self._activity.behaviour(shown.step.behaviour).effect == "go to user"
 
     def _overlooked(self, shown: Shown, *, over: bool) -> Remark | None:
@@ -172,13 +172,13 @@ class Remarks:
         return Overlooked(shown.number, step, self._due(rule, shown))
 
     def _passes_over(self, rule: StageRule, behaviour: Behaviour, shown: Shown) -> bool:
-        """Say whether a behaviour lets a stage wait in which something else is due."""
+        """Return whether a behaviour skips the behaviour that is due in a stage."""
         step = shown.step
         match rule.condition:
             case "before":
                 return behaviour.name != rule.behaviour
             case "count":
-                return behaviour.name == rule.behaviour  # it goes on as if nothing were due
+                return behaviour.name == rule.behaviour  # continues as if nothing were due
             case "beside requester":
                 return not behaviour.attends and behaviour.effect != "go to front"
             case "requested or away":
@@ -190,7 +190,7 @@ class Remarks:
                 return False
 
     def _due(self, rule: StageRule, shown: Shown) -> str | None:
-        """Return the behaviour that the rules of the activity name for a stage."""
+        """Return the behaviour that the stage rule asks for, or None."""
         match rule.condition:
             case "before":
                 return rule.behaviour

@@ -1,4 +1,4 @@
-"""A scripted teacher: demonstrates what the activity expects, through the same door as a person."""
+"""A scripted teacher that demonstrates the expected behaviours through a teaching session."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
 
 SCRIPTED = "scripted"
-"""The name under which its demonstrations are kept."""
+"""The teacher's name in its demonstrations."""
 
 MOST_STEPS = 2_000
-"""A demonstration longer than this is not going to end (real ones have about 62 steps)."""
+"""Steps after which a demonstration is considered endless (real ones have about 62)."""
 
 
 class ScriptedTeacher:
-    """Speaks the phrase of the expected behaviour, and answers the question with yes."""
+    """Says the phrase of the expected behaviour, and answers the question with yes."""
 
     def __init__(self, teaching: TeachingSession) -> None:
         self._teaching = teaching
@@ -31,7 +31,7 @@ class ScriptedTeacher:
         self._phrases = {b.name: b.phrases[0] for b in teaching.activity.behaviours.values()}
 
     def command(self) -> Say | Reply | Next:
-        """Return what the teacher does next."""
+        """Return the teacher's next command."""
         teaching = self._teaching
         if teaching.demonstration.finished:
             return Next()
@@ -44,7 +44,7 @@ class ScriptedTeacher:
         return Say(self._phrases[expected] + self._addressed(expected))
 
     def _addressed(self, expected: str) -> str:
-        """Return the target in words, where it differs from the behaviour's default."""
+        """Return the target in words, if it differs from the behaviour's default."""
         teaching, activity = self._teaching, self._teaching.activity
         state = teaching.world.observe()
         selector = activity.expected_selector(state.situation)
@@ -55,7 +55,7 @@ class ScriptedTeacher:
         return "" if person == usual else f" to {teaching.name(person)}"
 
     def demonstrate(self) -> Iterator[TeachingEvent]:
-        """Demonstrate to the end of the game, event by event."""
+        """Demonstrate until the game is over, yielding each event."""
         for _ in range(2 * MOST_STEPS):
             if self._teaching.demonstration.finished:
                 return

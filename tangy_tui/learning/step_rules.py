@@ -1,8 +1,8 @@
-"""Rules that a teacher adds to a step: it would be the same whatever some fact is.
+"""Rules that a teacher adds to a step: the behaviour is the same whatever the value of some facts.
 
-A rule covers the situations of the step's stage that differ from its own in those facts alone, and
-that nobody has shown yet. Each is noted as what a teacher says of a conflict is; so library,
-policy, and a later demonstration that says otherwise treat it as that.
+A rule covers the situations of the same stage that differ from the step's only in those facts and
+that were not shown yet. It is logged as resolutions of those situations, so the library, the policy
+and later contradicting demonstrations handle it like any resolution.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ from tangy_tui.learning.teaching_events import (
 
 
 class StepRules:
-    """The rules of one teaching session."""
+    """The rules added in one teaching session."""
 
     def __init__(self, activity: Activity, store: Store) -> None:
-        """Take the activity, and the log that rules are noted in."""
+        """Use an activity, and the log that stores the rules."""
         self._activity, self._store = activity, store
         self._noted: list[tuple[str, Ruled, int]] = []
 
     @property
     def possible(self) -> bool:
-        """Whether a step can become a rule: where the activity declares what Tangy goes by."""
+        """Whether steps can get rules: only in activities declared by facts."""
         return isinstance(self._activity, DeclaredActivity)
 
     def choices(self, shown: Demonstration) -> tuple[RuleChoice, ...] | NoRule:
-        """Return the rules that the last step of a demonstration can get, the widest first."""
+        """Return the rules that the last step of a demonstration can get, widest first."""
         activity = self._activity
         if not shown.steps:
             return NoRule("no step")
@@ -53,7 +53,7 @@ class StepRules:
         return found or NoRule("all shown")
 
     def note(self, shown: Demonstration, command: SameWhatever) -> Ruled | NoRule:
-        """Add a rule to the last step of a demonstration, or say why it cannot be."""
+        """Add a rule to the last step of a demonstration, or return why that is not possible."""
         activity = self._activity
         if not shown.steps:
             return NoRule("no step")
@@ -78,7 +78,7 @@ class StepRules:
         return ruled
 
     def take_back(self, shown: Demonstration) -> RuleUndone | None:
-        """Take back the rule of the last step, if it has one that was added in this session."""
+        """Undo the rule of the last step, if one was added in this session."""
         if not self._noted:
             return None
         demonstration, ruled, edits = self._noted[-1]

@@ -20,17 +20,17 @@ from tangy_tui.learning.verification import (
     Say,
 )
 
-# ------------------------------------------------------------------- what a teacher can do
+# ------------------------------------------------------------------- commands of a teacher
 
 
 @dataclass(frozen=True, slots=True)
 class Undo:
-    """Take the last step back."""
+    """Undo the last step."""
 
 
 @dataclass(frozen=True, slots=True)
 class Redo:
-    """Do the step again that was taken back last."""
+    """Redo the step that was undone last."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,20 +40,20 @@ class Next:
 
 @dataclass(frozen=True, slots=True)
 class Discard:
-    """Put the present demonstration away (the library brings it back), and begin another."""
+    """Delete the current demonstration (it can be restored), and begin another."""
 
 
 @dataclass(frozen=True, slots=True)
 class Finish:
-    """Take the present demonstration as complete, although its game could go on."""
+    """Mark the current demonstration as complete, although its game could go on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Again:
-    """Show a demonstration again from some step on: its first `kept` steps stay as they are.
+    """Repeat a demonstration from some step on: its first `kept` steps stay.
 
-    The present demonstration is taken back to there, and redo leads forward again. Another one is
-    replaced when the new one is complete, and not before.
+    The current demonstration is undone to that step, and redo works. An older one is replaced as
+    soon as the new one is complete.
     """
 
     demonstration: str
@@ -61,20 +61,22 @@ class Again:
 
 
 RemarkAnswer = Literal["this", "earlier", "both", "undo", "keep", "later"]
-"""Answers to a remark: this step is right, the earlier one, both; take this one back,
-keep the words for it, or decide later."""
+"""Answers to a remark.
+
+This step, the earlier one, or both are right; undo this step; keep the words; or decide later.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Settle:
-    """Answer the remark that was made on the last step."""
+    """Answer the remark about the last step."""
 
     answer: RemarkAnswer
 
 
 @dataclass(frozen=True, slots=True)
 class SameWhatever:
-    """Say that the last step would be the same whatever these facts are (none: all of them)."""
+    """Add a rule: the last step is the same whatever these facts are (empty: all facts)."""
 
     facts: tuple[str, ...] = ()
 
@@ -84,12 +86,12 @@ TeacherCommand: TypeAlias = (
 )
 
 
-# ---------------------------------------------------------------------------- what follows
+# ---------------------------------------------------------------------------- events
 
 
 @dataclass(frozen=True, slots=True)
 class Executed:
-    """A verified behaviour was carried out and is step `number` of the trajectory (from 1)."""
+    """A verified behaviour was carried out as step `number` of the trajectory (from 1)."""
 
     number: int
     step: Step
@@ -107,12 +109,12 @@ class Contradicted:
     step: Step
     earlier: Shown
     own: bool
-    """Whether the same teacher has shown it."""
+    """Whether the same teacher showed the earlier step."""
 
 
 @dataclass(frozen=True, slots=True)
 class Overlooked:
-    """Step `number` passed over its stage, in which the behaviour `due` was to come."""
+    """Step `number` skipped its stage, in which the behaviour `due` was expected."""
 
     number: int
     step: Step
@@ -122,7 +124,7 @@ class Overlooked:
 
 @dataclass(frozen=True, slots=True)
 class WrongPerson:
-    """Step `number` went to a person who had not asked; `waiting` is who had."""
+    """Step `number` went to a person who had not asked; `waiting` is the one who had."""
 
     number: int
     step: Step
@@ -131,7 +133,7 @@ class WrongPerson:
 
 @dataclass(frozen=True, slots=True)
 class EndedEarly:
-    """Step `number` ended the game before `lacks`, after which games of this activity end."""
+    """Step `number` ended the game before `lacks`, the behaviour that ends this activity."""
 
     number: int
     step: Step
@@ -140,7 +142,7 @@ class EndedEarly:
 
 @dataclass(frozen=True, slots=True)
 class NewWording:
-    """Step `number` came of spoken `words` that Tangy was not sure of, or did not understand."""
+    """Step `number` followed spoken `words` that Tangy did not understand for certain."""
 
     number: int
     step: Step
@@ -148,7 +150,7 @@ class NewWording:
 
 
 Remark: TypeAlias = Contradicted | Overlooked | WrongPerson | EndedEarly | NewWording
-"""A remark about the newest step; the teacher answers it, or puts it off."""
+"""A remark about the newest step; the teacher answers or postpones it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,14 +164,14 @@ class Settled:
 
 @dataclass(frozen=True, slots=True)
 class Announced:
-    """A guided game is about to bring this about."""
+    """A guided game is about to bring about this event or situation."""
 
     arranged: Arranged | ArrangedSituation
 
 
 @dataclass(frozen=True, slots=True)
 class StepUndone:
-    """Step `number` was taken back; the world is as it was before it."""
+    """Step `number` was undone; the world is in the state before it."""
 
     number: int
     step: Step
@@ -177,7 +179,7 @@ class StepUndone:
 
 @dataclass(frozen=True, slots=True)
 class RuleChoice:
-    """A rule that a step can get: the facts it leaves out, and how many situations it covers."""
+    """A rule that a step can get: the facts to ignore, and how many situations it covers."""
 
     facts: tuple[str, ...]
     covers: int
@@ -185,7 +187,7 @@ class RuleChoice:
 
 @dataclass(frozen=True, slots=True)
 class Ruled:
-    """Step `number` got a rule: whatever some `facts` are, it is the same; `covers` is where."""
+    """Step `number` got a rule: it ignores `facts`, and covers these situations."""
 
     number: int
     step: Step
@@ -195,7 +197,7 @@ class Ruled:
 
 @dataclass(frozen=True, slots=True)
 class NoRule:
-    """A rule could not be added: why, of which fact, among which Tangy goes by."""
+    """A rule was not added: the reason, the unknown fact, and the facts that are known here."""
 
     why: Literal["no step", "no facts", "not gone by", "all shown"]
     fact: str = ""
@@ -204,14 +206,14 @@ class NoRule:
 
 @dataclass(frozen=True, slots=True)
 class RuleUndone:
-    """A rule was taken back; its step stays."""
+    """A rule was undone; its step stays."""
 
     rule: Ruled
 
 
 @dataclass(frozen=True, slots=True)
 class Begun:
-    """A demonstration was begun, or taken up again with the steps it had."""
+    """A demonstration was begun, or resumed with its earlier steps."""
 
     demonstration: Demonstration
     resumed: bool

@@ -1,7 +1,7 @@
-"""Demonstrating (III-A): a teacher's commands, each verified, become a trajectory.
+"""Teaching (III-A): a teacher's commands, each verified, become a trajectory.
 
-Screens, lines, scripts and tests all drive a `TeachingSession` alike: a command goes in, events
-come out. Every verified step is in the log before its event is returned.
+Screens, the line mode, scripts and tests all drive a `TeachingSession`: a command goes in, events
+come out. Every verified step is logged before its event is returned.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ NOTHING_SAID = "(nothing: there are no numbers to say)"
 
 
 class TeachingSession:
-    """One teacher's session: demonstrations one after another, each in its own simulated game."""
+    """One teacher's session: a series of demonstrations, each in its own simulated game."""
 
     def __init__(
         self,
@@ -90,17 +90,17 @@ class TeachingSession:
         again: Again | None = None,
         learnt: Learnt | None = None,
     ) -> None:
-        """Prepare a session; `begin` it.
+        """Prepare a session; call `begin` to start it.
 
         Args:
             activity: the activity to teach.
-            people: the ids of those who take part.
+            people: the participants.
             store: the log.
             make_world: makes the world of a demonstration.
             teacher: who demonstrates.
-            seed: of the first new game; the next games count on.
-            guided: new games are arranged so that one of them brings about every situation.
-            again: begin by showing a demonstration again from some step on.
+            seed: seed of the first new game; later games count up from it.
+            guided: arrange new games so that each brings about every situation.
+            again: begin by repeating a demonstration from some step on.
             learnt: see `Phrasebook`.
         """
         self.activity, self._learnt = activity, learnt
@@ -110,7 +110,7 @@ class TeachingSession:
         self.demonstration: Demonstration
         self.world: World
         self.numbers: tuple[tuple[int, ...], ...] = ()
-        """The numbers that each step of the demonstration was about."""
+        """The numbers drawn or called in each step of the demonstration."""
         self.guided, self._first = guided, again
         self._verifier: Verifier
         self._undone: list[Step] = []
@@ -120,31 +120,31 @@ class TeachingSession:
         self._names = {person.id: person.name for person in people}
 
     def teach_as(self, teacher: str) -> None:
-        """Let somebody teach, before the session begins."""
+        """Change the teacher; call it before the session begins."""
         self.teacher, self._remarks = teacher, Remarks(self.activity, teacher, self._store)
 
     def phrasebook_for(self, people: Sequence[Person]) -> Phrasebook:
-        """Build the phrasebook for some people, with the teacher's own phrases."""
+        """Build the phrasebook for the participants, with the teacher's own phrases."""
         return self._remarks.phrases.phrasebook(people, self._learnt)
 
     @property
     def people(self) -> tuple[str, ...]:
-        """The participants of this demonstration, by id."""
+        """The ids of the participants of this demonstration."""
         return self.demonstration.people
 
     @property
     def question(self) -> Asked | Offered | None:
-        """The question that is open, if one is."""
+        """The open question, or None."""
         return self._verifier.question
 
     @property
     def undone(self) -> int:
-        """How many steps redo can bring back."""
+        """How many steps can be redone."""
         return len(self._undone)
 
     @property
     def sayable(self) -> tuple[str, ...]:
-        """The commands that can be carried out now, the most often demonstrated ones first."""
+        """The commands that can be carried out now, most often demonstrated first."""
         if self.demonstration.finished:
             return ()
         situation = self.world.observe().situation
@@ -156,14 +156,17 @@ class TeachingSession:
         return self._remarks.open
 
     def name(self, person: str) -> str:
-        """Return a person's name, or the id of somebody who has none here."""
+        """Return a person's name, or the id if the name is unknown."""
         return self._names.get(person, person)
 
     def begin(self, *, resume: bool = True) -> list[TeachingEvent]:
-        """Take up this teacher's unfinished demonstration, or begin a new one.
+        """Resume this teacher's unfinished demonstration, or begin a new one.
 
-        An unfinished one is replayed. Where that leads to other states (the simulator has changed),
-        it stays as it is, and a new one is begun. What cannot be shown again raises TangyError.
+        An unfinished one is replayed. If its states then differ (the simulator has changed), it is
+        left alone and a new one is begun.
+
+        Raises:
+            TangyError: the demonstration to repeat cannot be repeated.
         """
         if self._first is not None:
             return self.check()
@@ -180,11 +183,11 @@ class TeachingSession:
         return [Begun(kept, resumed=True)]
 
     def check(self) -> list[TeachingEvent]:
-        """Check the steps to show again, before a screen opens; raises TangyError if impossible."""
+        """Prepare the repetition of steps before a screen opens; raise TangyError if impossible."""
         return self._begin_again(self._first) if self._first is not None else []
 
     def apply(self, command: TeacherCommand) -> list[TeachingEvent]:
-        """Carry out one command of the teacher and return what followed."""
+        """Carry out one command of the teacher and return the events."""
         with serving():
             events = self._heed(command)
             followed = ", ".join(type(event).__name__ for event in events)
@@ -194,7 +197,7 @@ class TeachingSession:
     def _heed(self, command: TeacherCommand) -> list[TeachingEvent]:
         match command:
             case Say():
-                self._remarks.open = None  # put off
+                self._remarks.open = None  # postponed
                 return self._say(command)
             case Settle(answer):
                 return self._settle(answer)
@@ -207,7 +210,7 @@ class TeachingSession:
             case Redo():
                 return self._redo()
             case Next():
-                self._remarks.open = None  # put off
+                self._remarks.open = None  # postponed
                 if self.demonstration.finished:
                     return self._begin_new()
                 return [Refused("not finished")]
@@ -232,14 +235,14 @@ class TeachingSession:
         return [Begun(new, resumed=False)]
 
     def _discard(self) -> list[TeachingEvent]:
-        """Put the present demonstration away, and begin another."""
+        """Delete the current demonstration, and begin another."""
         if self._logged:
             Editor(self._store, self.activity).delete(self.demonstration.id)
             self._remarks.reread()
         return self._begin_new()
 
     def _finish(self) -> list[TeachingEvent]:
-        """Take the present demonstration as complete."""
+        """Mark the current demonstration as complete."""
         if self.demonstration.finished or not (self._logged and self.demonstration.steps):
             raise NotPossible("There is no unfinished game with steps that could be finished.")
         self._store.append(DemonstrationFinished(demonstration=self.demonstration.id))
@@ -247,7 +250,7 @@ class TeachingSession:
         return [Finished(self.demonstration)]
 
     def _go_back(self, kept: int) -> list[TeachingEvent]:
-        """Undo the last steps of the present demonstration, all of them or none."""
+        """Undo the last steps of the current demonstration in one transaction."""
         steps = len(self.demonstration.steps)
         if not 0 <= kept < steps:
             return [Refused("no step to show again", number=kept + 1)]
@@ -256,7 +259,7 @@ class TeachingSession:
         try:
             with self._store.transaction():
                 return [event for _ in range(steps - kept) for event in self._undo()]
-        except BaseException:  # nothing of it is in the log
+        except BaseException:  # the transaction was rolled back
             self._enter(*before)
             self._undone, self._logged = undone, logged
             raise
@@ -271,7 +274,7 @@ class TeachingSession:
         return [Begun(new, resumed=False)]
 
     def _enter(self, demonstration: Demonstration, led_to: ReplayedGame) -> None:
-        """Continue a demonstration with its participants, in the world that it led to."""
+        """Continue a demonstration with its participants, in the world after it."""
         self.demonstration = demonstration
         self.world, self.numbers = led_to.world, led_to.numbers
         self._undone = []
@@ -308,7 +311,7 @@ class TeachingSession:
     def _carry_out(
         self, behaviour: Behaviour, target: str | None, log: Callable[[Step], Step]
     ) -> list[TeachingEvent]:
-        """Execute a behaviour and log the step; without its event the step did not happen."""
+        """Execute a behaviour and log the step; if logging fails, restore the world before it."""
         self._remarks.read()
         before = self.world.observe()
         action = self.activity.action(behaviour, target, None)
@@ -344,7 +347,7 @@ class TeachingSession:
         return [Refused("nothing to settle")] if settled is None else [settled]
 
     def _log_beginning(self) -> None:
-        """Log the demonstration with its first step, so that looking in leaves no empty one."""
+        """Log the demonstration with its first step, so that no empty one is logged."""
         if not self._logged:
             kept = len(self.demonstration.steps)
             self._store.append(DemonstrationBegun.from_demonstration(self.demonstration, kept=kept))
@@ -387,9 +390,9 @@ class TeachingSession:
         except NotAsBefore:
             return [Refused("redo came out otherwise")]
         self._undone.pop()
-        self._remarks.open = None  # it was said when the step was shown first
+        self._remarks.open = None  # it was made when the step was first shown
         return events
 
     def _replay(self, demonstration: Demonstration) -> ReplayedGame | None:
-        """Make the world that a demonstration led to; None if its states come out differently."""
+        """Make the world after a demonstration; return None if its states differ."""
         return replay_game(self.activity, self._make_world, demonstration)

@@ -1,6 +1,6 @@
-"""The verification of commands (III-A-1): nothing happens before "Did you say ...?" is answered.
+"""Verification of commands (III-A-1): nothing happens before "Did you say ...?" is answered.
 
-Teachers use it while they demonstrate, and when Tangy asks them in a game.
+It is used for demonstrations, and when Tangy asks a teacher during a game.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ RefusalKind: TypeAlias = Literal[
     "redo came out otherwise",
     "not possible",
 ]
-"""Why something cannot be done now; `not possible` carries the reason of an error."""
+"""Why something cannot be done now; `not possible` carries the message of an error."""
 
 
 @dataclass(frozen=True, slots=True)
 class Say:
     """A command in words.
 
-    Of spoken words `commands` says what they may mean, the likeliest first, and `sure` whether the
-    first of them is to be asked about at once; typed words are yet to be understood.
+    For spoken words, `commands` are the possible meanings, likeliest first, and `sure` is whether
+    to ask about the first one directly. Typed words are understood later (`commands` is None).
     """
 
     text: str
@@ -59,14 +59,14 @@ class Say:
 
 @dataclass(frozen=True, slots=True)
 class StopCommand:
-    """Somebody said that the robot is to stop: it does so at once, and nothing is asked."""
+    """Someone told the robot to stop: it stops at once, without a question."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """The answer to the question that is open: execute it, or not; or ask about another."""
+    """The answer to the open question: yes or no, or the number of an alternative."""
 
     yes: bool
     alternative: int | None = None
@@ -83,12 +83,12 @@ class Asked:
     alternatives: tuple[str, ...]
     target: str | None
     others: tuple[str, ...] = ()
-    """The alternatives as they are asked about."""
+    """The questions for the alternatives."""
 
 
 @dataclass(frozen=True, slots=True)
 class Offered:
-    """Candidates for unsure words: one of these, after a question, or none."""
+    """The candidate meanings of uncertain words: choose one, or none."""
 
     heard: str
     confidence: float
@@ -106,14 +106,14 @@ class NotUnderstood:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """A behaviour that cannot be carried out now, and why; `heard` goes back to the teacher.
+    """A behaviour that cannot be carried out now, and why; `heard` is shown to the teacher.
 
     Args:
-        why: what stands in its way.
+        why: the reason.
         heard: the words of the command.
-        about: a person's name, what was called a person, a phrase to say, or another reason.
-        number: of a choice or a step.
-        people: the names of all who take part.
+        about: a person's name, an unknown name, a phrase to say, or an error message.
+        number: the number of a choice or a step.
+        people: the names of all participants.
     """
 
     why: RefusalKind
@@ -125,14 +125,14 @@ class Refused:
 
 @dataclass(frozen=True, slots=True)
 class Rejected:
-    """The question was answered with no; `heard` goes back to the teacher."""
+    """The question was answered with no; `heard` is shown to the teacher."""
 
     heard: str
 
 
 @dataclass(frozen=True, slots=True)
 class Verified:
-    """The teacher said yes: this behaviour is to be executed, for this person."""
+    """The teacher confirmed this behaviour, for this person."""
 
     behaviour: Behaviour
     target: str | None
@@ -144,7 +144,7 @@ Verification: TypeAlias = Asked | Offered | NotUnderstood | Refused | Rejected |
 
 
 class Verifier:
-    """Understands commands in the present state, asks about them, and takes the answer."""
+    """Understands commands in the current state, asks about them, and takes the answer."""
 
     def __init__(
         self,
@@ -153,7 +153,7 @@ class Verifier:
         observe: Callable[[], ActivityState],
         names: Mapping[str, str],
     ) -> None:
-        """Make the door; `observe` gives the present state, `names` what people are called."""
+        """Verify commands; `observe` gives the current state, `names` maps ids to names."""
         self.question: Asked | Offered | None = None
         self._activity = activity
         self._phrasebook = phrasebook
@@ -174,7 +174,7 @@ class Verifier:
             if stranger is not None:
                 people = tuple(self._name(person) for person in self._phrasebook.people)
                 return Refused("no such person", said.text, stranger, people=people)
-            heard = said.commands is not None  # speech that asks for nothing suggests nothing
+            heard = said.commands is not None  # speech that is not understood gets no suggestions
             return NotUnderstood(
                 said.text, () if heard else self._phrasebook.suggestions(said.text)
             )
@@ -185,9 +185,9 @@ class Verifier:
     def sayable(self, usual: Sequence[str] = (), world: object = None) -> tuple[str, ...]:
         """Return a phrase for each behaviour that can be done now, best first.
 
-        First come the `usual` ones, then what the activity expects here. In a `world` with a game
-        declared by facts those follow that fit it best; in others the behaviours for a person
-        beside one, and elsewhere the behaviours for the group.
+        The `usual` behaviours come first, then the expected one. In a `world` with a game declared
+        by facts, the best-fitting behaviours follow; in other worlds, the behaviours for one person
+        if the robot is beside one, otherwise those for the group.
         """
         state, activity = self._observe(), self._activity
         expected = activity.expected.get(state.situation)
@@ -210,11 +210,11 @@ class Verifier:
         return self._activity.behaviour(behaviour).attends
 
     def stops(self, text: str) -> bool:
-        """Return whether typed text stops the robot, instead of asking for a behaviour."""
+        """Return whether typed text stops the robot, instead of naming a behaviour."""
         return stops(text, self._phrasebook.game)
 
     def reply(self, reply: Reply) -> Verification:
-        """Take the answer to the open question."""
+        """Apply the answer to the open question."""
         question, self.question = self.question, None
         if question is None:
             return Refused("no question")
@@ -238,7 +238,7 @@ class Verifier:
     def _alternatives(self, command: Command) -> tuple[Command, ...]:
         """Return the other behaviours that typed words may mean."""
         if command.confidence >= 1:
-            return ()  # a phrase typed letter by letter leaves no doubt
+            return ()  # an exact phrase is unambiguous
         return tuple(
             Command(name, {}, command.confidence, command.heard, ())
             for name in command.alternatives
@@ -273,7 +273,7 @@ class Verifier:
         return self.question
 
     def _target(self, command: Command) -> str | None:
-        """Return whom a command is about."""
+        """Return the person that a command addresses, or None."""
         behaviour = self._activity.behaviour(command.behaviour)
         if not behaviour.attends:
             return None
@@ -283,18 +283,18 @@ class Verifier:
         return named or self._usual(behaviour)
 
     def _usual(self, behaviour: Behaviour) -> str | None:
-        """Return whom a behaviour is for where nobody is named."""
+        """Return the default addressee of a behaviour."""
         state = self._observe()
         return first_addressee(behaviour, state) if behaviour.to else state.attended
 
     def _words(self, command: Command) -> str:
-        """Return how a command is asked about: the words of its behaviour, and with whom."""
+        """Return the question about a command: the words of its behaviour, and the person."""
         target = self._target(command)
         question = self._activity.behaviour(command.behaviour).question
         return question if target is None else f"{question} ({self._name(target)})"
 
     def _obstacle(self, behaviour: Behaviour, target: str | None) -> Refused | None:
-        """Return why a behaviour for one person cannot be done now, or None."""
+        """Return why a behaviour cannot be done now, or None."""
         if not behaviour.attends:
             return None
         goes = behaviour.effect == "go to user"
