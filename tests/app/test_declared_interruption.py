@@ -109,7 +109,7 @@ def test_who_has_left_is_still_away(of: str) -> None:
         return live(name) if live_world else DeclaredWorld(declared(name), PEOPLE, seed=SEED)
 
     whole = made()
-    whole.begin() if live_world else None
+    whole.begin()
     left = [GameChange(game="g", steps=n, what="left", person=who) for n, who in LEFT]
     before = play(whole, 4)
     whole.change(left[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import cast
 
 from tangy_hw.robot_client.client import RobotLink
@@ -12,11 +13,11 @@ from tangy_profiles.room import load_room
 from tangy_tui.app.game_commands import Tell
 from tangy_tui.app.robot_controls import RobotControls
 from tests.hw.links import FakeLink
-from tests.support.declared import declared
+from tests.support.changed import patient_trivia
 
 
-def test_the_robot_asks_again_and_after_the_cap_staff_are_asked() -> None:
-    link, activity = FakeLink(("user1", "user2")), declared("trivia")
+def test_the_robot_asks_again_and_after_the_cap_staff_are_asked(tmp_path: Path) -> None:
+    link, activity = FakeLink(("user1", "user2")), patient_trivia(tmp_path)
     world = DeclaredLiveWorld(
         activity,
         ("user1", "user2"),
@@ -49,8 +50,8 @@ def test_the_robot_asks_again_and_after_the_cap_staff_are_asked() -> None:
     assert world.observe().stage == "judge"
 
 
-def test_a_voice_that_is_not_sure_is_not_judged_and_one_that_is_sure_is() -> None:
-    link, activity = FakeLink(("user1", "user2")), declared("trivia")
+def test_a_voice_that_is_not_sure_is_not_judged_and_one_that_is_sure_is(tmp_path: Path) -> None:
+    link, activity = FakeLink(("user1", "user2")), patient_trivia(tmp_path)
     world = DeclaredLiveWorld(
         activity, ("user1", "user2"), cast(RobotLink, link), load_robot(), load_room(), seed=1
     )

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
-from tangy_profiles.declared.activity import read_declared
+from tangy_profiles.declared.activity import DeclaredActivity, read_declared
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.model import PAUSE_SECONDS
@@ -23,7 +23,7 @@ from tangy_profiles.room import load_room
 from tangy_profiles.state import Outcome
 from tangy_sim.worlds.declared_world import DeclaredWorld
 from tests.hw.links import SECONDS, FakeLink
-from tests.support.changed import changed_trivia
+from tests.support.changed import changed_trivia, patient_trivia
 from tests.support.declared import DECLARED, declared
 from tests.support.media import guess_the_sound
 
@@ -31,18 +31,17 @@ PEOPLE = ("user1", "user2", "user3")
 NAMES = {"user1": "Ann", "user2": "Ben", "user3": "Cleo"}
 
 
-def world_of(link: FakeLink, name: str = "trivia") -> DeclaredLiveWorld:
+def world_with(activity: DeclaredActivity, link: FakeLink) -> DeclaredLiveWorld:
+    robot = cast(RobotLink, link)
     world = DeclaredLiveWorld(
-        declared(name),
-        PEOPLE,
-        cast(RobotLink, link),
-        load_robot(),
-        load_room(),
-        seed=1,
-        names=NAMES,
+        activity, PEOPLE, robot, load_robot(), load_room(), seed=1, names=NAMES
     )
     world.begin()
     return world
+
+
+def world_of(link: FakeLink, name: str = "trivia") -> DeclaredLiveWorld:
+    return world_with(declared(name), link)
 
 
 @pytest.fixture
@@ -73,8 +72,12 @@ def right(world: DeclaredLiveWorld) -> str:
 
 def test_people_are_spoken_to_by_their_names(world: DeclaredLiveWorld, link: FakeLink) -> None:
     asked(world)
-    assert link.said[-1].startswith("Ann, question 1: ")
-    (picture,) = [w["picture"] for d, w in link.done if d == "perform" and "Ann" in w["text"]]
+    assert [text[: text.index(":")] for text in link.said[1:]] == [
+        "Ann, question 1",
+        "What do you think, Ann",
+    ]
+    picture, again = [w["picture"] for d, w in link.done if d == "perform" and "Ann" in w["text"]]
+    assert again["asks"] == "Seat 1" and "Seat 1" in again["text"]
     assert right(world) in picture["text"] and picture["asks"] == "Seat 1"
     assert "Ann" not in picture["text"]
 
@@ -83,10 +86,7 @@ def test_the_robot_gets_the_picture_and_the_sound_of_an_item(
     link: FakeLink, tmp_path: Path
 ) -> None:
     activity = read_declared(guess_the_sound(tmp_path))
-    world = DeclaredLiveWorld(
-        activity, PEOPLE, cast(RobotLink, link), load_robot(), load_room(), seed=1, names=NAMES
-    )
-    world.begin()
+    world = world_with(activity, link)
     do(world, "play a sound", "user1")
     items, row = activity.declaration.items, world.game.row
     performed = [what for done, what in link.done if done == "perform"]
@@ -122,6 +122,7 @@ def test_whoever_answers_unclearly_is_asked_again_as_often_as_the_caps_allow(
     world: DeclaredLiveWorld, link: FakeLink
 ) -> None:
     asked(world)
+    left = world.activity.asking.visit - 1  # she said nothing to the question itself
 
     def meanwhile(what: str, time: float) -> None:
         if what == "wait" and not world.unsure:
@@ -129,13 +130,13 @@ def test_whoever_answers_unclearly_is_asked_again_as_often_as_the_caps_allow(
 
     link.meanwhile = meanwhile
     unclear = [one for _ in range(4) for one in do(world, "allow time").unclear]
-    assert [one.asked_again for one in unclear].count(True) == world.activity.asking.visit
+    assert [one.asked_again for one in unclear].count(True) == left
     assert not unclear[-1].asked_again
     assert {(one.person, one.certainty, one.source) for one in unclear} == {
         ("user1", 0.5, "speech")
     }
     again = [text for text in link.said if text in {one.format(name="Ann") for one in ASK_AGAIN}]
-    assert len(again) == world.activity.asking.visit
+    assert len(again) == left
     assert not world.may_ask_again("user1") and world.observe().stage == "listen"
     link.meanwhile = lambda what, time: None
     world.tell("user1", right(world))
@@ -143,7 +144,8 @@ def test_whoever_answers_unclearly_is_asked_again_as_often_as_the_caps_allow(
     assert world.may_ask_again("user1")
 
 
-def test_the_pause_ends_when_somebody_answers(world: DeclaredLiveWorld, link: FakeLink) -> None:
+def test_the_pause_ends_when_somebody_answers(link: FakeLink, tmp_path: Path) -> None:
+    world = world_with(patient_trivia(tmp_path), link)
     asked(world)
     began = link.time
     do(world, "allow time")
@@ -161,10 +163,7 @@ def test_the_pause_ends_when_somebody_answers(world: DeclaredLiveWorld, link: Fa
 def test_the_pause_is_as_long_as_the_file_says(link: FakeLink, tmp_path: Path) -> None:
     longer = ('[behaviours."allow time"]\n', '[behaviours."allow time"]\npause = 45\n')
     activity = changed_trivia(tmp_path, longer)
-    world = DeclaredLiveWorld(
-        activity, PEOPLE, cast(RobotLink, link), load_robot(), load_room(), seed=1, names=NAMES
-    )
-    world.begin()
+    world = world_with(activity, link)
     simulated = DeclaredWorld(activity, PEOPLE, seed=1)
     for name, pause in (("welcome everyone", PAUSE_SECONDS), ("allow time", 45.0)):
         action = activity.action(activity.behaviour(name), None, None)

@@ -19,19 +19,18 @@ from tangy_profiles.state import Outcome
 from tangy_sim.device_simulator.declared_reception import DeclaredReception
 from tangy_sim.worlds.declared_world import DeclaredWorld
 from tests.hw.links import FakeLink
-from tests.support.changed import changed_trivia
+from tests.support.changed import AGAIN, changed_trivia
 
 PEOPLE = ("user1", "user2")
 NAMES = {"user1": "Ann", "user2": "Ben"}
-SAYS = 'phrases = ["ask the question", "next question"]\n'
-AGAIN = SAYS + 'again = ["{name}, do you know it?", "A small hint, {name}: {hint}"]\n'
+OWN = 'again = ["{name}, do you know it?", "A small hint, {name}: {hint}"]\n'
 NEVER = ('turn is yes"], chance = 0.4', 'turn is yes"], chance = 0.0')
 ALWAYS = ('turn is yes"], chance = 0.4', 'turn is yes"], chance = 1.0')
 
 
 @pytest.fixture
 def activity(tmp_path: Path) -> DeclaredActivity:
-    return changed_trivia(tmp_path, (SAYS, AGAIN), NEVER)
+    return changed_trivia(tmp_path, (AGAIN, OWN), NEVER)
 
 
 def live(activity: DeclaredActivity, link: FakeLink) -> DeclaredLiveWorld:
@@ -82,7 +81,7 @@ def test_simulated_people_who_say_nothing_are_asked_again(
     silent = DeclaredWorld(activity, PEOPLE, seed=1)
     found = [one.asked_again for _ in range(4) for one in ask(silent).unclear]
     assert found == [True] * activity.asking.visit + [False] * 3
-    talks = DeclaredWorld(changed_trivia(tmp_path, (SAYS, AGAIN), ALWAYS), PEOPLE, seed=1)
+    talks = DeclaredWorld(changed_trivia(tmp_path, (AGAIN, OWN), ALWAYS), PEOPLE, seed=1)
     assert ask(talks).unclear == () and talks.game.value("answer", "user1") != "none"
 
 
@@ -105,7 +104,7 @@ def test_people_on_the_bench_understand_that_they_are_asked_again(
 )
 def test_what_cannot_be_said_again_is_a_mistake(tmp_path: Path, again: str, problem: str) -> None:
     with pytest.raises(ProfileError, match=problem):
-        changed_trivia(tmp_path, (SAYS, f"{SAYS}{again}\n"))
+        changed_trivia(tmp_path, (AGAIN, f"{again}\n"))
 
 
 def test_a_group_cannot_be_asked_again(tmp_path: Path) -> None:

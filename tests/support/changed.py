@@ -20,3 +20,12 @@ def changed_trivia(folder: Path, *changes: tuple[str, str]) -> DeclaredActivity:
     path = folder / "mine.toml"
     path.write_text(text, encoding="utf-8")
     return read_declared(path)
+
+
+AGAIN = 'again = ["What do you think, {name}: {a}, {b} or {c}?"]\n'
+"""What the shipped quiz asks again who says nothing to a question."""
+
+
+def patient_trivia(folder: Path) -> DeclaredActivity:
+    """Return the shipped quiz without asking again."""
+    return changed_trivia(folder, (AGAIN, ""))

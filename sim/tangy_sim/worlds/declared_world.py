@@ -97,7 +97,7 @@ class DeclaredWorld:
         self.happened: dict[str, list[str]] = {}
         """What people did after the last behaviour, in order; "" is the whole group."""
         self._not_clear: list[UnclearAnswer] = []
-        self._silent: dict[str, int] = {}
+        self._asked_again: dict[str, int] = {}
         return self.observe()
 
     def resume(self, past: PastGame) -> ActivityState:
@@ -198,17 +198,15 @@ class DeclaredWorld:
 
     def _ask_silent(self, behaviour: str, who: str) -> None:
         """Ask a person again who says nothing, in the file's words, as often as the caps allow."""
-        game, most, seen = self.game, self.activity.asking.visit, self.game.seen()
+        game, seen = self.game, self.game.seen()
         for _ in again(game, behaviour, who):
             answers = any(one.person == who and one.said for one in self._not_clear)
             if answers or who in self.happened or game.seen() != seen:
                 return
-            times = self._silent.get(who, 0)
-            self._not_clear.append(silence(game, who, asked_again=times < most))
-            if times >= most:
+            asks = self._may_ask_again(who)
+            self._not_clear.append(silence(game, who, asked_again=asks))
+            if not asks:
                 return
-            self._silent[who] = times + 1
-            game.now += ASKING_AGAIN
             for act in acts(game, drawn=self._people_draw):
                 if act.who == who and self._understood(act):
                     self._take_in(act)
@@ -218,23 +216,32 @@ class DeclaredWorld:
 
         An answer that is not clear is observed as what it is: nothing that can be judged.
         """
-        fact, most = self._declaration.facts[act.fact], self.activity.asking.visit
+        fact = self._declaration.facts[act.fact]
         if not fact.checks or act.who is None:
             return True
-        for asked in range(most + 1):
+        asks = True
+        while asks:
             certainty = self._clarity.certainty()
             if certainty >= CERTAIN:
                 return True
             take_in(self.game, act, certainty)
-            said = raw(self.game, fact, act.value)
+            said, asks = raw(self.game, fact, act.value), self._may_ask_again(act.who)
             self._not_clear.append(
-                UnclearAnswer(act.who, act.fact, said, certainty, "simulated", asked < most)
+                UnclearAnswer(act.who, act.fact, said, certainty, "simulated", asks)
             )
-            self.game.now += ASKING_AGAIN if asked < most else 0.0
         return False
+
+    def _may_ask_again(self, who: str) -> bool:
+        """Ask a person again, which takes a while; False if that was done too often in a row."""
+        times = self._asked_again.get(who, 0)
+        if times >= self.activity.asking.visit:
+            return False
+        self._asked_again[who] = times + 1
+        self.game.now += ASKING_AGAIN
+        return True
 
     def _take_in(self, act: Act) -> None:
         if take_in(self.game, act):
             did = "asks for help" if act.fact == ASKING else f"{act.fact}: {act.value}"
             self.happened.setdefault(act.who or "", []).append(did)
-            self._silent.pop(act.who or "", None)
+            self._asked_again.pop(act.who or "", None)
