@@ -26,9 +26,12 @@ async def first_start(
     Otherwise home stays: staff may have come to run a game.
     """
     if asks and not read_profile(program.workspace.store.folder).name:
-        program.new_teacher = await ask_name(program) is not None
+        program.new_teacher = await ask_name(program, unasked=True) is not None
     if start is not None:
-        await start(program)
+        try:
+            await start(program)
+        finally:
+            program.show_home()
         return
     if asks:
         await ask_about_old_games(program)
@@ -44,13 +47,16 @@ def _is_taught(program: Program) -> bool:
     return bool(read_library(workspace.store, workspace.activity.name).finished)
 
 
-async def ask_name(program: Program) -> str | None:
-    """Ask who teaches, and keep the answer; None: it is left as it is."""
+async def ask_name(program: Program, *, unasked: bool = False) -> str | None:
+    """Ask who teaches, and keep the answer; None: it is left as it is.
+
+    Keys that were typed before an `unasked` question was seen are no answer.
+    """
     from tangy_tui.ui.dialogs.name import NameDialog
 
     usual = program.workspace.teacher
     suggested = "" if usual == NOBODY else usual  # a name that nobody has tells nobody apart
-    name = await program.push_screen_wait(NameDialog(suggested))
+    name = await program.push_screen_wait(NameDialog(suggested, unasked=unasked))
     return name if name is not None and _keep(program, name) else None
 
 

@@ -83,7 +83,14 @@ class Program(SoundingApp):
             self.call_later(self._tell_of_log)
             return found
 
-        return HomeScreen(far, note=self.workspace.activity.title)
+        home = HomeScreen(far, note=self.workspace.activity.title)
+        home.set_class(self._start is not None, "-behind")
+        return home
+
+    def show_home(self) -> None:
+        """Show the first screen, which nobody saw behind the questions before another one."""
+        for screen in self.screen_stack:
+            screen.remove_class("-behind")
 
     def _tell_of_log(self) -> None:
         """Report once the problems of the log, and the events left out."""
@@ -101,6 +108,8 @@ class Program(SoundingApp):
     def on_home_screen_chosen(self, event: HomeScreen.Chosen) -> None:
         """Open the choice, unless something is opening: a key may come twice."""
         if self._busy or self._opening or not isinstance(self.screen, HomeScreen):
+            return
+        if self.screen.has_class("-behind"):  # the key was typed before anything was seen
             return
         match event.id:
             case "teach":

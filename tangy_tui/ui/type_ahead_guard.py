@@ -99,6 +99,10 @@ class FreshKeys:
         """Keep a key from going further, unless it asks for help; say whether it may answer."""
         if event.key != "question_mark":
             event.stop()
+        return self.counts(event)
+
+    def counts(self, event: events.Key | events.Paste) -> bool:
+        """Say whether a key or a paste came after the dialog was seen."""
         if self._from is not None:
             return event.time >= self._from
         if self._trip is not None:

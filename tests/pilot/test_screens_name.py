@@ -14,6 +14,7 @@ from tangy_tui.ui.dialogs.name import NameDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
 from tests.pilot.conftest import Run, StillClock
 from tests.shown import log_demonstration
 from tests.support.waiting import until_shown
@@ -76,3 +77,33 @@ async def test_a_name_that_cannot_be_kept_is_told(run: Run, workspace: Workspace
         await pilot.pause()
         assert isinstance(pilot.app.screen, NameDialog)
         assert pilot.app.screen.query_one(".wrong").has_class("-shown")
+
+
+async def test_keys_that_were_typed_ahead_are_no_name(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NameDialog))
+        line = pilot.app.screen.query_one(Input)
+        before = line.value
+        pilot.type(*"greet", "enter", at=SETTLE_SECONDS / 2)
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, NameDialog)
+        assert line.value == before
+        await pilot.press(*"Ada", "enter")
+        await until_shown(pilot, lambda: read_profile(workspace.store.folder).name == "Ada")
+
+
+async def test_nothing_is_seen_or_chosen_behind_the_question_before_a_verb(
+    run: Run, workspace: Workspace
+) -> None:
+    began: list[str] = []
+
+    async def start(program: Program) -> None:
+        began.append(program.workspace.teacher)
+
+    asking = Program(workspace, start, asks_name=True, clock=StillClock())
+    async with run(app=asking) as pilot:
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NameDialog))
+        assert "Rehearse" not in pilot.text()
+        await pilot.press(*"Ada", "enter")
+        await until_shown(pilot, lambda: began == ["Ada"])
+        await until_shown(pilot, lambda: "Rehearse" in pilot.text())

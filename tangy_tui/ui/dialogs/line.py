@@ -14,10 +14,30 @@ from textual.widgets import Input, Static
 from tangy_profiles.errors import TangyError
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 LONGEST = 200  # characters of a line
 
 ValueT = TypeVar("ValueT")
+
+
+class FreshInput(Input):
+    """A line that drops what was typed before its dialog was seen, if it has fresh keys."""
+
+    fresh_keys: FreshKeys | None = None
+
+    def on_key(self, event: events.Key) -> None:
+        """Drop a key that was typed ahead."""
+        self._drop_old(event)
+
+    def on_paste(self, event: events.Paste) -> None:
+        """Drop a paste that came ahead."""
+        self._drop_old(event)
+
+    def _drop_old(self, event: events.Key | events.Paste) -> None:
+        if self.fresh_keys is not None and not self.fresh_keys.counts(event):
+            event.stop()
+            event.prevent_default()
 
 
 class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
@@ -42,6 +62,8 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
         begun: str = "",
         selected: bool = False,
         longest: int = LONGEST,
+        unasked: bool = False,
+        clock: Clock | None = None,
     ) -> None:
         """Make the dialog.
 
@@ -52,10 +74,13 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
             begun: stands in the line already.
             selected: the next letter takes the place of what stands there.
             longest: how many characters a line may have.
+            unasked: it comes by itself, so that keys may be on their way that are not meant for it.
+            clock: s, on the scale of `time.monotonic` (default: the app's).
         """
         super().__init__(None)
         self._title, self._words, self._keys = title, words, keys
         self._begun, self._selected, self._longest = begun, selected, longest
+        self._fresh_keys, self._clock = FreshKeys() if unasked else None, clock
 
     def taken(self, line: str) -> ValueT | None:
         """Return what a line means; None leaves.
@@ -67,8 +92,9 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
 
     def compose(self) -> ComposeResult:
         """Lay out the words and the line."""
-        line = Input(self._begun, max_length=self._longest, select_on_focus=self._selected)
+        line = FreshInput(self._begun, max_length=self._longest, select_on_focus=self._selected)
         line.cursor_blink = False
+        line.fresh_keys = self._fresh_keys
         wrong = Static("", classes="wrong", markup=False)
         box = Vertical(Static(clean(self._words), markup=False), line, wrong, classes="box")
         box.border_title = Content(self._title)
@@ -79,6 +105,8 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
         """Let the line be typed."""
         line = self.query_one(Input)
         line.focus()
+        if self._fresh_keys is not None:
+            self._fresh_keys.watch(self, self._clock)
         if not self._selected:
             line.cursor_position = len(self._begun)
 

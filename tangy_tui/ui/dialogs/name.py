@@ -11,6 +11,7 @@ from tangy_tui.app.teacher_profile import checked
 from tangy_tui.text.who import NAME_KEYS, WHO, WHO_DETAIL
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.line import LineDialog
+from tangy_tui.ui.type_ahead_guard import Clock
 
 
 class NameDialog(LineDialog[str]):
@@ -19,11 +20,25 @@ class NameDialog(LineDialog[str]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Not now", priority=True)]
     HELP = "Type the name under which Tangy keeps what you show, and press Enter. Esc: not now."
 
-    def __init__(self, suggested: str, title: str = WHO, detail: str = WHO_DETAIL) -> None:
-        """Make the dialog; `suggested` stands in the line, selected."""
-        begun = clean(suggested)
+    def __init__(
+        self,
+        suggested: str,
+        title: str = WHO,
+        detail: str = WHO_DETAIL,
+        *,
+        unasked: bool = False,
+        clock: Clock | None = None,
+    ) -> None:
+        """Make the dialog; `suggested` stands in the line, selected; others as in `LineDialog`."""
         super().__init__(
-            clean(title), detail, NAME_KEYS, begun=begun, selected=True, longest=LONGEST_NAME
+            clean(title),
+            detail,
+            NAME_KEYS,
+            begun=clean(suggested),
+            selected=True,
+            longest=LONGEST_NAME,
+            unasked=unasked,
+            clock=clock,
         )
 
     def taken(self, line: str) -> str:

@@ -173,6 +173,9 @@ class Menu(Inked, can_focus=True):
 class HomeScreen(TangyScreen[None]):
     """The first screen. Posts `HomeScreen.Chosen` to itself and the app, which opens the rest."""
 
+    DEFAULT_CSS = """
+    HomeScreen.-behind > * { visibility: hidden; }
+    """
     TITLE = "Home"
     HELP = (
         "Begin with Teach: show Tangy a game by typing or saying what it should do. Then Learn, "
