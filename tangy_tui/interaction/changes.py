@@ -1,4 +1,4 @@
-"""What changes in a game beside its behaviours: logged, carried out in the world, and told."""
+"""Changes of a game besides its behaviours: logged, applied to the world, and announced."""
 
 from __future__ import annotations
 
@@ -21,44 +21,44 @@ class GameChanges:
     """The changes of one world's games; without cards, people can only leave and come."""
 
     def __init__(self, world: World, store: Store) -> None:
-        """Take the world and the log."""
+        """Change the games of a world, and log the changes."""
         self.world = as_planned(world)
-        """The world, where staff can plan more than who is here."""
+        """The world, if staff can plan more in it than who is present; else None."""
         self.gathering = as_gathering(world)
         self.on_change: Callable[[ActivityState], object] = lambda now: None
-        """Is told the state after each change: who asks no more by it is nobody's fault."""
+        """Called with the state after each change, so that a request it ended is no fault."""
         self._store = store
 
     @property
     def plan(self) -> GamePlan:
-        """What staff chose for the game."""
+        """The plan that staff chose for the game."""
         return GamePlan() if self.gathering is None else self.gathering.game_plan
 
     @property
     def logged(self) -> dict[str, Any]:
-        """What the log has of the plan when a game begins."""
+        """The plan, as logged at the beginning of a game."""
         return asdict(self.plan)
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """The strategies that staff want nobody to be spoken to by."""
+        """The strategies that staff excluded for everybody."""
         if self.world is None or not self.plan.strength:
             return ()
         return self.world.activity.rules.left_out(self.plan.strength)
 
     def resume(self, past: PastGame) -> None:
-        """Play on by the plan of a game that was interrupted."""
+        """Restore the plan of an interrupted game."""
         if self.gathering is not None:
             self.gathering.choose(past.beginning.plan)
 
     def due(self, game: str, steps: int) -> list[GameChanged]:
-        """Make the change that is due before the next behaviour, if one is."""
+        """Make the change that is due before the next behaviour, if any."""
         if self.world is None or (due := self.world.due) is None:
             return []
         return [self.make(game, steps, due.what, person=due.person, number=due.number)]
 
     def make(self, game: str, steps: int, what: ChangeKind, **about: Any) -> GameChanged:
-        """Log a change after so many steps, carry it out, and say it to the group."""
+        """Log a change, apply it to the world, and announce it to the group."""
         change = GameChange(game=game, steps=steps, what=what, **about)
         self._store.append(change)
         said = ""
@@ -73,7 +73,7 @@ class GameChanges:
         return GameChanged(what, change.person, change.number, change.patterns, said)
 
     def _said(self, change: GameChange) -> str:
-        """Return what the group is told of a change, "" where nothing is said."""
+        """Return the announcement of a change; "" if there is none."""
         if (world := self.world) is None:
             return ""
         rules, deck = world.activity.rules, world.activity.deck

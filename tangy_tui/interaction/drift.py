@@ -1,8 +1,8 @@
-"""Whether what works with a person has changed: a change-point in the responses to a strategy.
+"""Drift: change-point detection in a person's responses to a strategy.
 
-The test is that of the generalised likelihood ratio for yes and no (Besson, Kaufmann, Maillard and
-Seznec 2022): at each response the responses so far are split where they differ most, and that is a
-change if it is too unlikely under one rate, however often one looks.
+The test is the generalised likelihood ratio test for Bernoulli samples (Besson, Kaufmann, Maillard
+and Seznec 2022). After each response the responses so far are split where the two parts differ
+most. The split is a change if its ratio exceeds a threshold that holds at all times.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from math import log
 from tangy_profiles.beliefs import Beliefs, Beta
 
 ALARM = 0.05
-"""The probability, at most, that a change is ever seen in responses in which there is none."""
+"""The highest probability of ever detecting a change when there is none."""
 
 FEWEST = 8
-"""Responses to a strategy below which no split is significant."""
+"""With fewer responses to a strategy no split is significant."""
 
 Counts = tuple[int, int]
 """How often a person complied, and did not."""
@@ -25,7 +25,7 @@ Counts = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """A change in how a person responds to a strategy: counts before it, and from it on."""
+    """A change in a person's responses to a strategy: the counts before and after it."""
 
     strategy: str
     before: Counts
@@ -39,18 +39,18 @@ class Drift:
 
 
 class DriftWatch:
-    """The responses of one person, strategy by strategy, since the last change of each."""
+    """One person's responses to each strategy since its last change."""
 
     def __init__(self, responses: Iterable[tuple[str, bool]] = ()) -> None:
-        """Begin with the responses of the log, oldest first."""
+        """Start with the responses of the log, oldest first."""
         self.changes: dict[str, Drift] = {}
-        """The last change of each strategy that has had one; its later counts grow."""
+        """The last change of each strategy that has changed."""
         self._since: dict[str, list[bool]] = {}
         for strategy, complied in responses:
             self.add(strategy, complied)
 
     def add(self, strategy: str, complied: bool) -> Drift | None:
-        """Take in a response; return the change that is known by it, None if there is none."""
+        """Add a response; return a change that it makes significant, or None."""
         since = self._since.setdefault(strategy, [])
         since.append(complied)
         at = change_point(since)
@@ -64,14 +64,14 @@ class DriftWatch:
 
     @property
     def drifts(self) -> tuple[Drift, ...]:
-        """The last change of each strategy, with the responses until now."""
+        """The last change of each strategy, with its counts until now."""
         return tuple(
             Drift(name, change.before, _counts(self._since[name]))
             for name, change in self.changes.items()
         )
 
     def forgotten(self, beliefs: Beliefs, prior: Beliefs) -> Beliefs:
-        """Return beliefs in which what came before the change of a strategy is forgotten."""
+        """Return beliefs without the responses before the last change of each strategy."""
         found = dict(beliefs)
         for name in self.changes:
             if name in prior:
@@ -83,7 +83,7 @@ class DriftWatch:
 
 
 def change_point(responses: list[bool]) -> int | None:
-    """Return the place of the first response after a change, None where none is significant."""
+    """Return the index of the first response after a change; None if none is significant."""
     n = len(responses)
     if n < FEWEST:
         return None
@@ -101,7 +101,7 @@ def change_point(responses: list[bool]) -> int | None:
 
 
 def _divergence(p: float, q: float) -> float:
-    """Return the Kullback-Leibler divergence of two rates, a number from 0 on."""
+    """Return the Kullback-Leibler divergence of two Bernoulli rates, a number >= 0."""
     found = 0.0
     if p > 0:
         found += p * log(p / q)
@@ -116,5 +116,5 @@ def _counts(responses: Iterable[bool]) -> Counts:
 
 
 def most_seen(counts: Mapping[tuple[str, str], Counts], person: str) -> int:
-    """Return how many responses a person has given to the strategy that was used most."""
+    """Return the number of a person's responses to their most frequent strategy."""
     return max((yes + no for (who, _), (yes, no) in counts.items() if who == person), default=0)

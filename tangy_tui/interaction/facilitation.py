@@ -1,6 +1,6 @@
-"""Facilitation (III-B): observe, let the policy choose, persuade, act, and learn from the response.
+"""Facilitation (III-B): observe, decide by the policy, persuade, act, and learn from the response.
 
-`Facilitation` runs game after game in any world, step by step, and reports each event once logged.
+`Facilitation` runs games in any world, step by step, and logs each event before reporting it.
 """
 
 from __future__ import annotations
@@ -47,18 +47,18 @@ _LOG = logging.getLogger(__name__)
 
 NOT_DONE = "(it could not be carried out)"
 MOST_STEPS = 1_000
-"""A game longer than this goes round in circles: all 75 numbers need about 120 steps."""
+"""Steps after which a game is considered endless: calling all 75 numbers takes about 120."""
 
 
 Permits: TypeAlias = Callable[[Decision, str | None], bool]
-"""Says whether what was decided, for whom, may be done."""
+"""Returns whether a decision may be carried out, for this target."""
 
 Contradicts: TypeAlias = Callable[[Action, ActivityState, Outcome, ActivityState], bool]
-"""Says whether what is seen after an action, done in a state, is not what was to be expected."""
+"""Returns whether the state after an action differs from the expected one."""
 
 
 class Facilitation:
-    """The running of games by a learnt policy. `begin` a game, then `step` until it is `over`."""
+    """Runs games by a learnt policy: `begin` a game, then `step` until it is `over`."""
 
     def __init__(
         self,
@@ -77,16 +77,16 @@ class Facilitation:
         """Prepare to run games.
 
         Args:
-            world: where is played.
-            policy: by which is played.
-            persuasion: chooses strategies, and what is believed of people.
+            world: the world in which the games are played.
+            policy: the policy that decides.
+            persuasion: the beliefs about people, and the choice of strategies.
             store: the log.
-            names: what people are called, by id.
-            people: what else is known of those who have the names: how they and seats are called.
-            seed: of the random generators.
-            room: what loads the room, "" where the number of people decides which it is.
-            answers: where a teacher is present, what learns from the answers; without it, a
-                situation that Tangy is not sure about ends the game.
+            names: people's names, by id.
+            people: details of these people: how their names are pronounced, and their seats.
+            seed: seed of the random generators.
+            room: the name of the room; "" chooses it by the number of people.
+            answers: learns from the answers of a teacher who is present; without it, a situation in
+                which Tangy is not sure ends the game.
             learnt: see `Phrasebook`.
         """
         self.world = world
@@ -97,19 +97,19 @@ class Facilitation:
         self.steps = 0
         self.over = True
         self.question: Unsure | None = None
-        """What Tangy asks; nothing happens before it is answered, or the game given up."""
+        """The open question; nothing happens before it is answered or the game is given up."""
         self.looked_over = False
-        """Whether somebody looks the last behaviour over before the game is ended (`finish`)."""
+        """Whether a supervisor checks the last behaviour and then ends the game (`finish`)."""
         self.permits: Permits = lambda decision, target: True
-        """Is asked at each step about the very thing that would be done; on a no nothing is."""
+        """Called at each step before acting; if it returns False, nothing is done."""
         self.contradicts: Contradicts = lambda action, state, outcome, after: False
-        """Is asked what to look at again; whoever looks behaviours over knows."""
+        """Called after an action to decide whether to look again; set by a supervisor."""
         error = learnt_error(store, world.activity.name, world.played_in)
         self.observation = Observation(world, error)
-        """Observes the state, and looks again where one look is not to be believed."""
+        """Observes the state, with second looks."""
         self.changes = GameChanges(world, store)
         self.log = GameLog(world, store)
-        """Has the steps, and the time that was played."""
+        """Logs the steps, and measures the time played."""
         self._answers = answers
         self._learnt = learnt
         self._activity = world.activity
@@ -119,9 +119,9 @@ class Facilitation:
         self._seed = seed
         self._game = ""
         self._refused: str | None = None
-        """Who has refused a request in the present visit."""
+        """The person who refused a request during the current visit."""
         self._said: tuple[str, str, str] | None = None
-        """To whom what was said last in this visit, and by which strategy."""
+        """The last person, behaviour and strategy of this visit."""
 
     def begin(self) -> list[GameEvent]:
         """Begin the next game."""
@@ -147,10 +147,10 @@ class Facilitation:
         return [GameBegun(self._game, self.games, state)]
 
     def resume(self, past: PastGame, by: str) -> list[GameEvent]:
-        """Go on with a game that was interrupted.
+        """Continue an interrupted game.
 
         Raises:
-            NotResumable: the world cannot come to where it was.
+            NotResumable: the world cannot restore the state of the game.
         """
         self.changes.resume(past)
         state, game = self.world.resume(past), past.beginning
@@ -160,18 +160,17 @@ class Facilitation:
         return [ResumedGame(self._game, self.games, self.steps, state)]
 
     def _enter(self, game: str, number: int, steps: int, state: ActivityState) -> None:
-        """Be in a game, at a step of it."""
+        """Set the current game and step."""
         self.observation.begin(state)
         self._game, self.games, self.steps = game, number, steps
         self.over = False
         self.question = self._refused = self._said = None
 
     def step(self) -> list[GameEvent]:
-        """Do the next behaviour and return what happened.
+        """Carry out the next behaviour and return the events.
 
-        In a situation that nobody demonstrated, or about which demonstrations disagree, Tangy
-        does not guess among people: it asks (see `answer`), or ends the game where nobody can be
-        asked.
+        In a situation that was not demonstrated, or about which demonstrations disagree, Tangy does
+        not guess. It asks a teacher (see `answer`), or ends the game if nobody can be asked.
         """
         if self.over or self.question is not None:
             return []
@@ -203,7 +202,7 @@ class Facilitation:
         return self._told(acted, ended)
 
     def _ask_whom(self, state: ActivityState, decision: Decision, found: Addressee) -> GameEvent:
-        """Ask whom a behaviour is for; where nobody can be asked, end the game."""
+        """Ask whom a behaviour is for; end the game if nobody can be asked."""
         reason = which_of(decision.behaviour, found.others, self._names)
         if self._answers is None:
             return self._end(reason)
@@ -211,7 +210,7 @@ class Facilitation:
         return self.question
 
     def change(self, what: ChangeKind, **about: Any) -> GameEvent:
-        """Let something change in the game beside its behaviours, and tell it."""
+        """Make a change in the game besides its behaviours."""
         return self.changes.make(self._game, self.steps, what, **about)
 
     def look(self) -> ActivityState:
@@ -220,16 +219,16 @@ class Facilitation:
 
     @property
     def asks(self) -> bool:
-        """Whether there is a teacher who can be asked."""
+        """Whether there is a teacher to ask."""
         return self._answers is not None
 
     @property
     def game(self) -> str:
-        """The id of the present game, or of the last one."""
+        """The id of the current game, or of the last one."""
         return self._game
 
     def ask(self, reason: str, remedy: str, fault: str) -> list[GameEvent]:
-        """Ask a teacher about a fault, although the policy may be sure of what to do."""
+        """Ask a teacher about a fault, even if the policy is sure."""
         if self.over or self.question is not None or self._answers is None:
             return []
         state = self.world.observe()
@@ -238,39 +237,39 @@ class Facilitation:
         return [self.question]
 
     def refused(self, person: str | None) -> None:
-        """Note that a person refused a request outside the behaviours."""
+        """Record that a person refused a request outside the behaviours."""
         self._refused = person
 
     def withdraw(self) -> None:
-        """Ask no more: it has turned out that there is nothing to answer."""
+        """Withdraw the question, because nothing is left to answer."""
         self.question = None
 
     def finish(self) -> list[GameEvent]:
-        """End a game that was played to its end, after its last behaviour was looked over."""
+        """End a game that is over in the world, after its last behaviour was checked."""
         return [self._end(None)] if self.world.over and not self.over else []
 
     def stop(self, reason: str) -> list[GameEvent]:
-        """End a game that cannot go on, for a reason that a person can read."""
+        """End a game that cannot go on; `reason` is for people."""
         if self.over:
             return []
         self.question = None
         return [self._end(reason)]
 
     def verifier(self) -> Verifier:
-        """Make the door through which a teacher answers: every command is verified first."""
+        """Make the verifier of a teacher's answers."""
         named = {id: Person(id, self._names.get(id, id)) for id in self.world.people} | self._people
         people = [named[id] for id in self.world.people]
         phrasebook = Phrasebook(self._activity, people, self._learnt)
         return Verifier(self._activity, phrasebook, self.world.observe, self._names)
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[GameEvent]:
-        """Do what a teacher answered, learn from it, and go on by the new policy.
+        """Carry out a teacher's answer, learn from it, and continue with the new policy.
 
-        What a teacher says about a fault, where Tangy is sure of something else when nothing is
-        wrong, is done this once and not learnt.
+        An answer about a fault is carried out once and not learnt, if the policy is sure of another
+        behaviour in that situation.
 
-        An answer that cannot be kept is an exception: nothing of it stays in the log, policy and
-        beliefs are as before, and the next `step` looks anew where the game is.
+        If logging fails, the exception leaves log, policy and beliefs unchanged, and the next
+        `step` observes the game again.
         """
         if self.question is None or self._answers is None:
             return []
@@ -286,7 +285,7 @@ class Facilitation:
         with self._store.transaction():
             ended = self._log(acted, teacher)
             response = acted.outcome.response
-            # What follows where a person did not do it is no effect to be expected from now on.
+            # The effect of a behaviour that the person did not follow is not to be expected.
             did = acted.outcome.completed and (response is None or response.followed)
             shown = Step(behaviour.name, target, state, acted.after, completed=did)
             lesson = self._answers.learn(
@@ -297,7 +296,7 @@ class Facilitation:
         return [first, Taught(teacher, lesson), *rest]
 
     def give_up(self) -> list[GameEvent]:
-        """End a game in which Tangy asks and nobody answers."""
+        """End a game because nobody answers its question."""
         if self.question is None:
             return []
         question, self.question = self.question, None
@@ -308,7 +307,7 @@ class Facilitation:
         return self.stop("It was left before its end.")
 
     def _told(self, acted: Acted, ended: GameEnded | None) -> list[GameEvent]:
-        """Return the events of a step; update the posteriors now that the response is logged."""
+        """Return the events of a logged step, and update the posteriors by its response."""
         events: list[GameEvent] = [acted]
         response = acted.outcome.response
         if response is not None:
@@ -324,7 +323,7 @@ class Facilitation:
         behaviour: Behaviour,
         target: str | None,
     ) -> Acted:
-        """Do it, which takes its time in a real world: nothing of the log is held meanwhile."""
+        """Carry out a behaviour; no lock on the log is held, as it takes time in a real world."""
         activity = self._activity
         choice = None
         if behaviour.persuades and target is not None:
@@ -365,7 +364,7 @@ class Facilitation:
         )
 
     def _log(self, acted: Acted, teacher: str) -> GameEnded | None:
-        """Log a step and how a person responded; return how the game ended, if it has."""
+        """Log a step and the response; return the end of the game, if it is over."""
         self.log.step(self._game, acted, teacher)
         return self._end(None) if self.world.over and not self.looked_over else None
 

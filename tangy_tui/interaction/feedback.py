@@ -1,7 +1,7 @@
-"""What staff say about responses afterwards, as events: late, void, switched off, another method.
+"""Corrections by staff, as events: late feedback, void responses, strategies off, another method.
 
-Nothing is changed in the log: each is an event of its own, each can be taken back, and what
-counts is derived from all of them (see `Store.responses`).
+Nothing in the log is changed: each correction is an event and can be undone. Which responses count
+is derived from all events (see `Store.responses`).
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from tangy_profiles.reading import plain
 from tangy_profiles.store import Event, Store
 
 CHANGES = (FeedbackGiven, ResponseVoided, StrategySwitched, MethodChosen)
-"""What can be taken back."""
+"""The events that can be undone."""
 C = TypeVar("C", StrategySwitched, MethodChosen)
 
 
 @dataclass(frozen=True, slots=True)
 class FeedbackEntry:
-    """One line of a person's history: a response, or a request whose response is awaited.
+    """One line of a person's history: a response, or a request without one yet.
 
-    `number` counts from 1 and stays. `request` is what it answers, by uuid: late feedback names
-    an earlier line's, every other line is its own. `at` is when the request was put, `why` the
-    reason it is void, and `settled` says that another line holds the answer to its request.
+    `number` counts from 1 and is stable. `request` is the uuid of the request: late feedback refers
+    to an earlier line, every other line to itself. `at` is the time of the request, and `why` the
+    reason for which it is void. `settled`: another line has the answer to this request.
     """
 
     number: int
@@ -54,42 +54,42 @@ class FeedbackEntry:
     why: str
     settled: bool = False
     world: GameWorld | None = None
-    """The world that it names itself, where it belongs to no game."""
+    """The world of a line that belongs to no game."""
 
     @property
     def counts(self) -> bool:
-        """Whether the belief rests on it."""
+        """Whether the belief uses this response."""
         return self.complied is not None and not self.void
 
     @property
     def open(self) -> bool:
-        """Whether late feedback could still answer its request."""
+        """Whether late feedback could still answer the request."""
         return not (self.counts or self.settled)
 
 
 class Feedback:
-    """The log's side of persuasion. Every method raises TangyError, one sentence, for a mistake."""
+    """Staff's corrections in the log. A mistake raises TangyError with one sentence."""
 
     def __init__(self, store: Store, world: GameWorld = SIMULATED) -> None:
-        """Work on a log; one that cannot be written can still be read.
+        """Use a log; a read-only log can still be read.
 
         Args:
             store: the log.
-            world: what staff say without a game belongs to it.
+            world: the world of corrections outside any game.
         """
         self.store = store
         self._world = world
 
     @property
     def names_worlds(self) -> bool:
-        """Whether staff said something without a game that belongs to another world."""
+        """Whether feedback outside any game was given in another world."""
         return any(
             event.record.world not in (None, SIMULATED)
             for event in self.store.events(FeedbackGiven)
         )
 
     def history(self, person: str) -> list[FeedbackEntry]:
-        """Return everything a person was asked to do with a strategy, in the order of the log."""
+        """Return all of a person's requests with a strategy, in the order of the log."""
         awaited = (e for e in self.store.events(ResponseAwaited) if e.person == person)
         found = sorted([*self.store.answers(person), *awaited], key=lambda event: event.seq)
         voids, back = self._gone()
@@ -108,17 +108,17 @@ class Feedback:
     def give(
         self, person: str, strategy: str, complied: bool, of: int | None = None
     ) -> FeedbackEntry:
-        """Log what a person did, now that it is known.
+        """Log a late response.
 
         Args:
             person: the id of the person.
-            strategy: which strategy.
-            complied: whether the person did it.
-            of: the seq of the awaited response, or of a void one, that this is the answer to;
-                None: staff asked by themselves, and the log has no request for it.
+            strategy: the strategy of the request.
+            complied: whether the person complied.
+            of: the seq of the request without a response, or with a void one; None if staff asked
+                by themselves, so that the log has no request.
 
         Raises:
-            TangyError: the request was answered already, or was another one.
+            TangyError: the request has a response, or used another strategy.
         """
         given = FeedbackGiven(world=self._world)
         if of is not None:
@@ -137,10 +137,10 @@ class Feedback:
         return self._at(person, seq)
 
     def void(self, person: str, seq: int, why: str = "") -> FeedbackEntry:
-        """Let a response no longer count ("that was not compliance").
+        """Void a response, so that it no longer counts.
 
         Raises:
-            TangyError: it does not count as it is.
+            TangyError: it does not count now.
         """
         entry = self._at(person, seq)
         if entry.complied is None:
@@ -152,7 +152,7 @@ class Feedback:
         return self._at(person, seq)
 
     def last_change(self, person: str | None = None) -> Event[EventRecord] | None:
-        """Return what `undo` would take back: the last change (of one person) that still holds."""
+        """Return the last correction (of one person) in force, which `undo` would undo."""
         back = self._back()
         found = None
         for event in self.store.events(*CHANGES):
@@ -161,7 +161,7 @@ class Feedback:
         return found
 
     def undo(self, person: str | None = None) -> Event[EventRecord]:
-        """Take back the last change that holds, of one person or of anybody, and return it.
+        """Undo the last correction in force, of one person or of anybody, and return it.
 
         Raises:
             TangyError: there is none.
@@ -186,12 +186,12 @@ class Feedback:
 
         Args:
             person: the id of the person.
-            strategy: which strategy.
+            strategy: the strategy.
             on: whether it may be used.
-            among: the strategies that the activity has.
+            among: the strategies of the activity.
 
         Raises:
-            TangyError: it is so already, or none would be left.
+            TangyError: nothing would change, or no strategy would be left.
         """
         off = self.off(person)
         if (strategy not in off) == on:
@@ -202,17 +202,17 @@ class Feedback:
         self.store.append(StrategySwitched(on=on), person=person, strategy=strategy)
 
     def method(self, person: str) -> PersuasionConfig | None:
-        """Return the method that was chosen for a person; None: the activity's."""
+        """Return the method chosen for a person; None if the activity's method is used."""
         chosen = None
         for event in self._holding(MethodChosen, person):
             chosen = event.record.chosen
         return chosen
 
     def choose_method(self, person: str, chosen: PersuasionConfig | None) -> None:
-        """Choose a method for a person; None: the activity's again.
+        """Choose a method for a person; None for the activity's method.
 
         Raises:
-            TangyError: it is so already.
+            TangyError: it is chosen already.
         """
         if chosen == self.method(person):
             raise TangyError("That is the method already.")
@@ -225,7 +225,7 @@ class Feedback:
         raise TangyError(plain(f"Event {seq} is not a request to {person}, nor a response."))
 
     def _holding(self, kind: type[C], person: str) -> Iterator[Event[C]]:
-        """Yield a person's changes of one kind that were not taken back."""
+        """Yield a person's corrections of one kind that were not undone."""
         events = [event for event in self.store.events(kind) if event.person == person]
         back = self._back() if events else frozenset()
         return (event for event in events if event.uuid not in back)
@@ -234,7 +234,7 @@ class Feedback:
         return frozenset(event.record.of for event in self.store.events(ChangeTakenBack))
 
     def _gone(self) -> tuple[dict[str, str], frozenset[str]]:
-        """Return void responses with their reasons, and responses taken back, by uuid."""
+        """Return void responses with their reasons, and undone responses, by uuid."""
         back = self._back()
         voids = {
             event.record.of: event.record.why

@@ -16,10 +16,11 @@ from tangy_tui.language.words import FILLERS, spoken, words_of
 
 
 class Forgotten(NamedTuple):
-    """The result: changed events and files, and remaining data.
+    """The result of forgetting a person.
 
-    `events_left` are events in which the name still stands, as that of a teacher; `files_left` are
-    files that Tangy does not change and that hold it, or may.
+    `events` is the number of changed events, `files` the changed files. `events_left` is the number
+    of events that still have the name, as a teacher's; `files_left` are files that hold or may hold
+    it and that Tangy does not change.
     """
 
     events: int
@@ -37,17 +38,17 @@ def forget_person(
 ) -> Forgotten:
     """Erase a person's name, pronunciation, voice and face, also from free texts.
 
-    The files come first and the name itself last, so that it can be done again if it is cut off.
+    The files come first and the name itself last, so that an interrupted erasure can be repeated.
 
     Args:
         store: the log, open for writing, and its folder.
-        activity: whose phrases stay as they are.
-        people: everybody who plays, whose names stay as they are.
-        person: who is to be forgotten.
-        also: other names that they were called by.
+        activity: its phrases are kept.
+        people: all players; the names of the others are kept.
+        person: the person to forget.
+        also: other names that were used for them.
 
     Raises:
-        TangyError: some of it cannot be deleted.
+        TangyError: some data cannot be deleted.
     """
     from tangy_hw.perception.faces.face_store import forget_face
 
@@ -65,7 +66,7 @@ def name_eraser(
     person: Person,
     also: Sequence[str] = (),
 ) -> NameEraser:
-    """Return what finds the names that a person was given, and nothing else."""
+    """Return an eraser that finds a person's names, and no other words."""
     given = store.names()
     own = [name for name in (given.get(person.id, ""), *also) if name]
     said = [form for name in own for form in (spoken(words_of(name)), " ".join(words_of(name)))]

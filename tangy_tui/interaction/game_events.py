@@ -1,4 +1,4 @@
-"""What happens in a game, as it is told: a closed set, each after it is in the log."""
+"""The events of a game, a closed set; each is logged before it is reported."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class GameBegun:
 
 @dataclass(frozen=True, slots=True)
 class ResumedGame:
-    """A game that was interrupted goes on, after so many steps."""
+    """An interrupted game continues after this many steps."""
 
     game: str
     number: int
@@ -37,8 +37,8 @@ class ResumedGame:
 class Acted:
     """One step of a game: observation, decision, action, and outcome.
 
-    `right` says whether the behaviour is the one that the activity expects there (None where it
-    expects nothing) and whether the world could carry it out.
+    `right`: the world carried out the behaviour, and it is the one that the activity expects in
+    this situation, if it expects any.
     """
 
     number: int
@@ -63,10 +63,10 @@ class BeliefUpdated:
 
 @dataclass(frozen=True, slots=True)
 class Unsure:
-    """Tangy does not act, it asks: a teacher is to say what to do here.
+    """Tangy does not act, but asks a teacher what to do.
 
     `reason` says why, and `remedy` what would help if nobody answers. `fault` is the id of the
-    fault about which it asks, if it is not the policy that is not sure.
+    fault in question; "" if the policy is not sure.
     """
 
     state: ActivityState
@@ -78,7 +78,7 @@ class Unsure:
 
 @dataclass(frozen=True, slots=True)
 class Taught:
-    """A teacher answered, Tangy did it, and learnt from it what to do here from now on."""
+    """A teacher answered; Tangy carried out the answer and learnt it."""
 
     teacher: str
     lesson: Lesson
@@ -86,9 +86,9 @@ class Taught:
 
 @dataclass(frozen=True, slots=True)
 class DoneOnce:
-    """A teacher's answer was acted upon, but not learnt: it holds for this fault, this once.
+    """A teacher's answer about a fault was carried out once, but not learnt.
 
-    Tangy is sure of what to do in such a situation when nothing is wrong (`instead`).
+    The policy is sure of another behaviour (`instead`) in this situation.
     """
 
     teacher: str
@@ -97,9 +97,9 @@ class DoneOnce:
 
 @dataclass(frozen=True, slots=True)
 class GameEnded:
-    """The game is over: played to its end, or stopped for a reason that a person can read.
+    """The game is over: played to its end, or stopped for a reason that is given in words.
 
-    `pauses` is how often the robot waited for late data in it, and for how many s.
+    `pauses` is how often the robot waited for late data, and for how many s in all.
     """
 
     game: str
@@ -110,7 +110,7 @@ class GameEnded:
 
 @dataclass(frozen=True, slots=True)
 class GameChanged:
-    """Something changed in the game beside its behaviours; `said` is what the group is told."""
+    """A change of the game besides its behaviours; `said` is its announcement to the group."""
 
     what: ChangeKind
     person: str = ""

@@ -1,4 +1,4 @@
-"""What the log has of a game as it goes on: its clock, its steps, and how people responded."""
+"""The log of a running game: its clock, its steps, and people's responses."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tangy_tui.world import World, remembered
 
 
 class GameLog:
-    """Logs the steps of one game after the other. `begin` or `resume` each."""
+    """Logs the steps of games; call `begin` or `resume` for each."""
 
     def __init__(self, world: World, store: Store) -> None:
         self._world, self._store = world, store
@@ -20,19 +20,19 @@ class GameLog:
 
     @property
     def seconds(self) -> float:
-        """The time that was played, in s: not that in which an interrupted game was not there."""
+        """The time played in s, without the time in which the game was interrupted."""
         return max(0.0, self._world.seconds - self._began)
 
     def begin(self) -> None:
-        """Begin to count the time of a game."""
+        """Start the clock of a game."""
         self._began = self._world.seconds
 
     def resume(self, past: PastGame) -> None:
-        """Count on from the last step of a game that was interrupted."""
+        """Continue the clock from the last step of an interrupted game."""
         self._began = self._world.seconds - past.seconds
 
     def step(self, game: str, acted: Acted, teacher: str) -> None:
-        """Log a step, and how a person responded, or that it is awaited."""
+        """Log a step, and the person's response or that it is awaited."""
         action, outcome, choice = acted.action, acted.outcome, acted.choice
         self._store.append(
             GameStep(
@@ -64,7 +64,7 @@ class GameLog:
             self._store.append(unclear, person=one.person)
         if outcome.response is not None:
             self._response(game, outcome.response)
-        elif choice is not None and outcome.completed:  # what they did may be known later
+        elif choice is not None and outcome.completed:  # staff may say later what they did
             awaited = ResponseAwaited(game=game)
             self._store.append(awaited, person=choice.person, strategy=choice.strategy)
 

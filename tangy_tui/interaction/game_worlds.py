@@ -11,11 +11,11 @@ from tangy_profiles.game_world import BENCH, SIMULATED, UNKNOWN, GameWorld, game
 from tangy_profiles.store import Event, Store
 
 FEWEST_CALLS = 2
-"""Of fewer calls nobody can tell whether they all take the same time."""
+"""With fewer calls, equal durations prove nothing."""
 
 
 class GameWorlds:
-    """The worlds of the games of one log, cached."""
+    """The worlds of the games in a log, cached."""
 
     def __init__(self, store: Store) -> None:
         """Read from a log."""
@@ -26,7 +26,7 @@ class GameWorlds:
 
     @property
     def all(self) -> Mapping[str, GameWorld]:
-        """The world of every game, by its id, in the order of the log."""
+        """The world of every game, by id, in the order of the log."""
         unmarked: dict[str, Event[EventRecord]] = {}
         said: dict[str, GameWorld] = {}
         for event in self._store.events(GameBeginning, GameWorldSet, after=self._read):
@@ -46,17 +46,17 @@ class GameWorlds:
 
     @property
     def unasked(self) -> list[str]:
-        """The games of which nobody knows where they were played, and nobody was asked yet."""
+        """The games whose world is unknown and was not asked for yet."""
         return [g for g, world in self.all.items() if world == UNKNOWN and g not in self._said]
 
     def settle(self, games: Collection[str], world: GameWorld, by: str = "") -> None:
-        """Say where some games were played; `unknown`: nobody can say, and is not asked again."""
+        """Log the world of some games; `unknown` means that nobody knows."""
         with self._store.transaction():
             for game in games:
                 self._store.append(GameWorldSet(game=game, world=world, by=by))
 
     def set(self, game: str, world: GameWorld, by: str = "") -> None:
-        """Say in which world a game was played; beliefs are counted anew by that.
+        """Log the world of a game; beliefs are then counted accordingly.
 
         Args:
             game: its id.
@@ -68,16 +68,16 @@ class GameWorlds:
 
     @property
     def last(self) -> GameWorld:
-        """The world of the last game of which it is known; before any game: simulated."""
+        """The world of the last game whose world is known; simulated if there is none."""
         known = [world for world in self.all.values() if world != UNKNOWN]
         return known[-1] if known else SIMULATED
 
     def of(self, game: object, said: object = None) -> GameWorld:
-        """Return the world that something in the log belongs to.
+        """Return the world that an event belongs to.
 
         Args:
             game: the id of its game, or None.
-            said: the world that it names itself, where it belongs to no game.
+            said: its own world, if it belongs to no game.
         """
         return self.all.get(str(game)) or game_world(said) or SIMULATED
 
@@ -85,9 +85,9 @@ class GameWorlds:
 def _told_by_time(store: Store, begun: Mapping[str, Event[EventRecord]]) -> dict[str, GameWorld]:
     """Infer the world of games logged without one from their times.
 
-    Simulated calls always take the same time, and those of devices are measured. A game with
-    devices that was over sooner than its own steps say was played on the bench. All else is
-    unknown: a game on the bench may have taken as long as one with a robot among people.
+    Simulated calls always take the same time; calls by devices are measured. A game with devices
+    that ended sooner than the sum of its steps was played on the bench. All others are unknown: a
+    game on the bench may take as long as one with a robot and people.
     """
     calls: dict[str, list[float]] = {game: [] for game in begun}
     lasted = dict.fromkeys(begun, 0.0)

@@ -1,4 +1,4 @@
-"""A person's model read from the log: method, prior, posteriors, disabled strategies."""
+"""A person's model, read from the log: method, prior, posteriors, disabled strategies."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ Responses = Mapping[tuple[str, str], tuple[int, int]]
 
 @dataclass(frozen=True, slots=True)
 class PersonModel:
-    """The model of one person, and the choice of their next strategy.
+    """The model of one person, which the choice of their next strategy uses.
 
-    `prior` is where the beliefs began; `chosen` is the method in words, and `own` says that it
-    was chosen for this person alone.
+    `chosen` is the configuration of the method, and `own` says that it was chosen for this person
+    alone.
     """
 
     method: Method
@@ -36,11 +36,11 @@ class PersonModel:
     chosen: PersuasionConfig = PAPER
     own: bool = False
     watch: DriftWatch = field(default_factory=DriftWatch)
-    """Whether what works with them has changed."""
+    """Detects changes in what works with them."""
 
 
 class PersonModels:
-    """Recalls people from the log, by an activity's strategies and its choice of method."""
+    """Reads people's models from the log, for an activity's strategies and configured method."""
 
     def __init__(
         self,
@@ -54,9 +54,9 @@ class PersonModels:
 
         Args:
             store: the log.
-            strategies: those of the activity.
-            chosen: the method for everybody who has none of their own.
-            world: whose games count (default: the world of the last game).
+            strategies: the strategies of the activity.
+            chosen: the method for everybody without one of their own.
+            world: the world whose games count (default: the world of the last game).
         """
         self._worlds = GameWorlds(store)
         self.world = world or self._worlds.last
@@ -70,18 +70,18 @@ class PersonModels:
         return self._store.now()
 
     def responses(self) -> Responses:
-        """Count the responses of this world's games, as `Store.responses` does."""
+        """Count the responses of this world's games (see `Store.responses`)."""
         worlds = self._worlds.all
-        if self.world == SIMULATED:  # to which belongs what names no game and no world
+        if self.world == SIMULATED:  # events without game and world belong to it
             others = {game for game, world in worlds.items() if world != SIMULATED}
             if not others and not self.feedback.names_worlds:
-                return self._store.responses()  # by the index alone
+                return self._store.responses()  # uses only the index
             return self._store.responses(but=others | (set(GAME_WORLDS) - {SIMULATED}))
         mine = {game for game, world in worlds.items() if world == self.world}
         return self._store.responses(mine | {self.world})
 
     def history(self, person: str) -> list[FeedbackEntry]:
-        """Return what a person was asked to do in this world's games, in the order of the log."""
+        """Return a person's requests in this world's games, in the order of the log."""
         return [
             entry
             for entry in self.feedback.history(person)
@@ -89,7 +89,7 @@ class PersonModels:
         ]
 
     def is_of_this_world(self, game: str) -> bool:
-        """Say whether a game was played in this world."""
+        """Return whether a game was played in this world."""
         return self._worlds.of(game) == self.world
 
     def recall(self, person: str, responses: Responses | None = None) -> PersonModel:
@@ -97,7 +97,7 @@ class PersonModels:
 
         Args:
             person: the id of the person.
-            responses: what `responses` returns, where the caller has it already.
+            responses: the result of `responses`, if the caller has it.
         """
         responses = self.responses() if responses is None else responses
         own = self.feedback.method(person)
@@ -105,7 +105,7 @@ class PersonModels:
         method = method_of(chosen, others(responses, person) if chosen.prior == "people" else ())
         prior = method.prior(self._strategies)
         watch = DriftWatch()
-        if most_seen(responses, person) >= FEWEST:  # with fewer no change could be known
+        if most_seen(responses, person) >= FEWEST:  # with fewer no change is detectable
             watch = DriftWatch(in_order(self.history(person), self._strategies))
         if method.forgets:
             beliefs = replayed(method, prior, self.history(person), self.now())
@@ -118,7 +118,7 @@ class PersonModels:
 def in_order(
     history: Sequence[FeedbackEntry], strategies: Collection[str]
 ) -> Iterator[tuple[str, bool]]:
-    """Return the responses that count, in the order of the requests."""
+    """Yield the responses that count, in the order of the requests."""
     for entry in sorted(history, key=lambda entry: (entry.at, entry.seq)):
         if entry.counts and entry.complied is not None and entry.strategy in strategies:
             yield entry.strategy, entry.complied
@@ -132,7 +132,7 @@ def unknown(strategies: Sequence[str], method: Method | None = None) -> PersonMo
 
 
 def counted(prior: Beliefs, person: str, responses: Responses) -> Beliefs:
-    """Add a person's counts to the prior: all that Eq. 2 comes to, in whatever order."""
+    """Add a person's counts to the prior; Eq. 2 does not depend on the order."""
     beliefs = dict(prior)
     for strategy, start in prior.items():
         yes, no = responses.get((person, strategy), (0, 0))
@@ -144,7 +144,7 @@ def counted(prior: Beliefs, person: str, responses: Responses) -> Beliefs:
 def replayed(
     method: Method, prior: Beliefs, history: Sequence[FeedbackEntry], now: datetime
 ) -> Beliefs:
-    """Let a method that forgets learn from each response in the order of the requests."""
+    """Update the beliefs of a forgetting method by each response, in the order of the requests."""
     beliefs, at = prior, None
     for entry in sorted(history, key=lambda entry: (entry.at, entry.seq)):
         if entry.counts and entry.complied is not None and entry.strategy in prior:
@@ -155,5 +155,5 @@ def replayed(
 
 
 def days(since: datetime | None, until: datetime) -> float:
-    """Return the days between two times; none from before the first, or if a clock went back."""
+    """Return the days between two times; 0 if there is no first time or the clock went back."""
     return 0.0 if since is None else max(0.0, (until - since).total_seconds() / DAY)

@@ -1,7 +1,7 @@
-"""Ways to choose a strategy and to learn from the response, each a small class.
+"""Methods to choose a strategy and to update beliefs, one small class each.
 
-`Thompson` is the paper's (III-B-2). `BayesUcb` chooses otherwise; `EarlierPeople` begins
-otherwise; `Forgetting` remembers otherwise. The last two go around any other method, so they
+`Thompson` is the paper's method (III-B-2). `BayesUcb` scores differently, `EarlierPeople` has
+another prior, and `Forgetting` discounts old responses. The last two wrap any method, so they
 combine: `Forgetting(EarlierPeople(BayesUcb(), ...), 0.98)`. Beliefs are never changed in place.
 """
 
@@ -23,24 +23,26 @@ Counts = Mapping[str, tuple[int, int]]
 """One person's responses: strategy -> how often they complied, and did not."""
 
 MOST_LENT = 4
-"""What earlier people are worth at most, in responses a strategy. A wrong prior of this strength
-costs 7 choices of 23; one that is not capped never lets go."""
+"""The most weight of earlier people's prior, in responses per strategy.
+
+A wrong prior of this weight costs 7 of 23 choices; one without a limit is never corrected.
+"""
 
 STEPS_LENT = 4
-"""The prior is fitted in quarters of a response."""
+"""The prior is fitted in steps of a quarter response."""
 
 
 class Method(Protocol):
-    """How a strategy is chosen for a person, and how the beliefs about the person grow."""
+    """Chooses a strategy for a person, and updates the beliefs about the person."""
 
     @property
     def words(self) -> str:
-        """What it is called in front of people."""
+        """The name of the method for people."""
         ...
 
     @property
     def forgets(self) -> bool:
-        """Whether the order and the age of responses matter, not only their counts."""
+        """Whether the order and age of responses matter, not only their counts."""
         ...
 
     def prior(self, strategies: Iterable[str]) -> Beliefs:
@@ -48,7 +50,7 @@ class Method(Protocol):
         ...
 
     def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
-        """Return the beliefs after so many days in which nothing was learnt."""
+        """Return the beliefs after some days without a response."""
         ...
 
     def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
@@ -61,11 +63,11 @@ class Method(Protocol):
 
 
 METHOD_PARTS = ("words", "forgets", "prior", "faded", "updated", "scores")
-"""What a method has; `Plain` brings all of it but `words` and `scores`."""
+"""The attributes of a method; `Plain` has all of them except `words` and `scores`."""
 
 
 class Plain:
-    """Beginning and learning as the paper has them: Beta(1, 1), and Eq. 2 for each response."""
+    """The paper's prior and update: Beta(1, 1), and Eq. 2 for each response."""
 
     forgets = False
 
@@ -74,30 +76,30 @@ class Plain:
         return uniform_beliefs(strategies)
 
     def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
-        """Return the beliefs as they are, however many days ago: nothing is forgotten."""
+        """Return the beliefs unchanged, after any number of days."""
         return beliefs
 
     def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
-        """Add one to alpha or to beta of the strategy (Eq. 2)."""
+        """Increment alpha or beta of the strategy (Eq. 2)."""
         return {**beliefs, strategy: beliefs[strategy].updated(complied)}
 
 
 class Thompson(Plain):
-    """Draw from every belief and use the strategy with the highest draw, as the paper does."""
+    """Thompson sampling: sample every belief, use the strategy with the highest sample."""
 
     words = "Thompson sampling"
 
     def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
-        """Return one draw for each strategy, a probability."""
+        """Return one sample per strategy, a probability."""
         draw = rng.betavariate
         return {strategy: draw(b.alpha, b.beta) for strategy, b in beliefs.items()}
 
 
 class BayesUcb(Plain):
-    """Use the strategy that may well be the best: the highest upper quantile of its belief.
+    """Use the strategy whose belief has the highest upper quantile.
 
-    The quantile is 1 - 1/(t + 1) before the t-th response (Kaufmann, Cappe, Garivier 2012, with
-    c = 0). Nothing is drawn; equal scores are for the caller to break.
+    The quantile is 1 - 1/(t + 1) before the t-th response (Kaufmann, Cappe, Garivier 2012, with c =
+    0). It is deterministic; the caller breaks ties.
     """
 
     words = "Bayes-UCB"
@@ -110,10 +112,9 @@ class BayesUcb(Plain):
 
 @dataclass(frozen=True)
 class EarlierPeople:
-    """Begin from what worked with earlier people (empirical Bayes), then as `inner` does.
+    """Use a prior fitted to earlier people (empirical Bayes); otherwise like `inner`.
 
-    `people` are the counts of everybody but the person. With nobody to learn from it begins as
-    `inner` does.
+    `people` are the counts of everybody else. Without any, the prior is that of `inner`.
     """
 
     inner: Method
@@ -122,16 +123,16 @@ class EarlierPeople:
 
     @property
     def words(self) -> str:
-        """Its name, with whom it begins from."""
+        """The name of the inner method, with the kind of prior."""
         return f"{self.inner.words} from earlier people"
 
     @property
     def forgets(self) -> bool:
-        """Whether the inner one does."""
+        """Whether the inner method forgets."""
         return self.inner.forgets
 
     def prior(self, strategies: Iterable[str]) -> Beliefs:
-        """Return a Beta fitted to earlier people's counts for each strategy they were met with."""
+        """Return a Beta for each strategy, fitted to the counts of people who met it."""
         prior = self.inner.prior(strategies)
         for strategy in prior:
             if strategy not in self.fitted:
@@ -156,11 +157,11 @@ class EarlierPeople:
 
 @dataclass(frozen=True)
 class Forgetting:
-    """Let the posterior fade towards the prior, as people change; otherwise like `inner`.
+    """Decay the posterior towards the prior, because people change; otherwise like `inner`.
 
     Args:
-        keep: the share in (0, 1] of what was learnt that is left after one interaction with the
-            person (whichever strategy was used), or after one day.
+        keep: the share in (0, 1] of the evidence that is left after one interaction with the person
+            (by any strategy), or after one day.
     """
 
     inner: Method
@@ -170,7 +171,7 @@ class Forgetting:
 
     @property
     def words(self) -> str:
-        """Its name, with how fast it forgets."""
+        """The name of the inner method, with the rate of forgetting."""
         every = "a day" if self.daily else "an interaction"
         return f"{self.inner.words}, forgetting {100 * (1 - self.keep):.3g}% {every}"
 
@@ -179,12 +180,12 @@ class Forgetting:
         return self.inner.prior(strategies)
 
     def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
-        """Let days pass."""
+        """Decay the beliefs by the days that passed."""
         beliefs = self.inner.faded(beliefs, prior, days)
         return _towards(prior, beliefs, self.keep**days) if self.daily and days > 0 else beliefs
 
     def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
-        """Let the others fade a little, and this strategy too, before its response is added."""
+        """Decay the beliefs about all strategies, then add the response."""
         if not self.daily:
             beliefs = _towards(prior, beliefs, self.keep)
         return self.inner.updated(beliefs, prior, strategy, complied)
@@ -208,10 +209,10 @@ def _plain(name: str) -> Method:
 
 
 def added_method(extension: Extension) -> Method:
-    """Make the method that another package adds: what it names, called without arguments.
+    """Make the method of another package: call its entry point without arguments.
 
     Raises:
-        ProfileError: it cannot be loaded, or does not have all that a `Method` has.
+        ProfileError: it cannot be loaded, or lacks attributes of a `Method`.
     """
     made = extension.load()
     try:
@@ -225,7 +226,7 @@ def added_method(extension: Extension) -> Method:
 
 
 def method_of(chosen: PersuasionConfig, earlier: Sequence[Counts] = ()) -> Method:
-    """Make the method that was chosen in words; `earlier` are the counts of everybody else."""
+    """Make the configured method; `earlier` are the counts of everybody else."""
     method = _plain(chosen.method)
     if chosen.prior == "people":
         method = EarlierPeople(method, earlier)
@@ -235,7 +236,7 @@ def method_of(chosen: PersuasionConfig, earlier: Sequence[Counts] = ()) -> Metho
 
 
 def others(counts: Mapping[tuple[str, str], tuple[int, int]], person: str) -> list[Counts]:
-    """Take the counts of everybody but one person out of `Store.responses()`, person by person."""
+    """Group the counts of everybody but one person, from `Store.responses()`, by person."""
     grouped: dict[str, dict[str, tuple[int, int]]] = {}
     for (somebody, strategy), pair in counts.items():
         if somebody != person:
@@ -246,10 +247,10 @@ def others(counts: Mapping[tuple[str, str], tuple[int, int]], person: str) -> li
 def lent(counts: Sequence[tuple[int, int]]) -> Beta:
     """Fit the prior of one strategy to earlier people's counts (complied, did not).
 
-    It is Beta(1 + u, 1 + v), the uniform start and u + v responses on loan, with the u and v under
-    which the counts are most probable (beta-binomial likelihood, which does not mind that people
-    were asked more often with what worked). u + v is at most four, and at most the number of
-    people there are: one person says little about the next.
+    It is Beta(1 + u, 1 + v): the uniform prior with u + v pseudo-responses. u and v maximise the
+    beta-binomial likelihood of the counts, which is not biased by asking people more often with
+    what worked. u + v is at most four, and at most the number of people, because one person says
+    little about the next.
     """
     most = min(MOST_LENT, len(counts)) * STEPS_LENT
     if not most:
@@ -271,7 +272,7 @@ def _rising(times: Sequence[int], starts: Sequence[float]) -> list[float]:
 
 
 def _towards(prior: Beliefs, beliefs: Beliefs, keep: float) -> Beliefs:
-    """Keep a share of what lies between the prior and the beliefs; the counts stay."""
+    """Move beliefs towards the prior, keeping a share of the difference; the counts stay."""
     return {
         strategy: Beta(
             start.alpha + keep * (belief.alpha - start.alpha),

@@ -1,8 +1,8 @@
-"""Observation in a game, with second looks where one look contradicts the expectation.
+"""Observation in a game, with second looks if one look contradicts the expectation.
 
-A picture may be late, a card be misread or not be read at all. What such a look says is no reason
-to accuse anybody, to ask anybody, or to call it a fault: another look, of another moment, is taken
-first, and what it takes back was never there.
+A picture may be late, or a card misread or unreadable. Such a look alone must not cause a fault, a
+question or a count against a person: it is repeated at a later moment first, and forgotten if the
+other looks disagree.
 """
 
 from __future__ import annotations
@@ -16,51 +16,54 @@ from tangy_tui.interaction.reading_error import FusedLook, ReadingError
 from tangy_tui.world import World
 
 ACQUITS = 2
-"""Looks that have to agree on what was to be expected. How many have to agree on what contradicts
-it follows from how often a look is wrong (`ReadingError.needed`): four if 5% of all looks are."""
+"""Looks that have to agree with the expectation.
+
+How many have to agree against it depends on how often a look is wrong (`ReadingError.needed`): four
+if 5% of all looks are wrong.
+"""
 
 MORE_LOOKS = 2
-"""So many looks are taken at most beyond those that have to agree; each takes about a second."""
+"""Looks at most beyond the number that has to agree; each takes about a second."""
 
 
 @runtime_checkable
 class FusesLooks(Protocol):
-    """A world that fuses looks at cards itself: how many must agree, and what became of them."""
+    """A world that fuses looks at cards itself: how many must agree, and counts of the results."""
 
     agreeing: int
     fused_looks: tuple[int, int]
 
 
 class Observation:
-    """Observes the state of a game. `begin` each game."""
+    """Observes the state of a game; call `begin` for each game."""
 
     def __init__(self, world: World, error: ReadingError | None = None) -> None:
-        """Take the world, and how often looks were wrong so far."""
+        """Observe a world; `error` counts how often earlier looks were wrong."""
         self._world = world
         self._last: ActivityState | None = None
         self.error = error or ReadingError()
         self.fused: FusedLook | None = None
-        """What the last state that contradicted the expectation rests on; None: on one look."""
+        """The looks behind the last contradicting state; None if it rests on one look."""
         self.counted = ReadingError()
         """The looks of this game alone."""
         self._fused_before = (0, 0)
 
     def begin(self, state: ActivityState) -> None:
-        """Take note of how a game begins."""
+        """Start a game with its first state."""
         self._last, self.fused = state, None
         self.counted = ReadingError()
 
     def before(self, doubtful: Callable[[ActivityState], bool]) -> ActivityState:
-        """Return the state before a behaviour; it should be as it was after the last one.
+        """Return the state before a behaviour; it should equal the state after the last one.
 
         Args:
-            doubtful: says of a state that a game should not get into it.
+            doubtful: returns whether a state is one that a game should not get into.
         """
         state = self._world.observe()
         if doubtful(state):
             state = self._again(state, doubtful, self._look_again)
         elif state != self._last:
-            # What has become otherwise meanwhile the world tells by itself.
+            # The world reports by itself what has changed meanwhile.
             state = self._again(state, lambda seen: seen != self._last, self._world.observe)
         self._last = state
         return state
@@ -69,7 +72,7 @@ class Observation:
         """Return the state after a behaviour.
 
         Args:
-            contradicts: says of a state that it is not what was to be expected.
+            contradicts: returns whether a state differs from the expected one.
         """
         state, self.fused = self._world.observe(), None
         self._count_fused()
@@ -81,7 +84,7 @@ class Observation:
         return state
 
     def shows(self, wanted: Callable[[ActivityState], bool]) -> bool:
-        """Say whether the state is as wanted; that it is not, one look alone does not tell."""
+        """Return whether the state is as wanted; look again before returning False."""
         state = self._world.observe()
         if wanted(state):
             return True
@@ -93,7 +96,7 @@ class Observation:
         contradicts: Callable[[ActivityState], bool],
         look: Callable[[], ActivityState],
     ) -> ActivityState:
-        """Look again until looks agree, or for as often as is sensible."""
+        """Look again until enough looks agree, or the limit is reached."""
         seen, needed = Counter((state,)), self.error.needed
         for _ in range(needed + MORE_LOOKS - 1):
             state = look()
@@ -108,7 +111,7 @@ class Observation:
         return state
 
     def _count_fused(self) -> None:
-        """Count the looks that the world has fused since, and tell it how many have to agree."""
+        """Count the looks that the world fused since the last call, and set how many must agree."""
         world = self._world
         if isinstance(world, FusesLooks):
             (taken, wrong), before = world.fused_looks, self._fused_before
@@ -119,13 +122,13 @@ class Observation:
             world.agreeing = self.error.needed
 
     def _count(self, state: ActivityState, agreeing: int, taken: int) -> None:
-        """Count looks at what a person has; of others nothing can be misread."""
+        """Count looks at the card of an attended person; nothing else can be misread."""
         if state.attended is not None and state.place == state.attended:
             self.error.add(agreeing, taken)
             self.counted.add(agreeing, taken)
 
     def _look_again(self) -> ActivityState:
-        """Take another look; a world that has to do something for that says how."""
+        """Take another look, by the world's own method if it has one."""
         look = getattr(self._world, "look_again", self._world.observe)
         state: ActivityState = look()
         return state

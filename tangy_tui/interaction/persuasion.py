@@ -1,6 +1,6 @@
 """Persuasion (III-B-2): choose each person's strategy by their posteriors.
 
-The paper's method is Thompson sampling over Beta posteriors; `methods` has the others.
+The paper's method is Thompson sampling over Beta posteriors; `methods` has others.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from tangy_tui.interaction.methods import Method
 
 @dataclass(frozen=True, slots=True)
 class StrategyChoice:
-    """A strategy chosen for a person, and why.
+    """A strategy chosen for a person, and the reasons.
 
-    `draws` is the score of every strategy that could be used (for the paper's method: the number
-    drawn from its belief), `beliefs` what was believed at that moment, `method` its name.
+    `draws` is the score of every usable strategy (for the paper's method: the sample), `beliefs`
+    the beliefs at that moment, `method` the method's name.
     """
 
     person: str
@@ -39,7 +39,7 @@ class StrategyChoice:
 
 
 class Persuasion:
-    """The posteriors of everybody present, the choice of a strategy, and the update."""
+    """The posteriors of all participants, the choice of a strategy, and the update."""
 
     def __init__(
         self,
@@ -52,17 +52,17 @@ class Persuasion:
         memory: PersonModels | None = None,
         notices_drift: bool | None = None,
     ) -> None:
-        """Begin with what is known already.
+        """Start with the known responses.
 
         Args:
-            people: the ids of those who take part.
-            strategies: what can be chosen.
+            people: the ids of the participants.
+            strategies: the strategies to choose from.
             rng: the random generator.
             counts: (person, strategy) -> how often they complied, and did not.
-            method: how to choose and to learn where there is no memory (default: as the paper).
-            memory: recalls each person from the log, with the method that was chosen for them.
-            notices_drift: whether what came before a change of what works with somebody is
-                forgotten; by default where there is a memory.
+            method: the method if there is no memory (default: the paper's).
+            memory: reads each person's model, with the method chosen for them, from the log.
+            notices_drift: forget responses before a detected change (default: if there is a
+                memory).
         """
         self._memory = memory
         self._notices_drift = memory is not None if notices_drift is None else notices_drift
@@ -78,11 +78,11 @@ class Persuasion:
             self.beliefs[person] = counted(start.prior, person, counts or {})
 
     def known(self, person: str) -> PersonModel:
-        """Return the method, prior and switches of a person as they were recalled last."""
+        """Return a person's model as it was last read."""
         return self._known[person]
 
     def recall(self, person: str, counts: Responses | None = None) -> Beliefs:
-        """Read again what the log says of a person, after a void, a late response or a switch."""
+        """Read a person's model again, after a void, a late response or a switch."""
         if self._memory is not None:
             known = self._memory.recall(person, counts)
             self._known[person] = known
@@ -93,18 +93,19 @@ class Persuasion:
     def choose(
         self, person: str, without: Collection[str] = (), *, again: str | None = None
     ) -> StrategyChoice:
-        """Choose the strategy to persuade a person with, among those that are switched on.
+        """Choose a strategy for a person, among those that are switched on.
 
         Args:
-            person: who is to be persuaded.
-            without: strategies that are out of place now, whatever is switched on.
-            again: the strategy by which the very same was said last: another is taken, if any.
+            person: the id of the person.
+            without: strategies that are unsuitable now, even if switched on.
+            again: the strategy that was just used for the same behaviour; another one is chosen if
+                possible.
         """
         known = self._known[person]
         self._fade(person, known)
         beliefs = self.beliefs[person]
         usable = beliefs
-        if known.off or without:  # an activity may share no strategy with those that are left on
+        if known.off or without:  # perhaps none of the activity's strategies is left
             fitting = {s: b for s, b in beliefs.items() if s not in without} or beliefs
             usable = {s: b for s, b in fitting.items() if s not in known.off} or fitting
         if again in usable and len(usable) > 1:
@@ -113,7 +114,7 @@ class Persuasion:
         return StrategyChoice(person, self._highest(draws), draws, beliefs, known.method.words)
 
     def update(self, response: Response) -> Beta:
-        """Learn from a response (Eq. 2); return the new belief in the strategy that was used."""
+        """Update the beliefs by a response (Eq. 2); return the belief of its strategy."""
         person, strategy = response.person, response.strategy
         known = self._known[person]
         self._fade(person, known)
@@ -127,13 +128,13 @@ class Persuasion:
         return beliefs[strategy]
 
     def _highest(self, draws: Mapping[str, float]) -> str:
-        """Return the strategy with the highest score; of several, one by chance."""
+        """Return the strategy with the highest score; break ties at random."""
         top = max(draws.values())
         best = [strategy for strategy, draw in draws.items() if draw == top]
         return best[0] if len(best) == 1 else self._rng.choice(best)
 
     def _fade(self, person: str, known: PersonModel) -> None:
-        """Let the time since a person was last thought of do what it does to their beliefs."""
+        """Let beliefs decay by the time since the last update."""
         if self._memory is None or not known.method.forgets:
             return
         now = self._memory.now()

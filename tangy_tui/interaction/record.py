@@ -1,4 +1,4 @@
-"""One person's record: posteriors, their certainty, and the history game by game."""
+"""One person's record: posteriors, their certainty, and the history by game."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tangy_tui.interaction.memory import PersonModel, PersonModels
 
 @dataclass(frozen=True, slots=True)
 class PersonGame:
-    """What one person was asked to do in one game; without an id: outside of any."""
+    """One person's requests in one game; without an id: outside any game."""
 
     id: str | None
     begun: datetime
@@ -26,12 +26,11 @@ class PersonGame:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """Everything that is told of one person.
+    """Everything that is displayed about one person.
 
-    `best` is, for each strategy, the probability that it is the best of those that are switched
-    on (of one that is off: 0); `settled` is the one that is as good as known, which where one
-    alone is on nobody can tell. `seen` is when the person last took part, and `now` when all this
-    was read.
+    `best` is, for each strategy, the probability that it is the best of those switched on (0 if it
+    is off). `settled` is the strategy that is almost certainly the best; None if only one is on.
+    `seen` is when the person last took part, and `now` when this was read.
     """
 
     person: Person
@@ -43,7 +42,7 @@ class Record:
     seen: datetime | None
     now: datetime
     world: GameWorld = SIMULATED
-    """Whose games all this is read from."""
+    """The world whose games count."""
 
     @property
     def beliefs(self) -> Beliefs:
@@ -52,12 +51,12 @@ class Record:
 
     @property
     def on(self) -> tuple[str, ...]:
-        """Return the strategies that are used with the person."""
+        """Return the strategies that are switched on for the person."""
         return tuple(on_of(self.beliefs, self.known.off))
 
     @property
     def leading(self) -> str | None:
-        """Return the one that is most probably the best of several; None where none stands out."""
+        """Return the strategy that is most probably the best, or None if none stands out."""
         return leading(self.best) if len(self.on) > 1 else None
 
 
@@ -105,18 +104,18 @@ def _record(
 
 
 def best_of_those_on(beliefs: Beliefs, off: frozenset[str] = frozenset()) -> dict[str, float]:
-    """Return P(best) of each strategy among those that are switched on; 0 for the others."""
+    """Return P(best) of each strategy among those switched on; 0 for the others."""
     best = probability_best(on_of(beliefs, off))
     return {strategy: best.get(strategy, 0.0) for strategy in beliefs}
 
 
 def on_of(beliefs: Beliefs, off: frozenset[str]) -> Beliefs:
-    """Return the beliefs in the strategies that are on; in all, where none of these is."""
+    """Return the beliefs of the strategies that are on; of all, if none is."""
     return {strategy: b for strategy, b in beliefs.items() if strategy not in off} or beliefs
 
 
 def settled_of(on: Beliefs, best: Mapping[str, float]) -> str | None:
-    """Return the strategy that is settled on, by the probability of being best; it has worked."""
+    """Return the strategy that has worked and whose probability of being best is high, or None."""
     found = settled(best)
     return found if found is not None and len(on) > 1 and on[found].complied else None
 

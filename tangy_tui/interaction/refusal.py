@@ -1,4 +1,4 @@
-"""Whether a person did what a behaviour asked for."""
+"""Whether a person refused a behaviour's request."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from tangy_profiles.state import ActivityState, Outcome
 def refused(
     behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
 ) -> bool:
-    """Say whether the attended person did not do what a behaviour asked for.
+    """Return whether the attended person did not do what a behaviour asked for.
 
-    Where that cannot be seen, nothing that changed is as good as a refusal: people are not asked
-    again and again because their card is out of sight.
+    If no response was seen, an unchanged state counts as a refusal, so that people are not asked
+    endlessly because their card is out of sight.
     """
     if not behaviour.persuades or before.attended is None or not outcome.completed:
         return False

@@ -1,4 +1,4 @@
-"""What games added up to: behaviours, the rows of Table II, interactions, beliefs."""
+"""Totals over games: behaviours, the rows of Table II, interactions, beliefs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tangy_tui.interaction.game_events import Acted, BeliefUpdated, GameEnded, T
 
 @dataclass(frozen=True, slots=True)
 class TallyRow:
-    """A row of Table II: a situation, the behaviour executed there, how often, how successfully."""
+    """A row of Table II: a situation, its behaviour, how often, and the share of successes."""
 
     situation: Situation
     behaviour: str
@@ -33,11 +33,11 @@ class Tally:
     asked: int = 0
     """How often Tangy asked what to do."""
     stopped: list[tuple[int, str]] = field(default_factory=list)
-    """The games that did not come to their end: which one, from 1 on, and why."""
+    """The games that were stopped: their number, from 1, and the reason."""
     injected: list[dict[str, Any]] = field(default_factory=list)
-    """The faults that were to be brought about: in which game, which, and at which step.
+    """The faults to inject: the game, the fault, and the step.
 
-    `step` is None for one that did not come about.
+    `step` is None if the fault did not occur.
     """
     pauses: int = 0
     paused_seconds: float = 0.0
@@ -46,7 +46,7 @@ class Tally:
     _right: Counter[tuple[Situation, str]] = field(default_factory=Counter)
 
     def add(self, events: Iterable[object]) -> None:
-        """Count what happened; events of other kinds than a game's are let by."""
+        """Count the events of games; ignore other events."""
         for event in events:
             match event:
                 case Acted():
@@ -68,11 +68,11 @@ class Tally:
                     self.asked += 1
 
     def add_injections(self, came: Iterable[tuple[int, str]], absent: Iterable[str]) -> None:
-        """Add the injections of the newest game.
+        """Add the injections of the latest game.
 
         Args:
-            came: step and kind of each fault that set in.
-            absent: the injections that did not come about.
+            came: step and kind of each fault that occurred.
+            absent: the injections that did not occur.
         """
         for step, kind in came:
             self.injected.append({"game": self.games, "fault": kind, "step": step})
@@ -81,16 +81,16 @@ class Tally:
 
     @property
     def absent(self) -> dict[str, int]:
-        """In how many games each injection did not come about."""
+        """In how many games each injection did not occur."""
         return dict(Counter(one["fault"] for one in self.injected if one["step"] is None))
 
     @property
     def finished(self) -> int:
-        """How many games came to their end."""
+        """How many games were played to their end."""
         return self.games - len(self.stopped)
 
     def rows(self, order: Iterable[Situation]) -> list[TallyRow]:
-        """Return the rows that came about, in the given order of situations, others last."""
+        """Return the rows in the given order of situations, others last."""
         rank = {situation: place for place, situation in enumerate(order)}
         return [
             TallyRow(situation, behaviour, count, self._right[situation, behaviour] / count)
@@ -109,8 +109,8 @@ class Tally:
 
         Args:
             order: the situations in the order of the rows.
-            beliefs: of each person, at the end.
-            faults: those there were; by default why games were stopped.
+            beliefs: each person's beliefs at the end.
+            faults: the faults; by default the reasons for which games were stopped.
         """
         behaviours: Counter[str] = Counter()
         for (_, behaviour), count in self._done.items():

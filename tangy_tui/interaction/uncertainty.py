@@ -10,7 +10,7 @@ from tangy_tui.learning.policy import Decision
 
 
 def why_not(activity: Activity, state: ActivityState, decision: Decision) -> str:
-    """Say why Tangy does not act by itself here."""
+    """Explain why Tangy does not act by itself in this situation."""
     situation = activity.in_words(state.situation)
     if decision.contested:
         answers = " or ".join(activity.behaviour_words(b) for b, _ in decision.votes)
@@ -24,7 +24,7 @@ def why_not(activity: Activity, state: ActivityState, decision: Decision) -> str
 
 
 def remedy_for(decision: Decision) -> str:
-    """Say what would help so that it does."""
+    """Say what would make Tangy sure."""
     if decision.contested:
         return "Say which is right with `tangy demonstrations resolve`, and learn again."
     if not decision.seen:
@@ -33,6 +33,6 @@ def remedy_for(decision: Decision) -> str:
 
 
 def which_of(behaviour: str, others: Sequence[tuple[str, str]], names: Mapping[str, str]) -> str:
-    """Ask whom a behaviour is for, by the selectors that name different people now."""
+    """Return the question whom a behaviour is for, as its selectors name different people."""
     ways = [f"{names.get(person, person)} ({selector})" for selector, person in others]
     return f"{behaviour}: for {' or '.join(ways)}?"

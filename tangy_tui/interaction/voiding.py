@@ -1,4 +1,4 @@
-"""Voiding the last response of a person in a game that was observed wrongly."""
+"""Voiding of a person's last response in a game, because it was observed wrongly."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from tangy_tui.interaction.feedback import Feedback
 
 
 def void_last(store: Store, game: str, person: str, by: str) -> bool:
-    """Void the last response of a person in a game; return whether there was one.
+    """Void a person's last response in a game; return whether there was one.
 
     Args:
         store: the log.
         game: the id of the game.
-        person: whose response it is.
+        person: the id of the person.
         by: who says so.
     """
     feedback = Feedback(store)
