@@ -1,1 +1,1 @@
-"""The execution monitoring sub-system (Fig. 1, below): detection, diagnosis, recovery."""
+"""Execution monitoring (lower part of Fig. 1): detection, diagnosis, recovery."""

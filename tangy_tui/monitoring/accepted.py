@@ -1,6 +1,6 @@
-"""Effects that a teacher accepted although no demonstration had shown them.
+"""Effects that a teacher accepted although no demonstration shows them.
 
-Each can be taken back, and then is a fault again when it happens.
+Each acceptance can be undone; the effect is then a fault again.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tangy_tui.monitoring.fault import Fault, read_faults
 
 @dataclass(frozen=True)
 class Acceptance:
-    """One thing that a teacher said is all right: its number in the log, when, by whom, what."""
+    """An accepted effect: its number in the log, time, teacher, step and mismatches."""
 
     number: int
     at: str
@@ -39,7 +39,7 @@ def accept(store: Store, activity: Activity, fault: Fault, acted: Acted, by: str
 
 
 def read_accepted(store: Store, activity: str) -> list[Acceptance]:
-    """Return what teachers accepted in games of an activity and did not take back, oldest first."""
+    """Return the accepted effects of an activity that were not withdrawn, oldest first."""
     there: dict[int, Acceptance] = {}
     what: dict[str, tuple[Mismatch, ...]] = {}
     for event in store.events(EffectAccepted, AcceptanceTakenBack):
@@ -56,7 +56,7 @@ def take_back(store: Store, activity: str, place: int) -> Acceptance:
     """Withdraw an accepted effect, by its number in the list (from 1).
 
     Raises:
-        TangyError: there is no such place.
+        TangyError: the list has no such number.
     """
     accepted = read_accepted(store, activity)
     if not 1 <= place <= len(accepted):
@@ -68,7 +68,7 @@ def take_back(store: Store, activity: str, place: int) -> Acceptance:
 
 
 def expected_effects(store: Store, activity: Activity, policy: Policy) -> Effects:
-    """Learn the effects from a policy's demonstrations and from what teachers accepted since."""
+    """Learn the effects from a policy's demonstrations and from accepted effects."""
     learnt = _shown_effects(store, activity, policy)
     steps = tuple(one.step for one in read_accepted(store, activity.name))
     if not steps:
@@ -78,10 +78,10 @@ def expected_effects(store: Store, activity: Activity, policy: Policy) -> Effect
 
 
 def _shown_effects(store: Store, activity: Activity, policy: Policy) -> Effects:
-    """Learn the effects from a policy's demonstrations, and from answers only what none shows.
+    """Learn the effects from demonstrations; use answers only for effects that none of them shows.
 
-    Who answers in a game says what to do there, and not that whatever followed is all right: it
-    may be the fault itself that was seen again.
+    A teacher who answers in a game says what to do, not that the observed effect is right: it may
+    be the same fault again.
     """
     entries = read_library(store, activity.name).entries
     used = [entries[id].demonstration for id in policy.demonstrations if id in entries]

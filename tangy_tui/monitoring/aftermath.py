@@ -1,9 +1,8 @@
-"""Later symptoms that a fault explains: devices that have not recovered since.
+"""Secondary symptoms of a fault: devices that have not recovered since.
 
-A link that was lost takes all with it that is reached by it, and they do not come back at the very
-moment at which it does: a camera opens its stream anew, a scanner has to turn once. Until each of
-them was well once they say nothing new. For a while only: what does not come back is a fault of
-its own.
+A lost link makes all devices behind it fail, and they recover some time after the link: a camera
+reopens its stream, a scanner has to turn once. Until then their symptoms are explained by the link.
+A device that does not recover in time is a fault of its own.
 """
 
 from __future__ import annotations
@@ -16,12 +15,12 @@ from tangy_profiles.health import ERROR, STALE, Fact
 from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
 
 GRACE_SECONDS = 5.0
-"""From the end of a cause to when what it took along has to be back; cameras took up to 2.5 s."""
+"""The time (s) devices have to recover after the cause has ended; cameras took up to 2.5 s."""
 
 
 @dataclass
 class _Cause:
-    """A fault that took devices along: which are still missed, and since when it is over."""
+    """A fault that made devices fail: those not yet recovered, and when the fault ended."""
 
     rule: FaultRule
     missed: set[str]
@@ -29,10 +28,10 @@ class _Cause:
 
 
 class Aftermath:
-    """Knows which symptoms an earlier fault still explains. `begin` each game."""
+    """Removes symptoms that an earlier fault explains; call `begin` for each game."""
 
     def __init__(self, book: FaultBook, devices: Iterable[str]) -> None:
-        """Prepare.
+        """Prepare for a robot.
 
         Args:
             book: the fault rules.
@@ -47,21 +46,21 @@ class Aftermath:
         self._causes.clear()
 
     def end(self, code: str) -> bool:
-        """Let a fault explain nothing any more; return whether it still did."""
+        """Stop a fault from explaining symptoms; return whether it still did."""
         return self._causes.pop(code, None) is not None
 
     def without(self, evidence: Evidence, clock: Callable[[], float]) -> Evidence:
-        """Return evidence without what an earlier fault still explains.
+        """Return the evidence without the symptoms that an earlier fault explains.
 
         Args:
-            evidence: the facts known at this moment.
+            evidence: the current evidence.
             clock: returns the world's time, in s.
         """
         explained: set[str] = set()
         for code, cause in list(self._causes.items()):
             if cause.rule.matched(evidence) is not None:
                 cause.over_since = None
-                continue  # it explains them by itself
+                continue  # the fault itself is still there
             now = clock()
             cause.over_since = now if cause.over_since is None else min(cause.over_since, now)
             cause.missed = {name for name in cause.missed if self._is_missed(name, cause, evidence)}
@@ -76,7 +75,7 @@ class Aftermath:
         return {key: value for key, value in evidence.items() if key not in explained}
 
     def take(self, found: Iterable[Diagnosis], evidence: Evidence) -> None:
-        """Keep which devices the faults that were found have taken along."""
+        """Record the devices that new faults made fail."""
         for diagnosis in found:
             rule = diagnosis.rule
             missed = {
@@ -89,7 +88,7 @@ class Aftermath:
                 cause.missed |= missed
 
     def _is_missed(self, name: str, cause: _Cause, evidence: Evidence) -> bool:
-        """Say whether something is still wrong with a device that a cause explains."""
+        """Return whether a device that a cause explains still has a symptom."""
         mine: Mapping[str, Fact] = {
             key: value for key, value in evidence.items() if key.partition(".")[0] == name
         }

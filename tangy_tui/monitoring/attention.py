@@ -1,6 +1,6 @@
 """Attention to each person in a game: their requests and waits, and Tangy's visits.
 
-All of it is read from the log. Times are in s since the game began.
+It is derived from the log. Times are in s since the game began.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tangy_tui.monitoring.replay import Done, GameReplay, Noted
 
 
 def goes_to_people(activity: Activity | None) -> bool:
-    """Say whether an activity has Tangy visit people; of an unknown one that is assumed."""
+    """Return whether Tangy visits people in an activity (True for an unknown activity)."""
     if not isinstance(activity, DeclaredActivity):
         return True
     effects = (e for b in activity.declaration.behaviours.values() for e in b.effects)
@@ -26,11 +26,11 @@ def goes_to_people(activity: Activity | None) -> bool:
 
 @dataclass(slots=True)
 class Attention:
-    """One person in one game or several.
+    """The attention to one person in one game or several.
 
-    `waits` are from each request until Tangy was there or the request was closed, in s; `open` are
-    those that nobody had come for when the game ended. `seconds` is how long Tangy was with the
-    person, `helped` counts what it did there, by behaviour, `won` how often they won.
+    `waits` are the times in s from each request until Tangy arrived or the request was closed;
+    `open` are those of requests still open at the end. `seconds` is Tangy's time with the person,
+    `helped` counts its behaviours there, and `won` the person's wins.
     """
 
     id: str
@@ -49,16 +49,16 @@ class Attention:
 
     @property
     def longest(self) -> float | None:
-        """The longest wait (s), also of a request that stayed open; None: they never asked."""
+        """The longest wait (s), including open requests; None if they never asked."""
         return max([*self.waits, *self.open], default=None)
 
     @property
     def median(self) -> float | None:
-        """The median wait (s) of the requests for which Tangy came; None: of none."""
+        """The median wait (s) of the requests that Tangy answered; None if there are none."""
         return median(self.waits) if self.waits else None
 
     def add(self, other: Attention) -> None:
-        """Add another game of the same person."""
+        """Add the same person's attention in another game."""
         self.waits += other.waits
         self.open += other.open
         self.visits += other.visits
@@ -70,7 +70,7 @@ class Attention:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A number that was called, when (s in the game), and whether it was taken back later."""
+    """A called number, the time of the call (s), and whether it was taken back."""
 
     number: int
     seconds: float
@@ -78,9 +78,9 @@ class Call:
 
 
 def attention_in(replay: GameReplay) -> dict[str, Attention]:
-    """Return what each person got of a game, by id, in the order of the log.
+    """Return the attention to each person in a game, by id, in the order of the log.
 
-    Who was away all along, as staff said and nothing that happened denies, is left out.
+    People who were away for the whole game are left out, unless they had a request or a visit.
     """
     found = {person: Attention(person) for person in replay.game.people}
     asked: dict[str, float] = {}
@@ -100,7 +100,7 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
 
 
 def attention(replays: Iterable[GameReplay]) -> dict[str, Attention]:
-    """Return what each person got of some games, added up."""
+    """Return the attention to each person, summed over games."""
     added: dict[str, Attention] = {}
     for replay in replays:
         for person, one in attention_in(replay).items():
@@ -109,7 +109,7 @@ def attention(replays: Iterable[GameReplay]) -> dict[str, Attention]:
 
 
 def _count_visit(found: dict[str, Attention], done: Done, before: str) -> None:
-    """Count what was done with the person beside whom the robot stood or came to stand."""
+    """Count a step for the person the robot was with, and the arrival at a person."""
     there = found.get(done.state.place)
     if there is not None and done.after.place == there.id:
         there.seconds += done.over - done.begun
@@ -125,7 +125,7 @@ def _count_visit(found: dict[str, Attention], done: Done, before: str) -> None:
 def _count_between(
     replay: GameReplay, asked: dict[str, float], done: Done, before: ActivityState
 ) -> None:
-    """Count who has begun to wait after one step and before the next, as people do live."""
+    """Record requests that began between two steps, as in live games."""
     waited = {user.id for user in before.users if user.request == "AR"}
     for user in done.state.users:
         waits = user.request == "AR" and done.state.place != user.id
@@ -135,7 +135,7 @@ def _count_between(
 
 
 def _count_requests(found: dict[str, Attention], asked: dict[str, float], done: Done) -> None:
-    """Count who waits, and who waits no more: Tangy is there, or the request was closed."""
+    """Record new requests, and the waits that ended because Tangy arrived or the request closed."""
     for user in done.after.users:
         if user.id not in found:
             continue
@@ -148,12 +148,12 @@ def _count_requests(found: dict[str, Attention], asked: dict[str, float], done: 
 
 
 def _is_with(done: Done, person: str) -> bool:
-    """Say whether the robot has just left somebody whose request is still open."""
+    """Return whether the robot left this person while their request was still open."""
     return done.state.place == person and done.after.closed != person
 
 
 def calls_in(replay: GameReplay) -> list[Call]:
-    """Return the numbers that were called, in their order, with those that were taken back."""
+    """Return the called numbers in order, including those that were taken back."""
     calls: list[Call] = []
     for moment in replay.moments:
         match moment.what:

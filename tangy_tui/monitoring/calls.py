@@ -1,7 +1,7 @@
-"""Calling the expert, and staff, about what halts the robot: who was tried, and who answered.
+"""Calls to the expert and to staff about a fault that halts the robot.
 
-A person counts as reached only when they have answered: by what called them, or by a button on the
-robot's chest screen. Every try, and what came of it, is logged.
+A person counts as reached only after answering, by the same channel or by a button on the robot's
+chest screen. Every attempt and its result is logged.
 """
 
 from __future__ import annotations
@@ -21,33 +21,33 @@ from tangy_profiles.robot import Robot
 from tangy_tui.monitoring.fault import Fault
 
 ANSWER_SECONDS = 300.0
-"""How long an answer is waited for."""
+"""Timeout (s) of an answer."""
 FIRST_SECONDS = 3.0
-"""How long staff wait before they are told how it stands."""
+"""How long (s) staff wait for the first news of a call."""
 
 Way = Callable[[Contact, Mapping[str, Any], float, Callable[[CallNews], None]], None]
 
 
 AT_ROBOT = "chest screen"
-"""The way by which a call is answered at the robot."""
+"""The `way` of a call answered at the robot."""
 
 
 class CallButtons(Protocol):
-    """Buttons on a robot's chest screen, by which people say that they come."""
+    """Buttons on a robot's chest screen to answer a call."""
 
     on_answer: Callable[[str], object]
-    """Is called with the key of a button that was pressed, on any thread."""
+    """Called with the key of the pressed button, on any thread."""
 
     def offer_calls(self, calls: Mapping[str, str]) -> None:
-        """Show a button for each open call: who is called, by its key."""
+        """Show a button for each open call (key -> person's name)."""
 
 
 @dataclass(frozen=True, slots=True)
 class CallState:
-    """How a call stands: whom it is for, and what they said, or why it failed.
+    """The state of a call: whom it is for, and their answer or the error.
 
     If the person was reached by other means, `said` is who says so. `way` is how they answered, if
-    it was not what called them.
+    not by the channel of the call.
     """
 
     role: Role
@@ -58,12 +58,12 @@ class CallState:
 
     @property
     def over(self) -> bool:
-        """Whether the person knows of the fault."""
+        """Whether the person knows about the fault."""
         return self.stage in ("answered", "reached")
 
 
 class Calls:
-    """The calls about what halts a robot in the present game."""
+    """The calls about the fault that halts a robot in the current game."""
 
     def __init__(
         self,
@@ -73,11 +73,11 @@ class Calls:
         *,
         buttons: CallButtons | None = None,
     ) -> None:
-        """Prepare.
+        """Prepare for a robot.
 
         Args:
-            robot: whose file names whom to call.
-            log: keeps what was tried.
+            robot: its profile names the contacts.
+            log: appends a record to the log.
             way: sends a message and waits for an answer.
             buttons: those of the robot's chest screen, if it has one.
         """
@@ -93,40 +93,40 @@ class Calls:
             buttons.on_answer = self._answered_at_robot
 
     def state(self, role: Role) -> CallState | None:
-        """Return how the call to somebody about the present fault stands, None if none was made."""
+        """Return the state of a call about the current fault; None if nobody was called."""
         return self._states.get(role)
 
     def to_call(self, role: Role) -> Contact | None:
-        """Return who would be called now: nobody if it is under way, was answered, or cannot be."""
+        """Return the contact to call now; None if reached, being called, or unreachable."""
         contact, there = self._contacts[role], self._states.get(role)
         if contact is None or not contact.reachable:
             return None
         return contact if there is None or there.stage == "failed" else None
 
     def begin(self, fault: Fault) -> None:
-        """Take it that another fault halts the robot: staff are called, if that can be done."""
+        """Start with a new fault that halts the robot, and call staff if possible."""
         with self._lock:
             self._fault = fault
             self._states.clear()
         self.call(STAFF_ROLE, fault)
 
     def end(self) -> None:
-        """Take it that nothing halts the robot any more: nobody needs to answer."""
+        """Discard all calls, because the robot is no longer halted."""
         with self._lock:
             self._fault = None
             self._states.clear()
         self._offer()
 
     def call(self, role: Role, fault: Fault, wait: float = 0.0) -> CallState | None:
-        """Call somebody about a fault, unless that is under way or was answered.
+        """Call a contact about a fault, unless a call is under way or was answered.
 
         Args:
-            role: whom.
-            fault: about what.
-            wait: for how many s the first news is waited for.
+            role: the contact's role.
+            fault: the fault.
+            wait: how long (s) to wait for the first news.
 
         Returns:
-            How it stands, None if the robot's file names nobody who can be called.
+            The state of the call; None if the robot's profile has no reachable contact.
         """
         contact = self._contacts[role]
         if contact is None or not contact.reachable:
@@ -151,7 +151,7 @@ class Calls:
         return self._states.get(role)
 
     def reached(self, role: Role, fault: Fault, by: str) -> bool:
-        """Take it from staff that somebody was reached; return whether anybody is named."""
+        """Record that staff reached a contact by other means; return whether the contact exists."""
         contact = self._contacts[role]
         if contact is None:
             return False
@@ -179,7 +179,7 @@ class Calls:
         self._keep(fault, state)
 
     def _offer(self) -> None:
-        """Show a button for each call that nobody has answered."""
+        """Show a button for each call without an answer."""
         if self._buttons is not None:
             with self._lock:
                 waits = [one for one in self._states.values() if not one.over]
@@ -187,7 +187,7 @@ class Calls:
             self._buttons.offer_calls(offered)
 
     def _key(self, role: Role) -> str:
-        """Return the key of the button for a call about the present fault."""
+        """Return the button's key for a call about the current fault."""
         return role if self._fault is None else f"{role} {self._fault.id}"
 
     def _answered_at_robot(self, key: str) -> None:
@@ -206,10 +206,10 @@ class Calls:
             stage=state.stage,
             said=state.said,
         )
-        with suppress(TangyError):  # a log that is full keeps nobody from being called
+        with suppress(TangyError):  # a full log must not prevent a call
             self._log(made)
 
 
 def _way_of(contact: Contact) -> str:
-    """Say by what somebody is called, without what an address may hold of passwords."""
+    """Return the channel of a call, without the address, which may contain passwords."""
     return "command" if contact.command else contact.url.partition(":")[0] or "telephone"

@@ -1,7 +1,7 @@
-"""The log as tables for researchers: games, people in them, steps, responses, calls, faults, staff.
+"""The log as tables for researchers: games, people, steps, responses, calls, faults, staff.
 
-Every row says of which robot, of which game and of which world it is. People are named by id.
-`docs/data-dictionary.md` says what each column means.
+Every row has the robot, the game and the world. People are identified by id.
+`docs/data-dictionary.md` describes each column.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Row = Mapping[str, Cell]
 
 @dataclass(frozen=True, slots=True)
 class DataTable:
-    """A table: its name, what one row is about, its columns, and what makes its rows of a game."""
+    """A table: its name, its columns, and the function that makes its rows from a game."""
 
     name: str
     columns: tuple[str, ...]
@@ -40,7 +40,7 @@ HEAD = ("robot", "game", "world")
 
 
 def _cell(value: Any) -> Cell:
-    """Write a list in one cell; times are rounded to what a log can tell."""
+    """Format a cell: join lists, and round numbers to ms."""
     if isinstance(value, float):
         return round(value, 3)
     if isinstance(value, list | tuple):
@@ -210,4 +210,4 @@ TABLES = (
     DataTable("staff", (*HEAD, "step", "at", "seconds", "kind", "fault", "what", "by_person"),
               _staff),
 )  # fmt: skip
-"""Each table; the columns of `docs/data-dictionary.md`."""
+"""The tables; `docs/data-dictionary.md` describes their columns."""

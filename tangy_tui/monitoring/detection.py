@@ -1,7 +1,7 @@
-"""Fault detection (III-C): observations compared with expectations.
+"""Fault detection (III-C): compares observations with expectations.
 
-After each behaviour the state is compared with the learnt effects; all the time the age and state
-of what the devices report is looked at. What comes out is evidence; what it means is `diagnosis`.
+After each behaviour the new state is compared with the learnt effects. The age and state of the
+devices' readings is checked continuously. The result is evidence, which `diagnosis` interprets.
 """
 
 from __future__ import annotations
@@ -32,17 +32,16 @@ from tangy_tui.interaction.refusal import refused
 from tangy_tui.learning.effects import Effects, Mismatch, who_waits
 
 OWED_BY_PEOPLE = ("what was asked about", "request")
-"""The variables that stay as they were if a person does not do what was asked: an outcome, and
-no fault of the robot's."""
+"""Variables that stay unchanged if a person does not follow a request, which is no fault."""
 
 
 LATE = "WAITS"
-"""How a robot is while the data of a device is late, and not lost."""
+"""The robot's state while a device's data is late, but not lost."""
 OTHERS: Variable = "others' requests"
 
 
 class Detector:
-    """Turns observations into evidence. One per run of games; `begin` each game."""
+    """Turns observations into evidence; one per run of games, call `begin` for each game."""
 
     def __init__(self, activity: Activity, robot: Robot, effects: Effects) -> None:
         self.effects = effects
@@ -52,16 +51,16 @@ class Detector:
         self._in_game: Counter[str] = Counter()
         self._unchanged: Counter[str] = Counter()
         self.doubted: set[str] = set()
-        """People whose cards Tangy may misread; it no longer judges them in this game."""
+        """People whose cards Tangy may misread; it does not judge them in this game."""
         self.withdrew: tuple[str, ...] = ()
-        """Who asks no more since the last comparison, although nobody has helped them."""
+        """Those who stopped asking since the last comparison, although nobody helped them."""
         self._fruitless = 0
         self._last: ActivityState | None = None
         self._health: Health | None = None
         self._devices: dict[str, Fact] = {}
 
     def begin(self) -> None:
-        """Forget what the last game had."""
+        """Reset for a new game."""
         self._refusals.clear()
         self._in_game.clear()
         self._unchanged.clear()
@@ -71,22 +70,22 @@ class Detector:
         self._last = None
 
     def refused(self, person: str) -> int:
-        """Count that a person did not do what they were asked; return how often in a row."""
+        """Count that a person did not follow a request; return how often in a row."""
         self._refusals[person] += 1
         self._in_game[person] += 1
         return self._refusals[person]
 
     @property
     def spent(self) -> bool:
-        """Whether anybody has reached the limit of requests in this game."""
+        """Whether any person has reached the limit of requests in this game."""
         return bool(self.doubted) or any(map(self.spent_for_game, self._in_game))
 
     def spent_for_game(self, person: str | None) -> bool:
-        """Say whether a person was asked in vain as often as the activity allows in a game."""
+        """Return whether a person has reached the limit of unsuccessful requests in a game."""
         return person is not None and self._in_game[person] >= self.activity.asking.game
 
     def refusals(self, person: str | None) -> dict[str, Fact]:
-        """Return the evidence of how often a person did not do what they were asked."""
+        """Return the evidence of a person's unsuccessful requests."""
         if person is None:
             return {}
         times, spent = self._refusals[person], self.spent_for_game(person)
@@ -96,7 +95,7 @@ class Detector:
         return found
 
     def forgive(self, person: str | None) -> None:
-        """Begin anew to count what a person does not do."""
+        """Reset the count of a person's unsuccessful requests."""
         self._fruitless = 0
         if person is not None:
             self._refusals.pop(person, None)
@@ -107,18 +106,18 @@ class Detector:
         return tuple(self._robot.devices)
 
     def state(self, reading: Reading) -> str:
-        """Return the state of a device of the robot, as `state_of` does."""
+        """Return the state of a device of the robot (see `state_of`)."""
         return state_of(self._robot.devices.get(reading.device), reading)
 
     def watch(self, health: Health) -> Evidence:
-        """Return the evidence that the devices give; the same object for the same readings."""
+        """Return the evidence of the devices; cached for the same readings."""
         if health is not self._health:
             self._health = health
             self._devices = device_evidence(self._robot, health)
         return self._devices
 
     def worst(self, health: Health) -> tuple[str, str]:
-        """Return the worst state of all devices, and which one has it ("": all are well)."""
+        """Return the worst state of all devices and the label of that device ("" if all are OK)."""
         seen = self.watch(health)
         states = [(str(seen[f"{d.name}.state"]), d.label) for d in self._robot.devices.values()]
         state, label = max(states, key=lambda one: STATES.index(one[0]), default=(OK, ""))
@@ -136,15 +135,15 @@ class Detector:
     ) -> tuple[dict[str, Fact], list[Mismatch]]:
         """Compare the state after a behaviour with its learnt effects.
 
-        Where nothing at all is known of a behaviour's effects, nothing can be unexpected.
+        A behaviour without learnt effects has no unexpected ones.
 
         Args:
-            acted: the behaviour, and what was observed before and after it.
-            explained: a fault of a device explains what cannot be seen, so that it says nothing
-                of a person.
+            acted: the behaviour, with the states before and after it.
+            explained: whether a device fault explains an unseen effect, so that it does not count
+                against a person.
 
         Returns:
-            The evidence of the execution, and what was not as expected.
+            The evidence of the execution, and the mismatches.
         """
         behaviour, outcome = acted.action.behaviour, acted.outcome
         found = self.unexpected(behaviour, acted.state, outcome, acted.after)
@@ -171,9 +170,9 @@ class Detector:
         return evidence, found
 
     def _count_unchanged(self, acted: Acted, found: Sequence[Mismatch]) -> int:
-        """Count how often in a row what a person mended looks as before; return that number.
+        """Count how often in a row a person's correction changed nothing; return the count.
 
-        A person who was seen to refuse leaves the count as it is.
+        A person who was seen to refuse does not change the count.
         """
         person, response = str(acted.state.attended), acted.outcome.response
         if response is not None and not response.followed:
@@ -185,7 +184,7 @@ class Detector:
         return self._unchanged[person]
 
     def _went_unseen(self, acted: Acted) -> bool:
-        """Say whether a person was asked to mend what could be seen, and then could not be."""
+        """Return whether a person's visible card went out of view during a correction."""
         person, unread = acted.state.attended, self.activity.unread
         if acted.action.behaviour.effect not in CORRECTS or person is None:
             return False
@@ -194,13 +193,13 @@ class Detector:
         return acted.outcome.completed and beside and before != unread == after
 
     def take_in(self, now: ActivityState) -> None:
-        """Begin anew from a state that staff, or a change of the game's plan, brought about."""
+        """Start from a new state, after an action of staff or a change of the plan."""
         self._last = now
 
     def unexpected(
         self, behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
     ) -> list[Mismatch]:
-        """Return the features that differ from the expected effect of a behaviour."""
+        """Return the variables that differ from the expected effect of a behaviour."""
         if behaviour.name not in self.effects.values:
             return []
         followed = outcome.response is None or outcome.response.followed
@@ -213,13 +212,13 @@ class Detector:
     def contradicts(
         self, action: Action, before: ActivityState, outcome: Outcome, after: ActivityState
     ) -> bool:
-        """Say whether an observation after an action needs a second look.
+        """Return whether an observation after an action needs a second look.
 
-        That is what it should not have left so, or what looks as if a person had not done it.
+        That is so if it is unexpected, or looks like a refusal.
         """
         behaviour = action.behaviour
         if not outcome.completed:
-            return False  # it is known already that it came to nothing
+            return False  # known to have failed
         unexpected = self.unexpected(behaviour, before, outcome, after)
         return bool(unexpected) or refused(behaviour, before, outcome, after)
 
@@ -233,10 +232,10 @@ class Detector:
         return [] if seen in expected else [mismatch]
 
     def _count(self, acted: Acted, explained: bool) -> None:
-        """Count requests that a person did not follow, and behaviours that changed nothing."""
+        """Count refused requests, and behaviours that changed nothing."""
         before, after, outcome = acted.state, acted.after, acted.outcome
         if outcome.response is not None:
-            person = before.attended or outcome.response.person  # whose place it is
+            person = before.attended or outcome.response.person  # the seat belongs to them
             if outcome.response.followed:
                 self._refusals.pop(person, None)
             else:
@@ -251,13 +250,13 @@ class Detector:
 
 
 def _waiting(last: ActivityState, now: ActivityState) -> list[str]:
-    """Return who asked and waited for the robot to come, which then stood with nobody of them."""
+    """Return those who asked before, and whom the robot was not with."""
     beside = {last.place, now.place, now.attended}
     return [user.id for user in last.users if user.request == "AR" and user.id not in beside]
 
 
 def _gone_during(acted: Acted) -> list[str]:
-    """Return who waited while a behaviour was for somebody else, and asks no more after it."""
+    """Return those who asked during a behaviour for somebody else, and no longer ask after it."""
     return [
         user.id
         for user in acted.state.users
@@ -268,22 +267,22 @@ def _gone_during(acted: Acted) -> list[str]:
 
 
 def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
-    """Return the evidence that the devices of a robot give.
+    """Return the evidence of the robot's devices.
 
-    What a device measured before it fell silent is no evidence any more, and a device of the
-    robot's that is not even mentioned is as silent as any. Of others nothing is taken in.
+    Facts that a device measured before it fell silent are ignored. A device without any reading is
+    STALE. Devices that the robot does not have are ignored.
     """
     found: dict[str, Fact] = {f"{name}.state": STALE for name in robot.devices}
     quiet = _link_is_quiet_for(robot, health)
     for reading in health:
         device = robot.devices.get(reading.device)
         if device is None:
-            continue  # what the robot has not cannot fail
+            continue  # not a device of this robot
         state = lasting_state(device, reading)
         if state == STALE and quiet:
             grew_old = device.stale_after < reading.age <= device.lost_after + quiet
             told = OK if reading.state == STALE else reading.state
-            state = told if grew_old else state  # as it was: a pause is no sign of anything
+            state = told if grew_old else state  # unchanged: a short pause is no symptom
         found[f"{reading.device}.state"] = state
         if math.isfinite(reading.age):
             found[f"{reading.device}.age"] = reading.age
@@ -294,11 +293,11 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
 
 
 def _link_is_quiet_for(robot: Robot, health: Health) -> float:
-    """Return since how many s the link has been quiet, or 0 if that is short or it is lost.
+    """Return for how many s the link has been quiet; 0 if only briefly, or if it is lost.
 
-    All that is reached by a quiet link grows old with it, and what was older before, as pictures
-    are, may count as silent before the link does. It is judged by how old it was when the link was
-    heard last, so that staff are not sent to the wrong cable.
+    All data behind a quiet link ages with it, and slower data, such as pictures, may become stale
+    before the link does. It is judged by its age when the link was last heard, so that staff do not
+    check the wrong cable.
     """
     device = robot.devices.get(LINK)
     reading = next((one for one in health if one.device == LINK), None)
@@ -308,7 +307,7 @@ def _link_is_quiet_for(robot: Robot, health: Health) -> float:
 
 
 def symptoms(evidence: Evidence) -> set[str]:
-    """Return the keys of evidence that needs an explanation of its own."""
+    """Return the keys of evidence that needs an explanation."""
     return {
         key
         for key, value in evidence.items()
@@ -317,7 +316,7 @@ def symptoms(evidence: Evidence) -> set[str]:
 
 
 def together(*evidence: Mapping[str, Fact]) -> dict[str, Fact]:
-    """Join what devices, world state and execution give."""
+    """Merge the evidence of devices, world state and execution."""
     return {key: value for one in evidence for key, value in one.items()}
 
 

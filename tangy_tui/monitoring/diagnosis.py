@@ -1,9 +1,8 @@
 """Fault diagnosis (III-C): ordered rules that map evidence to faults.
 
-Each symptom is explained by the first rule that matches and names it; a rule all of whose
-symptoms are explained already has nothing to add. So a lost link is one fault and not eleven, and
-two faults that have nothing to do with each other are two. What nothing explains is a diagnosis
-too: it was unexpected, and a teacher is asked.
+Each symptom is explained by the first matching rule that names it. A rule whose symptoms are all
+explained already adds nothing. So a lost link is one fault, not eleven, and two independent faults
+are two. Symptoms without an explanation are a diagnosis too: unexpected, so a teacher is asked.
 """
 
 from __future__ import annotations
@@ -18,13 +17,13 @@ from tangy_tui.monitoring.detection import symptoms
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """A fault that was recognised: by which evidence, and which mismatches it explains."""
+    """A diagnosed fault: its evidence, and the mismatches that it explains."""
 
     rule: FaultRule
     evidence: Evidence
     mismatches: tuple[Mismatch, ...]
     beside: frozenset[str] = frozenset()
-    """The keys of evidence that only says that it is not another fault."""
+    """The keys of evidence that only excludes other faults."""
 
 
 def diagnose(
@@ -55,8 +54,8 @@ def diagnose(
         if (keys & rule.symptoms) - explained:
             take(rule, keys, conditions)
             if rule.critical and evidence.get("behaviour.completed") is False:
-                # What critically went wrong broke the behaviour off: nothing was to be expected of
-                # it. What others did meanwhile is another matter.
+                # A critical fault interrupted the behaviour, so its expected effects say nothing,
+                # except what other people did meanwhile.
                 broken_off = {key for key in evidence if key.startswith("mismatch.")}
                 explained.update(broken_off - {"mismatch.others' requests"})
     if left := symptoms(evidence) - explained:
@@ -65,9 +64,9 @@ def diagnose(
 
 
 def narrows(condition: Condition, among: Sequence[Condition], book: FaultBook) -> bool:
-    """Say whether a condition only says that it is not another fault.
+    """Return whether a condition only excludes other faults.
 
-    It is then the contrary of another rule's, and its own rule has one that is not.
+    That is so if it negates a condition of another rule, and its own rule has one that does not.
     """
     theirs = [c for rule in book.rules for conditions in rule.when for c in conditions]
 

@@ -1,7 +1,8 @@
-"""Drills: staff rehearse on the table-top what to do when something goes wrong, and get a score.
+"""Drills: staff rehearse the response to faults in the simulator, and get a score.
 
-Drive it by `next` and `answer`: screen, lines and scripts do the same. What was answered is in the
-log round by round, so that an interrupted drill can go on; nothing else of a drill is logged.
+Screens, the line mode and scripts all drive a `Drill` by `next` and `answer`. The answers are
+logged round by round, so that an interrupted drill can be resumed; nothing else of a drill is
+logged.
 """
 
 from __future__ import annotations
@@ -26,23 +27,23 @@ DrillAsks: TypeAlias = Literal["what", "do", "clear"]
 WHAT: DrillAsks = "what"
 DO: DrillAsks = "do"
 CLEAR: DrillAsks = "clear"
-"""The three questions of a round; the last one only after a critical fault."""
+"""The questions of a round; the last one only after a critical fault."""
 
 StaffDoes: TypeAlias = Literal["continue", "user", "teacher", "expert"]
-"""What staff can do, by the recovery that it is."""
+"""The possible actions of staff, named after the recoveries."""
 
 NOTHING = "0"
-"""The key for: nothing is wrong."""
+"""The key of the answer that nothing is wrong."""
 
 ACTIONS: tuple[StaffDoes, ...] = get_args(StaffDoes)
 
 
 @dataclass(frozen=True, slots=True)
 class DrillOption:
-    """An answer that can be given: by which key, and what it stands for.
+    """A possible answer and its key.
 
     `value` is the code of a fault ("": nothing is wrong), a `StaffDoes`, or "yes" or "no"; `name`
-    is the fault's.
+    is the name of the fault.
     """
 
     key: str
@@ -59,12 +60,12 @@ class Question:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """The keys that answer it."""
+        """The keys of its answers."""
         return tuple(choice.key for choice in self.choices)
 
 
 class Drill:
-    """One drill. `next` begins a round, `answer` answers its questions until there is none."""
+    """One drill: `next` begins a round, `answer` answers its questions until none is left."""
 
     def __init__(
         self,
@@ -81,17 +82,17 @@ class Drill:
         """Prepare a drill.
 
         Args:
-            tabletop: makes the rounds.
-            store: where the sheet is kept; nothing else is written there.
-            who: who rehearses.
-            seed: the same one draws the same rounds (default: one that no drill has had).
-            rounds: how many.
-            clock: gives seconds; its beginning does not matter.
-            note: why it goes by something else than what Tangy has learnt, if it does.
-            past: the sheet so far of an interrupted drill that goes on; its seed and rounds count.
+            tabletop: plays the rounds.
+            store: the log that keeps the score sheet.
+            who: the trainee.
+            seed: the same seed draws the same rounds (default: one that no earlier drill used).
+            rounds: the number of rounds.
+            clock: returns seconds of a monotonic clock.
+            note: why the drill does not use the learnt policy, or None.
+            past: the sheet of an interrupted drill to resume; its seed and rounds are used.
 
         Raises:
-            TangyError: there are too few rounds, or too many.
+            TangyError: the number of rounds is out of range.
         """
         if past is not None:
             seed, rounds = past.seed, past.rounds
@@ -102,14 +103,14 @@ class Drill:
             seed = 1 + max((sheet.seed for sheet in earlier), default=0)
         mine = [sheet for sheet in earlier if sheet.by(who)]
         self.before = mine[-1] if mine else None
-        """The sheet of the drill that the same person had before."""
+        """The sheet of the same person's previous drill."""
         self.tabletop = tabletop
         self.rounds = rounds
         self.note = note
         self.round: Round | None = None
-        """The round that is shown."""
+        """The current round."""
         self.question: Question | None = None
-        """The current question; None before the first round, and once a round is answered."""
+        """The current question; None before the first round, and after a round's last answer."""
         self._store = store
         self._who = who
         self._seed = seed
@@ -122,7 +123,7 @@ class Drill:
 
     @property
     def number(self) -> int:
-        """Which round is shown, from 1; 0 before the first."""
+        """The number of the current round, from 1; 0 before the first."""
         return 0 if self.round is None else self.round.number
 
     @property
@@ -150,7 +151,7 @@ class Drill:
         return self.round
 
     def shown(self) -> None:
-        """Begin to take the time now, when the round can be read."""
+        """Start the clock of a round now that it is displayed."""
         if not self._given:
             self._since = self._clock()
 
@@ -158,10 +159,11 @@ class Drill:
         """Answer the question by the key of one of its choices.
 
         Returns:
-            The round with its answers once all were given; the sheet is kept after the last one.
+            The round with its answers after its last question, else None. After the last round the
+            sheet is logged.
 
         Raises:
-            TangyError: nothing is asked, or the key stands for nothing.
+            TangyError: there is no question, or no such key.
         """
         question, shown = self.question, self.round
         if question is None or shown is None:
@@ -186,7 +188,7 @@ class Drill:
         return answered
 
     def leave(self) -> Sheet | None:
-        """Leave the drill and return its unfinished sheet; None without an answer."""
+        """Leave the drill and log its unfinished sheet; return None if it has no answer."""
         self.question = None
         if not self._answered:
             return None

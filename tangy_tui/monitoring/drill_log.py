@@ -1,4 +1,4 @@
-"""The score sheets of drills that the log holds."""
+"""The score sheets of drills in the log."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from tangy_profiles.store import Event, Store
 
 
 def read_sheets(store: Store, who: str = "") -> list[Sheet]:
-    """Read the sheets that were kept (of one person), the oldest first."""
+    """Read the logged sheets (of one person), oldest first."""
     sheets = [_sheet(event) for event in store.events(DrillHeld)]
     return [sheet for sheet in sheets if not who or sheet.by(who)]
 
 
 def last_sheet(store: Store) -> Sheet | None:
-    """Return the newest sheet, or None."""
+    """Return the latest sheet, or None."""
     event = store.last(DrillHeld)
     return None if event is None else _sheet(event)
 
 
 def interrupted_sheet(store: Store, who: str, activity: str) -> Sheet | None:
-    """Return the sheet so far of the drill that a person had last, if it was interrupted."""
+    """Return the sheet of a person's latest drill if it was interrupted, else None."""
     last: Event[DrillAnswered] | None = None
     for event in store.events(DrillAnswered):
         if event.record.sheet.by(who):
@@ -34,7 +34,7 @@ def interrupted_sheet(store: Store, who: str, activity: str) -> Sheet | None:
 
 
 def keep_interrupted(store: Store, sheet: Sheet) -> None:
-    """Keep the sheet of an interrupted drill as it is, unfinished."""
+    """Log the sheet of an interrupted drill as it is, unfinished."""
     store.append(DrillHeld(sheet=replace(sheet, at="")))
 
 

@@ -1,4 +1,4 @@
-"""The policy of a drill: the one Tangy has learnt, or one from quick scripted demonstrations."""
+"""The policy of a drill: the learnt one, or one from quick scripted demonstrations."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from tangy_tui.monitoring.accepted import expected_effects
 
 FOREST = ForestSettings(trees=20)
 MOST_GAMES = 4
-"""Guided games that are shown at the most; one is enough unless an activity is an odd one."""
+"""The most guided games to demonstrate; usually one is enough."""
 
 PEOPLE = tuple(f"person{number}" for number in range(1, 5))
 
 
 DrillNote: TypeAlias = Literal["nothing learnt", "unusable", "changed", "gaps"]
-"""Why a drill goes by what a scripted teacher has shown, and not by what Tangy has learnt."""
+"""Why a drill uses scripted demonstrations instead of the learnt policy."""
 
 
 class DrillPolicy(NamedTuple):
-    """A policy, the effects it expects, and why it is not what Tangy has learnt (None: it is)."""
+    """A policy, its expected effects, and why it is not the learnt policy (None: it is)."""
 
     policy: Policy
     effects: Effects
@@ -36,12 +36,12 @@ class DrillPolicy(NamedTuple):
 
 
 def policy_for_drill(store: Store, activity: Activity) -> DrillPolicy:
-    """Return the last policy if it knows every situation, or one that is learnt in a moment.
+    """Return the latest policy if it is sure in every situation, else a quickly learnt one.
 
-    Nothing is written: the demonstrations for the drill are not kept.
+    Nothing is logged: the demonstrations of the drill are discarded.
 
     Raises:
-        TangyError: neither exists, and the activity does not declare the expected behaviours.
+        TangyError: neither exists, because the activity does not declare the expected behaviours.
     """
     why: DrillNote = "nothing learnt"
     if last_policy(store, activity.name) is not None:
@@ -70,7 +70,7 @@ def _taught_quickly(activity: Activity) -> tuple[Policy, Effects]:
 
 
 def _demonstrate(activity: Activity, seed: int) -> Demonstration:
-    """Show one guided game as the activity expects it."""
+    """Demonstrate one guided game by the activity's expected behaviours."""
     world = GuidedWorld(activity, PEOPLE, seed=seed, users=load_users().teaching())
     state = world.begin()
     steps: list[Step] = []

@@ -1,7 +1,7 @@
-"""Rounds of a drill: faults that really happen, in simulated games that leave nothing behind.
+"""Rounds of a drill: injected faults in simulated games that leave no trace.
 
-Each round is a game of its own, with a log of its own in a folder that is thrown away, so that
-none of it changes the facility's games or its beliefs about people.
+Each round is a separate game with a log in a temporary folder, so it does not change the facility's
+games or beliefs about people.
 """
 
 from __future__ import annotations
@@ -37,29 +37,28 @@ from tangy_tui.monitoring.fault import Diagnosed, Fault
 from tangy_tui.monitoring.supervision import Supervision
 
 CHOICES = 4
-"""Names that are offered for what was seen."""
+"""The number of fault names to choose from."""
 
 QUIET_SHARE = 5
-"""One round in so many has no fault: people should know when to let Tangy go on."""
+"""One round in this many has no fault, so that staff learn when to let Tangy continue."""
 
 MOST_TRIES = 40
-"""Games that are tried until a fault can be seen alone; a few are enough where it can be at all."""
+"""The most games to play until a fault occurs alone; usually a few are enough."""
 
 MOST_STEPS = 90
 SETS_IN = (4, 26)
-"""Between which steps of its game a fault sets in."""
+"""The range of steps in which a fault occurs."""
 
 REFUSED, LATE, ASKS, READING = "refused", "late", "asks", "reading"
 QUIET_KINDS = (REFUSED, LATE, ASKS, READING)
-"""What may catch the eye although nothing is wrong: somebody does not do what was asked, or does
-it late, or asks while somebody else is being helped; or a device measures what it should."""
+"""Quiet rounds: a refusal, a late response, a request during a visit, or a normal reading."""
 
 
 @dataclass(frozen=True, slots=True)
 class RoundKind:
-    """The case of a round: a name, the correct diagnosis ("": none), the injected fault.
+    """The scenario of a round: its name, the right diagnosis ("": none), the injected faults.
 
-    `gap`: nothing is brought about, but Tangy was not shown one of the situations.
+    `gap`: no fault is injected, but one of the situations was not demonstrated.
     """
 
     name: str
@@ -76,16 +75,17 @@ _GAPS = (RoundKind("unknown-situation", "unknown-situation", gap=True),)
 
 
 def round_kinds(book: FaultBook) -> tuple[RoundKind, ...]:
-    """Return every kind of fault that can be rehearsed with a book."""
+    """Return every scenario that can be rehearsed with these rules."""
     single = tuple(RoundKind(kind.name, kind.code, (kind.name,)) for kind in KINDS.values())
     codes = {rule.code for rule in book.rules}
     return tuple(kind for kind in (*single, *_TWO_AT_ONCE, *_GAPS) if kind.code in codes)
 
 
 def draw_rounds(book: FaultBook, rounds: int, rng: Random) -> list[RoundKind]:
-    """Draw what comes up in a drill.
+    """Draw the scenarios of a drill.
 
-    From four rounds on every class of fault comes up; no kind comes twice before all have come.
+    With four rounds or more, every class of fault occurs; no scenario is repeated before all have
+    occurred.
     """
     share, rest = divmod(rounds, QUIET_SHARE)
     quiet = share + (rng.random() < rest / QUIET_SHARE)
@@ -112,7 +112,7 @@ def draw_rounds(book: FaultBook, rounds: int, rng: Random) -> list[RoundKind]:
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """The question whether to clear Tangy: the view at that moment, and the right answer."""
+    """The question whether to clear the halt: the evidence at that moment, and the right answer."""
 
     seen: str
     right: bool
@@ -120,11 +120,11 @@ class Release:
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """One round as a screen shows it, with the right answers.
+    """One round for display, with the right answers.
 
-    `noticed` is the evidence in words, `devices` all devices by label with their states, `choices`
-    the codes that are offered as names. `fault` and `rule` are None if nothing is wrong; `quiet`
-    then says what caught the eye.
+    `noticed` is the evidence in words, `devices` maps each device's label to its state, and
+    `choices` are the codes of the offered faults. `fault` and `rule` are None if nothing is wrong;
+    `quiet` then says what looks like a fault.
     """
 
     number: int
@@ -143,17 +143,17 @@ class Round:
 
     @property
     def code(self) -> str:
-        """The diagnosis that is right; "" if nothing is wrong."""
+        """The right diagnosis; "" if nothing is wrong."""
         return "" if self.rule is None else self.rule.code
 
     @property
     def recovery(self) -> str:
-        """Return the right action: the first rung of the fault's ladder."""
+        """Return the right action: the first recovery of the fault's ladder."""
         return "continue" if self.rule is None else self.rule.recovery[0]
 
 
 class Tabletop:
-    """Plays rounds on the table-top: with a policy, its effects, the fault rules, and people."""
+    """Plays rounds in the simulator with a policy, its effects, the fault rules, and people."""
 
     def __init__(
         self,
@@ -164,7 +164,7 @@ class Tabletop:
         activity: Activity,
         names: Mapping[str, str],
     ) -> None:
-        """Prepare to play; `names` are those who take part, by id."""
+        """Prepare to play; `names` are the participants, by id."""
         self.book = book
         self.robot = robot
         self.activity = activity
@@ -178,20 +178,21 @@ class Tabletop:
         return self.names.get(person, person)
 
     def rule_name(self, code: str) -> str:
-        """Return what a fault is called, of nobody in particular."""
+        """Return the name of a fault, without a person's name."""
         return self.plainly(self.book.rule(code), self.book.rule(code).name)
 
     def plainly(self, rule: FaultRule, text: str) -> str:
-        """Fill in a rule's text so that it names nobody."""
+        """Fill in a rule's text without a person's name."""
         return rule.fill(text, name="the person", object=self.activity.object)
 
     def play(self, number: int, kind: RoundKind, rng: Random) -> Round:
-        """Play games until the drawn fault, and no other, can be observed.
+        """Play games until the drawn fault, and no other, occurs.
 
-        What cannot occur in this activity is replaced by something of the same class.
+        A fault that cannot occur in this activity is replaced by another, preferably of the same
+        class.
 
         Raises:
-            TangyError: nothing at all can be rehearsed.
+            TangyError: no fault can occur at all.
         """
         for one in self._instead(kind, rng):
             for _ in range(MOST_TRIES):
@@ -233,14 +234,14 @@ class Tabletop:
             )
 
     def _with_a_gap(self, rng: Random) -> Policy:
-        """Return the policy as it is where one of the situations was never shown."""
+        """Return the policy as if one of the situations had never been demonstrated."""
         table = dict(self._policy.table)
         situation = rng.choice(list(self.activity.situations))
         table[situation] = replace(table[situation], seen=0, right=())
         return replace(self._policy, table=table)
 
     def try_once(self, number: int, kind: RoundKind, seed: int) -> Round | None:
-        """Play one game; None if something else happened in it, or nothing."""
+        """Play one game; return None if the fault did not occur, or another one did."""
         rng = Random(f"{seed}/round")
         sets_in, wanted = rng.randrange(*SETS_IN), rng.choice(QUIET_KINDS)
         brought = _NOT_YET_A_FAULT if (kind, wanted) == (QUIET, REFUSED) else kind.injections
@@ -259,7 +260,7 @@ class Tabletop:
                 found = [event.fault for event in events if isinstance(event, Diagnosed)]
                 if found:
                     if [fault.code for fault in found] != [kind.code] or game.over:
-                        return None  # something else, or too late to do anything about it
+                        return None  # another fault, or too late to respond
                     return self.fault_round(number, kind, game, found[0], acted, rng)
                 if game.over:
                     return None
@@ -278,7 +279,7 @@ class Tabletop:
         acted: Acted | None,
         rng: Random,
     ) -> Round:
-        """Make a round of a fault that has occurred in a game."""
+        """Make a round of a fault that occurred in a game."""
         rule, world = self.book.rule(fault.code), game.world
         shown = Round(
             number,
@@ -298,7 +299,7 @@ class Tabletop:
         return replace(shown, release=self._release(game, fault, mended=rng.random() < 0.5))
 
     def _release(self, game: Supervision, fault: Fault, *, mended: bool) -> Release:
-        """Let the expert mend the fault or not, and see whether the robot can be cleared then."""
+        """Let the expert repair the fault or not, and check whether the halt can be cleared."""
         who = "drill"
         if mended:
             game.call_expert(who)
@@ -339,7 +340,7 @@ class Tabletop:
     def _catches_the_eye(
         self, quiet: str, acted: Acted, refused: Mapping[str, int], game: Supervision, rng: Random
     ) -> str:
-        """Return an observation that resembles a fault but is none; "" if there was none."""
+        """Return an observation that only looks like a fault; "" if there was none."""
         response = acted.outcome.response
         if quiet == READING:
             told = [one for one in game.world.health() if one.facts]
@@ -370,7 +371,7 @@ class Tabletop:
         )
 
     def _names_to_choose(self, rule: FaultRule | None, rng: Random) -> tuple[str, ...]:
-        """Draw names that are wrong; at least one is of the same device or class."""
+        """Draw the names to choose from; at least one wrong one is of the same device or class."""
         others = [other for other in self.book.rules if rule is None or other.code != rule.code]
         rng.shuffle(others)
         first = next((other for other in others if _alike(rule, other)), others[0])
@@ -383,7 +384,7 @@ class Tabletop:
 
 
 def _alike(rule: FaultRule | None, other: FaultRule) -> bool:
-    """Say whether a fault can be taken for another one; for none: one that no device reports."""
+    """Return whether a fault resembles another; without a fault: whether no device reports it."""
     if rule is None:
         return not other.device
     return (rule.device != "" and rule.device == other.device) or (

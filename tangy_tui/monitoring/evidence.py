@@ -11,7 +11,7 @@ from tangy_tui.interaction.reading_error import FusedLook
 from tangy_tui.learning.effects import Mismatch
 
 STATES = {OK: "it works", STALE: "no data", ERROR: "failed", WARN: "it warns"}
-"""The states of a device in words: the same in lists, in evidence, in drills and in banners."""
+"""The states of a device in words, for lists, evidence, drills and banners."""
 
 
 def evidence_words(
@@ -24,10 +24,10 @@ def evidence_words(
     """Format evidence as one line: measurements, expectations and observations.
 
     Args:
-        evidence: by which it was recognised.
-        mismatches: what was not as expected.
+        evidence: the evidence of a diagnosis.
+        mismatches: the unexpected effects.
         robot: its profile.
-        conditions: by which the evidence was recognised; their limits are said beside it.
+        conditions: the matching conditions, for the limits of measurements.
         looks: how many looks the mismatches rest on, and how often one is wrong.
     """
     limits = {condition.key: condition.limit for condition in conditions}
@@ -44,7 +44,7 @@ def evidence_words(
             since = f" for {age:.2g} s" if value == STALE and isinstance(age, float) else ""
             parts.append(f"{device.label}: {STATES.get(str(value), str(value))}{since}")
         elif fact == "age" and f"{head}.state" in evidence:
-            continue  # it was said with the state
+            continue  # included with the state
         else:
             limit = f" ({words})" if (words := limits.get(key, "")) else ""
             measure = device.facts.get(fact)
@@ -59,7 +59,7 @@ def evidence_words(
 
 
 def mismatch_words(mismatch: Mismatch) -> str:
-    """Say what should have followed a behaviour and did not, as one who was there would."""
+    """Describe a mismatch in words, as a witness would."""
     words = _MISMATCHES.get((mismatch.variable, mismatch.seen))
     if words is None and mismatch.variable == "robot's place":
         there = _PLACES.get(mismatch.seen, mismatch.seen)
@@ -95,7 +95,7 @@ _MISMATCHES = {
 
 
 def written(value: Fact) -> str:
-    """Write what a device measured, with two digits that count."""
+    """Format a measured value, numbers with two significant digits."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:.2g}" if isinstance(value, float) else str(value)

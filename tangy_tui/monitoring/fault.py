@@ -1,4 +1,4 @@
-"""A fault and its recovery: the record that console, log and reports share."""
+"""A fault and its recovery: the record that screens, log and reports share."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ BORNE: FaultStatus = "borne"
 OVER: FaultStatus = "over"
 
 ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended", "left"))
-"""The moves after which a fault is over."""
+"""The moves that end a fault."""
 
 
 @dataclass
 class Fault:
     """One occurrence of a fault.
 
-    `seconds` is the time in the game at which it was diagnosed, `step` the last step before that,
-    and `behaviour` what had been executed, if it was noticed by that. `why` is its evidence in
-    words. `texts` are the name of the fault, what staff are told, and their steps; {name} stands
-    in them for the person, who is `called` something: the log never holds a name.
+    `seconds` is the time in the game of the diagnosis, `step` the last step before it, and
+    `behaviour` the behaviour after which it was detected, if any. `why` is the evidence in words.
+    `texts` are the name of the fault, the message for staff, and their steps. In them {name} stands
+    for the person, to be replaced by `called`, because the log never holds a name.
     """
 
     id: str
@@ -60,7 +60,7 @@ class Fault:
     """Whether it is open, borne or over."""
 
     def add(self, move: RecoveryEvent) -> None:
-        """Add a recovery event."""
+        """Add a recovery event, and update the status."""
         self.moves.append(move)
         if move.kind in ENDINGS:
             self.status = OVER
@@ -84,7 +84,7 @@ class Fault:
 
     @property
     def unnamed(self) -> str:
-        """The fault and what staff are told, in words that the log may keep."""
+        """The fault and the message for staff, without names, for the log."""
         return named(f"{self.texts[0]}: {self.texts[1]}", SOMEBODY)
 
     @property
@@ -94,21 +94,21 @@ class Fault:
 
     @property
     def acknowledged(self) -> bool:
-        """Whether staff said that they have seen it."""
+        """Whether staff have acknowledged it."""
         return any(move.kind == "acknowledged" for move in self.moves)
 
     @property
     def succeeded(self) -> bool:
-        """Whether it was recovered from, or Tangy went on with it as it should."""
+        """Whether it was recovered from, or Tangy goes on with it as planned."""
         return self.status in (OVER, BORNE)
 
     @property
     def ladder(self) -> tuple[str, ...]:
-        """The recoveries that were begun, from the first to the last that was needed."""
+        """The recoveries that were tried, in order."""
         return (self.recovery, *(move.to for move in self.moves if move.kind == "escalated"))
 
     def record(self) -> FaultDiagnosed:
-        """Return the fault as the log keeps it, without its moves."""
+        """Return the log record of the fault, without its moves."""
         return FaultDiagnosed(
             game=self.game,
             fault=self.id,
@@ -150,7 +150,7 @@ class Diagnosed:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """Something was done about a fault, or happened to it."""
+    """A recovery event of a fault."""
 
     fault: Fault
     move: RecoveryEvent
@@ -160,10 +160,10 @@ FaultEvent: TypeAlias = Diagnosed | Moved
 
 
 def fault_documents(faults: Iterable[Fault], stopped: str | None) -> list[dict[str, Any]]:
-    """Return what went wrong in a game, as `--json` prints it.
+    """Return the faults of a game, as `--json` prints them.
 
-    A question about an unknown situation is included only if it ended the game (`stopped` says
-    why it ended).
+    A question about an unknown situation is included only if it ended the game (`stopped` says why
+    it ended).
     """
     told = list(faults)
     documents = [fault.document() for fault in told if not fault.asks_only]
@@ -186,7 +186,7 @@ def read_faults(store: Store, game: str | None = None) -> list[Fault]:
 
 
 def fold_faults(events: Iterable[Event[EventRecord]], names: Mapping[str, str]) -> list[Fault]:
-    """Put faults and their moves together from their events; `names` are what people are called."""
+    """Build faults with their moves from their events; `names` are people's names by id."""
     known = {**{person.id: person.name for person in load_people(MOST_PEOPLE)}, **names}
     found: dict[str, Fault] = {}
     for event in events:

@@ -1,4 +1,4 @@
-"""The second part of Table II: how often faults of each kind came, and were recovered from."""
+"""The second part of Table II: how often faults of each class occurred and were recovered from."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ ROWS = (
 
 
 def fault_rows(faults: Iterable[Fault]) -> list[dict[str, Any]]:
-    """Count faults by criticality and the recovery that was tried first.
+    """Count faults by criticality and first recovery.
 
-    All of the paper's rows are there. `instances` counts every given fault; leave out those that
-    only ask (`Fault.asks_only`) where a question is no fault. `success` is the share, from 0 to 1,
-    that is over, or that Tangy goes on with as planned, by the first recovery itself: a fault that
-    was handed on to another one is no success. It is None if there was no instance.
+    All of the paper's rows are included. `instances` counts every given fault; leave out questions
+    (`Fault.asks_only`) if they should not count. `success` is the share, from 0 to 1, of faults
+    that the first recovery itself ended or made tolerable: a fault that was escalated is no
+    success. It is None without instances.
     """
     done: dict[tuple[str, str], list[bool]] = {row: [] for row in ROWS}
     for fault in faults:

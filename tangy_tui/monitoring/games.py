@@ -1,4 +1,4 @@
-"""The games in the log: which there were, when, by which policy, and how each ended."""
+"""The games in the log: their times, policies and endings."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.monitoring.fault import OPEN, Fault, read_faults
 
 SHORTEST = 4
-"""Characters of an id that are enough to name a game."""
+"""Characters of an id that identify a game."""
 LAST, ALL = "last", "all"
 TO_ITS_END = "played to its end"
 BROKEN_OFF = "it has no end in the log: it is still going on, or the program was broken off"
@@ -35,9 +35,9 @@ BROKEN_OFF = "it has no end in the log: it is still going on, or the program was
 class Game:
     """One game of the log.
 
-    `number` counts all games of the log from 1; `seq` is the event with which it began, and
-    `last_seq` the one with which it ended. `digest` is the policy's, and `policy` its name, where
-    the log still says it. `critical` and `other` count its faults; what Tangy only asked is none.
+    `number` counts all games of the log from 1. `seq` and `last_seq` are the events that began and
+    ended it. `digest` is the policy's digest, and `policy` its name if the log has it. `critical`
+    and `other` count its faults, without questions.
     """
 
     number: int
@@ -56,13 +56,13 @@ class Game:
     stopped: str | None
     world: GameWorld = SIMULATED
     asks: tuple[int, int] = (0, 0)
-    """How often a person could be asked in vain, in a visit and in the game; 0: not logged."""
+    """How often a person may be asked without success, per visit and per game; 0: not logged."""
     pauses: tuple[int, float] = (0, 0.0)
     """How often the robot waited for late data, and for how many s."""
     away: frozenset[str] = frozenset()
-    """Who was not here, and did not come in the game, as far as staff said so."""
+    """Those whom staff marked as absent, and who did not come during the game."""
     file: str = ""
-    """The path of the activity's file, if it came neither with Tangy nor with a package."""
+    """The path of the activity's file, if it comes neither with Tangy nor with a package."""
 
     @property
     def smooth(self) -> bool:
@@ -105,7 +105,7 @@ class _Begun(NamedTuple):
 
 
 def read_games(store: Store) -> list[Game]:
-    """Read all games of a log, the newest last."""
+    """Read all games of a log, newest last."""
     begun: dict[str, _Begun] = {}
     ended: dict[str, tuple[Event[EventRecord], GameEnding]] = {}
     faults: dict[str, list[bool]] = {}
@@ -142,7 +142,7 @@ def read_games(store: Store) -> list[Game]:
 
 
 def _steps_of_unended(store: Store, games: set[str], begun: dict[str, _Begun]) -> dict[str, int]:
-    """Count the steps of games that have no end which would say it."""
+    """Count the steps of games without an ending in the log."""
     counts: dict[str, int] = dict.fromkeys(games, 0)
     if games:
         for event in store.events(GameStep, after=min(begun[id].event.seq for id in games)):
@@ -187,10 +187,10 @@ def _game(
 
 
 def find_games(games: Sequence[Game], wanted: str) -> list[Game]:
-    """Return the games that a word means: a number, an id or its beginning, a day, last or all.
+    """Return the games that a word selects: a number, an id or its prefix, a day, last or all.
 
     Raises:
-        TangyError: none or more than one is meant; says which there are.
+        TangyError: no game matches, or an id prefix is ambiguous; the message lists the choices.
     """
     word = wanted.strip().casefold()
     if not games:
@@ -214,10 +214,10 @@ def find_games(games: Sequence[Game], wanted: str) -> list[Game]:
 
 
 def find_game(games: Sequence[Game], wanted: str) -> Game:
-    """Return the one game that a word means.
+    """Return the one game that a word selects.
 
     Raises:
-        TangyError: none or more than one is meant; says which there are.
+        TangyError: no game matches, or more than one; the message lists the choices.
     """
     found = find_games(games, wanted)
     if len(found) > 1:
@@ -256,7 +256,7 @@ def _of_day(games: Sequence[Game], day: date) -> list[Game]:
 
 
 def uncleared(store: Store) -> Fault | None:
-    """Return what the last game in a log ended with for which Tangy stood still, if it did."""
+    """Return the fault that halted the robot at the end of the last game, if it is still open."""
     game, last = store.last(GameBeginning), store.last(FaultDiagnosed)
     if game is None or last is None or last.record.game != game.record.game:
         return None

@@ -1,4 +1,4 @@
-"""The games of a house over time, from the logs of one robot or several: what each person got."""
+"""The games of a facility over time, from the logs of one or more robots, by person."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, read_replays
 
 SHORT_ROBOT = 6
-"""Characters of a robot's id that tell it from others."""
+"""Characters of a robot's id that identify it."""
 
 
 @dataclass(frozen=True, slots=True)
 class RobotLog:
-    """The log of one robot, read for reports: its games, and what people are called in it.
+    """The log of one robot, read for reports: its games, and people's names.
 
-    `robot` is its id, `label` what it is called in reports, `named` who was given a name.
+    `robot` is its id, `label` its name in reports, and `named` are the ids of people with names.
     """
 
     robot: str
@@ -35,15 +35,15 @@ class RobotLog:
 
     @property
     def games(self) -> tuple[Game, ...]:
-        """Its games, the newest last."""
+        """Its games, newest last."""
         return tuple(replay.game for replay in self.replays)
 
     def name(self, person: str) -> str:
-        """Return what a person is called."""
+        """Return a person's name."""
         return self.names.get(person, person)
 
     def activity(self, game: Game) -> Activity | None:
-        """Return the activity of a game, where it is known."""
+        """Return the activity of a game, or None if it is unknown."""
         return self.activities.get(game.activity)
 
 
@@ -64,14 +64,14 @@ class PersonInGame:
 
 @dataclass(slots=True)
 class PersonOverTime:
-    """One person over all games that are told of, the newest last."""
+    """One person in all games of a report, newest last."""
 
     name: str
     games: list[PersonInGame] = field(default_factory=list)
 
     @property
     def sum(self) -> Attention:
-        """The sums."""
+        """The person's attention, summed over the games."""
         added = Attention(self.name)
         for one in self.games:
             added.add(one.attention)
@@ -83,7 +83,7 @@ class PersonOverTime:
         return [answer for one in self.games for answer in one.answers]
 
     def to_json(self) -> dict[str, Any]:
-        """Return what reports tell of the person, with times in s."""
+        """Return the person's totals as JSON, with times in s."""
         added = self.sum
         return {
             "name": self.name,
@@ -101,7 +101,7 @@ class PersonOverTime:
 
 @dataclass(frozen=True, slots=True)
 class Month:
-    """The games of one calendar month, by the clock of the place we are in."""
+    """The games of one calendar month in local time."""
 
     year: int
     month: int
@@ -109,11 +109,11 @@ class Month:
 
     @property
     def people(self) -> tuple[PersonOverTime, ...]:
-        """Who took part."""
+        """The people who took part."""
         return people_over_time(self.games)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the month, and how many games and people it had."""
+        """Return the month with the numbers of games and people as JSON."""
         month = f"{self.year}-{self.month:02}"
         return {"month": month, "games": len(self.games), "people": len(self.people)}
 
@@ -128,9 +128,9 @@ def read_log(
 
     Args:
         store: the log.
-        names: of the people, by id; who has none there is called as the log has it.
-        activities: those that are known, by name.
-        games: which games; None: all of them.
+        names: people's names by id, in addition to those in the log.
+        activities: the known activities, by name.
+        games: the games to read; None for all.
     """
     given = store.names()
     chosen = read_games(store) if games is None else games
@@ -148,7 +148,7 @@ def read_log(
 
 
 def of_world(logs: Iterable[RobotLog], world: GameWorld) -> list[tuple[RobotLog, GameReplay]]:
-    """Return the games of one world from all logs, the newest last."""
+    """Return the games of one world from all logs, newest last."""
     found = [(log, r) for log in logs for r in log.replays if r.game.world == world]
     return sorted(found, key=lambda one: one[1].game.at)
 
@@ -156,10 +156,10 @@ def of_world(logs: Iterable[RobotLog], world: GameWorld) -> list[tuple[RobotLog,
 def people_over_time(
     games: Iterable[tuple[RobotLog, GameReplay]],
 ) -> tuple[PersonOverTime, ...]:
-    """Put together what each person got, in the order of their names.
+    """Group games by person, in the order of their names.
 
-    Who was given the same name in the logs of several robots is taken for the same person. Who has
-    none is distinguished by robot.
+    The same name in the logs of several robots is taken for the same person. People without a name
+    are distinguished by robot.
     """
     found: dict[tuple[str, str], PersonOverTime] = {}
     for log, replay in games:
@@ -174,7 +174,7 @@ def people_over_time(
 
 
 def by_month(games: Iterable[tuple[RobotLog, GameReplay]]) -> list[Month]:
-    """Group games by the month in which they began, the newest last."""
+    """Group games by the month in which they began, newest last."""
     months: dict[tuple[int, int], list[tuple[RobotLog, GameReplay]]] = {}
     for log, replay in games:
         local = replay.game.at.astimezone()
@@ -183,9 +183,10 @@ def by_month(games: Iterable[tuple[RobotLog, GameReplay]]) -> list[Month]:
 
 
 def last_session(games: Sequence[Game], gap: float = 1800.0) -> list[Game]:
-    """Return the last game with those before it that belong to the same session.
+    """Return the last game and the games before it that belong to the same session.
 
-    They were played in the same world, and each ended less than so many s before the next began.
+    They were played in the same world, with less than `gap` s between the end of one and the
+    beginning of the next.
     """
     session = list(games[-1:])
     for game in reversed(games[:-1]):

@@ -1,4 +1,4 @@
-"""Check a log: its file, its rows, and events that are inconsistent with those before."""
+"""Check of a log: its file, its rows, and events that are inconsistent with earlier ones."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from tangy_tui.learning import library
 from tangy_tui.learning.policies import MANY, LeftOut, without_strange_steps
 
 LogProblem: TypeAlias = str | LeftOut
-"""Damage in a log: a sentence of its reader, or a step that Tangy does not learn from."""
+"""A problem in a log: a sentence, or a step that Tangy does not learn from."""
 
 
 def log_problems(store: Store) -> list[LogProblem]:
-    """Read a whole log and return its problems; [] if there are none."""
+    """Read a whole log and return its problems."""
     wrong = store.check()
     known = set(store.aside)
     strange: list[LogProblem] = list(_strange_people(store))
@@ -38,18 +38,18 @@ def log_problems(store: Store) -> list[LogProblem]:
 
 
 def _strange_steps(store: Store, name: str) -> list[LogProblem]:
-    """Name the steps of an activity's demonstrations and games that the activity does not know."""
+    """Return the steps of demonstrations and games that an activity does not know."""
     demonstrations = library.read_demonstrations(store, name)
     try:
         activity = load_activity(name)
-    except ProfileError:  # it is not here, so that nobody can tell
+    except ProfileError:  # not installed, so it cannot be checked
         return []
     strange = without_strange_steps(activity, demonstrations)[1]
     return [*strange, *_strange_game_steps(store, activity)]
 
 
 def _strange_game_steps(store: Store, activity: Activity) -> list[str]:
-    """Name the steps of games that an activity does not know; many: the activity was changed."""
+    """Return the game steps that an activity does not know; none if many (the activity changed)."""
     games, steps, strange = set[str](), 0, list[str]()
     for event in store.events(GameBeginning, GameStep):
         match event.record:
@@ -64,7 +64,7 @@ def _strange_game_steps(store: Store, activity: Activity) -> list[str]:
 
 
 def _strange_people(store: Store) -> Iterator[str]:
-    """Name the steps that tell of people who do not take part in the game."""
+    """Report the steps that refer to people who do not take part in the game."""
     people = dict[str, frozenset[str]]()
     for event in store.events(DemonstrationBegun, DemonstrationStep, GameBeginning, GameStep):
         match event.record:
@@ -82,13 +82,13 @@ def _strange_people(store: Store) -> Iterator[str]:
 
 
 def _others(people: frozenset[str] | None, target: str | None, state: ActivityState) -> list[str]:
-    """Return who is named in a step without being one of these people; None: nobody can tell."""
+    """Return the people in a step who do not take part; none if the participants are unknown."""
     named = {user.id for user in state.users} | ({target} if target else set())
     return [repr(one[:40]) for one in sorted(named - people)] if people else []
 
 
 def unknown_kinds(store: Store) -> list[str]:
-    """Say which kinds of event in a log this Tangy does not know, a sentence each."""
+    """Return a sentence for each unknown kind of event in a log."""
     return [
         plain(f"tangy.db: events of the kind {kind[:60]!r} are not known and left out.")
         for kind in store.kinds()
@@ -97,6 +97,6 @@ def unknown_kinds(store: Store) -> list[str]:
 
 
 def _activities(store: Store) -> list[str]:
-    """Return the activities that a log tells of."""
+    """Return the names of the activities in a log."""
     events = store.events(DemonstrationBegun, DemonstrationsEdited, GameBeginning, PolicyLearnt)
     return sorted({getattr(event.record, "activity", "") for event in events} - {""})

@@ -1,4 +1,4 @@
-"""What people did in games of activities by facts: their answers, and what was counted for each."""
+"""Players' answers and counts in games of activities declared by facts."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ from tangy_tui.monitoring.replay import Done, GameReplay, Unclear
 
 @dataclass(frozen=True, slots=True)
 class PlayerAct:
-    """A person brought a fact about: when (ISO 8601), which value, and of which item.
+    """A person set a fact: when (ISO 8601), to which value, and at which item.
 
-    `round` counts the items of the game from 1, 0 before the first; `item` is its first column.
+    `round` counts the items of the game from 1 (0 before the first); `item` is the item's first
+    column.
     """
 
     at: str
@@ -29,7 +30,7 @@ class PlayerAct:
     item: str
 
     def to_json(self) -> dict[str, Any]:
-        """Return it as JSON has it."""
+        """Return it as JSON."""
         return {
             "at": self.at,
             "person": self.person,
@@ -42,27 +43,27 @@ class PlayerAct:
 
 @dataclass(frozen=True, slots=True)
 class PlayerFacts:
-    """A game's answers in their order, and what was counted for each person at its end."""
+    """A game's answers in order, and each person's counts at its end."""
 
     game: str
     people: tuple[str, ...]
     facts: tuple[Fact, ...]
-    """Those that people bring about, each for themselves."""
+    """The facts that players set, each for themselves."""
     counts: Mapping[str, Mapping[str, int]]
-    """Fact -> person -> number; everybody is named."""
+    """Fact -> person -> count, for every person."""
     acts: tuple[PlayerAct, ...]
     unclear: Mapping[str, int]
-    """How often a person's answer was not clear, where it was."""
+    """How often each person's answer was unclear."""
 
     def of(self, person: str, fact: Fact) -> dict[str, int]:
-        """Return how often a person brought about each value of a fact, in the fact's order."""
+        """Return how often a person set each value of a fact, in the fact's order."""
         found = Counter(
             act.value for act in self.acts if (act.person, act.fact) == (person, fact.name)
         )
         return {value: found[value] for value in fact.values if found[value]}
 
     def to_json(self) -> dict[str, Any]:
-        """Return it as JSON has it."""
+        """Return it as JSON."""
         return {
             "game": self.game,
             "counts": {fact: dict(numbers) for fact, numbers in self.counts.items()},
@@ -72,7 +73,7 @@ class PlayerFacts:
 
 
 def player_facts(replays: Sequence[GameReplay], activity: Activity | None) -> list[PlayerFacts]:
-    """Read the games of an activity by facts; those in which nobody has facts are left out."""
+    """Read the games of an activity by facts; skip those without player facts."""
     if not isinstance(activity, DeclaredActivity):
         return []
     mine = [replay for replay in replays if replay.game.activity == activity.name]
@@ -101,9 +102,9 @@ def _facts_of(replay: GameReplay, declaration: Declaration) -> PlayerFacts:
 def _acts(
     steps: Sequence[tuple[str, Done]], declaration: Declaration, facts: set[str]
 ) -> Iterator[PlayerAct]:
-    """Give what people brought about, step by step.
+    """Yield the facts that people set, step by step.
 
-    A value that stays from one step to the next is one act, unless the step had cleared it.
+    A value that lasts over several steps is one act, unless a step cleared the fact in between.
     """
     before = dict[tuple[str, str], str]()
     for at, done in steps:
@@ -129,7 +130,7 @@ def _cleared(done: Done, declaration: Declaration) -> set[str]:
 
 
 def _item(declaration: Declaration, memory: GameMemory) -> str:
-    """Return the first column of the item that the game is at, "" before the first."""
+    """Return the first column of the current item; "" before the first."""
     items = declaration.items
     if not items.columns or not 0 < memory.round <= len(memory.order):
         return ""

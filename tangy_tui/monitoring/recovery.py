@@ -1,9 +1,9 @@
 """Fault recovery (III-C): climbs the ladder of each fault, rung by rung, until it is over.
 
-A fault's rule has a ladder of recoveries: go on (by a remedy of the robot's own, or without what
-is broken), ask a user, ask a teacher, halt and ask an expert. Every rung is tried a bounded number
-of times; what does not help leads to the next one, and after the last comes the expert. So no
-recovery loops. Every event is logged before it is reported.
+The ladder is a list of recoveries in the fault's rule: continue (by an automatic remedy, or without
+the broken device), ask a user, ask a teacher, halt and ask an expert. Every recovery is tried a
+limited number of times; then the next one follows, and the expert comes last. So recovery always
+terminates. Every event is logged before it is reported.
 """
 
 from __future__ import annotations
@@ -45,16 +45,16 @@ _LOG = logging.getLogger(__name__)
 Event: TypeAlias = GameEvent | FaultEvent
 
 AGAIN = 3
-"""A recovery that was needed so often in a game begins one rung further from then on."""
+"""After this many occurrences in a game, recovery starts one rung higher."""
 
 DONE = ENDINGS - {"taught", "left"}
-"""The moves after which it is counted anew what a person does not do."""
+"""The moves that reset the counts of a person's unsuccessful requests."""
 
 TO_TEACH = "Say what to do here, or look at what happened at the table."
 
 
 class Recovery:
-    """The faults of the current game, and their recoveries. Call `begin` for each game."""
+    """The faults of the current game and their recoveries; call `begin` for each game."""
 
     def __init__(
         self,
@@ -65,17 +65,17 @@ class Recovery:
         name: Callable[[str], str],
     ) -> None:
         self.faults: list[Fault] = []
-        """All of them, in the order in which they were diagnosed."""
+        """All faults, in the order of diagnosis."""
         self.halted: Fault | None = None
-        """The one because of which the robot stands still."""
+        """The fault that halts the robot."""
         self.seconds = 0.0
-        """The time in the present game, in s."""
+        """The time in the current game, in s."""
         self.on_halt: Callable[[Fault], None] = lambda fault: None
         """Called with the fault that halts the robot."""
         self.on_release: Callable[[], None] = lambda: None
-        """Called when it halts the robot no longer, or the game has ended."""
+        """Called when the robot is no longer halted, or the game has ended."""
         self.hides_cards: Callable[[], bool] = lambda: False
-        """Returns whether a fault of a device hides the cards now."""
+        """Returns whether a device fault hides the cards now."""
         self._game = game
         self._detector = detector
         self._robot = robot
@@ -84,7 +84,7 @@ class Recovery:
         self.begin()
 
     def begin(self, seconds: float = 0.0) -> None:
-        """Forget the faults of the last game; begin at a time in s of the present one."""
+        """Reset for a game; `seconds` is the time in the game (s)."""
         self.faults = []
         self.halted = None
         self.seconds = seconds
@@ -95,39 +95,39 @@ class Recovery:
         self._times: Counter[tuple[str, str | None, str]] = Counter()
 
     def pass_time(self, seconds: float) -> None:
-        """Let time pass by so many s, and until that which was played altogether."""
+        """Advance the time by some s, at least to the time played."""
         self.seconds = max(self.seconds + seconds, self._game.log.seconds)
 
     @property
     def there(self) -> list[Fault]:
-        """The faults that are not over: those to be dealt with first, the most urgent first."""
+        """The faults that are not over: open ones first, by urgency."""
         return sorted(self._there, key=lambda f: (f.status == BORNE, self._rules[f.id].urgency))
 
     @property
     def waiting(self) -> list[Fault]:
-        """The faults that are still to be dealt with, the most urgent first.
+        """The open faults, most urgent first.
 
-        What is wrong with the robot comes before what seems to be wrong with a person.
+        Faults of the robot come before those that concern a person.
         """
         there = [fault for fault in self._there if fault.status == OPEN]
         return sorted(there, key=lambda f: (URGENCY.index(self._rung_of(f)), f.person is not None))
 
     @property
     def ended(self) -> bool:
-        """Whether the game has ended, whether or not that was reported."""
+        """Whether the game has ended, reported or not."""
         return self._game.over or self._game.world.over
 
     def rule(self, fault: Fault) -> FaultRule:
-        """Return the rule by which a fault was diagnosed."""
+        """Return the rule that diagnosed a fault."""
         return self._rules[fault.id]
 
     def knows(self, diagnosis: Diagnosis, person: str | None) -> bool:
-        """Say whether this is a fault that is there already, and not another one."""
+        """Return whether a diagnosis is of a fault that is there already."""
         same = {diagnosis.rule.code, *diagnosis.rule.continues}
         return any(fault.code in same and fault.person == person for fault in self._there)
 
     def keep(self, diagnosis: Diagnosis, acted: Acted | None, person: str | None) -> list[Event]:
-        """Keep a new diagnosis as a fault; a critical one stops the robot before anything else."""
+        """Record a new diagnosis as a fault; stop the robot first if it is critical."""
         rule = diagnosis.rule
         conditions = rule.matched(diagnosis.evidence) or ()
         seen = {k: v for k, v in diagnosis.evidence.items() if k not in diagnosis.beside}
@@ -154,7 +154,7 @@ class Recovery:
         times = self._times[fault.code, fault.person, fault.behaviour]
         self._rules[fault.id] = rule
         if rule.critical:
-            self.remedy(fault, "halt")  # before it is written down, which can fail
+            self.remedy(fault, "halt")  # before logging, which can fail
         self._store.append(fault.record(), person=person)
         _LOG.warning("fault %s (%s): %s", fault.id, fault.code, fault.why)
         self.faults.append(fault)
@@ -206,7 +206,7 @@ class Recovery:
             return self.move(fault, RecoveryEvent(kind, self.seconds))
         speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
         if rule.recovery[0] != "continue":
-            speech = image = ""  # they are for the rung on which a user is asked
+            speech = image = ""  # they belong to the rung of asking a user
         self._tried[fault.id] += 1
         attempt = self._tried[fault.id]
         move = RecoveryEvent(
@@ -222,7 +222,7 @@ class Recovery:
         return told + self._judge(fault, rule, attempt)
 
     def _judge(self, fault: Fault, rule: FaultRule, attempt: int) -> list[Event]:
-        """See whether a try has helped; where it has not, and was the last one, go further."""
+        """Check whether an attempt helped; after the last attempt, escalate."""
         if self.solved(fault):
             return self.move(fault, RecoveryEvent("recovered", self.seconds))
         if attempt < rule.tries:
@@ -232,7 +232,7 @@ class Recovery:
         return self._escalate(fault) + self.halt_if_critical()
 
     def supersede(self, fault: Fault) -> list[Event]:
-        """Leave the faults at that which a newer one with the same person speaks for as well."""
+        """End the faults of the same person whose symptoms a newer fault covers."""
         told: list[Event] = []
         spoken_for = self._rules[fault.id].symptoms
         for other in list(self._there):
@@ -269,11 +269,11 @@ class Recovery:
         return self.move(fault, RecoveryEvent("halted", self.seconds))
 
     def solved(self, fault: Fault) -> bool:
-        """Say whether a fault is gone, by what can be observed now."""
+        """Return whether a fault is gone, as observed now."""
         rule = self._rules[fault.id]
         devices = self._detector.watch(self._game.world.health())
         if devices.get(f"{LINK}.state") == STALE and LINK not in rule.devices:
-            return False  # what cannot be observed is not known to be gone
+            return False  # it cannot be observed through a lost link
         if rule.fallback:
             return not symptoms({key: devices[key] for key in fault.evidence if key in devices})
         if rule.solved == "evidence gone" or fault.person is None:
@@ -288,7 +288,7 @@ class Recovery:
         return self._game.observation.shows(is_gone)
 
     def remedy(self, fault: Fault, kind: str, move: RecoveryEvent | None = None) -> None:
-        """Let the world carry out a recovery; `move` holds its words."""
+        """Let the world carry out a recovery; `move` has its texts."""
         device = self._rules[fault.id].device
         said = ("", "") if move is None else (move.speech, move.image)
         self.seconds += self._game.world.recover(
@@ -296,7 +296,7 @@ class Recovery:
         )
 
     def leave_to_staff(self, person: str) -> None:
-        """Close a person's request again for whom an earlier fault was left to staff."""
+        """Close a person's request again, because an earlier fault was left to staff."""
         for fault in self.faults:
             rule = self._rules[fault.id]
             if fault.person == person and rule.remedy == LEAVE_TO_STAFF:
@@ -307,17 +307,17 @@ class Recovery:
                 return
 
     def _text(self, fault: Fault, text: str) -> str:
-        """Fill in a text of a rule; the person stays a slot."""
+        """Fill in a text of a rule, except the person's name."""
         rule, object = self._rules[fault.id], self._game.world.activity.object
         return rule.fill(text, name=NAME, object=object, why=fault.why)
 
     def release(self) -> None:
-        """Take it that no fault halts the robot any more."""
+        """Record that no fault halts the robot any more."""
         self.halted = None
         self.on_release()
 
     def leave_open(self) -> list[Event]:
-        """Say of the faults that nobody has dealt with that the game ended before."""
+        """Record that the game ended with faults still open."""
         self.on_release()
         told: list[Event] = []
         for fault in list(self._there):
@@ -326,7 +326,7 @@ class Recovery:
         return told
 
     def move(self, fault: Fault, move: RecoveryEvent) -> list[Event]:
-        """Log that something was done about a fault, and tell it."""
+        """Log a recovery event of a fault, and return it."""
         moved = FaultMove(game=fault.game, fault=fault.id, move=move)
         self._store.append(moved, person=fault.person)
         _LOG.info("fault %s (%s): %s", fault.id, fault.code, move.kind)

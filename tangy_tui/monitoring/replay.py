@@ -40,11 +40,11 @@ RESUMED = "the game went on after an interruption"
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """A behaviour that was executed: where, for whom, how, and whether it went as expected.
+    """An executed behaviour: where, for whom, how, and whether as expected.
 
-    `begun` and `over` are in s since the game began. `right`: the world could carry it out, and
-    it is what the activity expects there, where the activity is known and expects something.
-    `said` is the speech, where the activity is known.
+    `begun` and `over` are in s since the game began. `right`: the world carried it out, and the
+    activity, if known, expects it in this situation or expects nothing. `said` is the speech, if
+    the activity is known.
     """
 
     number: int
@@ -61,16 +61,16 @@ class Done:
     said: str
     draws: bool
     numbers: tuple[int, ...] = ()
-    """The number called, or the numbers a person should mark or clear."""
+    """The called number, or the numbers a person should mark or clear."""
     wins: bool = False
-    """Whether it celebrates somebody who has won, where the activity is known."""
+    """Whether it celebrates a winner, if the activity is known."""
     memory: GameMemory | None = None
-    """What a live game of an activity by facts stood at after it."""
+    """The facts after it, in a live game of an activity by facts."""
 
 
 @dataclass(frozen=True, slots=True)
 class AnsweredRequest:
-    """A person's response to a request; None if the game did not see it."""
+    """A person's response to a request; None if it was not observed."""
 
     uuid: str
     person: str
@@ -82,17 +82,17 @@ class AnsweredRequest:
 
 @dataclass(frozen=True, slots=True)
 class Noted:
-    """Other actions of people: stops, injected faults."""
+    """Other events caused by people: stops, injected faults."""
 
     what: str
     by: str
     taken_back: int = 0
-    """The number of a call that counts no more; 0: of none."""
+    """The number of a call that was taken back; 0 if none."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unclear:
-    """A person's answer was not clear, and was not judged."""
+    """A person's answer was unclear, and was not judged."""
 
     person: str
     asked_again: bool
@@ -103,7 +103,7 @@ OF_ITS_OWN: tuple[ChangeKind, ...] = (
     *("others first", "played on", "won", "claimed"),
     *("visit", "visit put off", "visit over", "calls first", "all called", "nobody won"),
 )
-"""Changes that the activity's rules bring about. Of the others, staff's actions tell."""
+"""Changes by the activity's rules; those by staff are logged as staff actions."""
 
 What: TypeAlias = (
     Done | AnsweredRequest | Diagnosed | Moved | Noted | Unclear | CallMade | GameChange
@@ -112,7 +112,7 @@ What: TypeAlias = (
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Something that happened: at which time in the game (s), after which step, and when (UTC)."""
+    """An event of a game: its time in the game (s), the step before it, and its UTC time."""
 
     seconds: float
     step: int
@@ -120,7 +120,7 @@ class Moment:
     what: What
 
     def to_json(self) -> dict[str, Any]:
-        """Return what happened as `--json` tells it, with its kind."""
+        """Return the event as `--json` prints it, with its kind."""
         match self.what:
             case Done() as done:
                 return {
@@ -162,10 +162,10 @@ class Moment:
 
 @dataclass
 class GameReplay:
-    """One game as the log has it.
+    """One game as read from the log.
 
-    `timed`: the log says how long each behaviour took. Games of older versions do not have that;
-    their times are then those of the faults, or 0.
+    `timed`: the log has the duration of each behaviour. Games of older versions do not; their times
+    are those of the faults, or 0.
     """
 
     game: Game
@@ -174,7 +174,7 @@ class GameReplay:
     seconds: float = 0.0
     timed: bool = True
     unasked: set[tuple[int, str]] = field(default_factory=set)
-    """Before which steps Tangy was sent to whom without being asked."""
+    """Step and person of visits without a request."""
 
     @property
     def done(self) -> list[Done]:
@@ -188,12 +188,12 @@ class GameReplay:
 
     @property
     def changes(self) -> list[tuple[Moment, GameChange]]:
-        """What the activity's rules changed beside the behaviours, with its times."""
+        """The changes by the activity's rules, with their times."""
         return [(m, m.what) for m in self.moments if isinstance(m.what, GameChange)]
 
     @property
     def real_faults(self) -> list[Fault]:
-        """The faults; where Tangy only asked what to do, nothing was wrong."""
+        """The faults, without questions about what to do."""
         return [fault for fault in self.faults if not fault.asks_only]
 
 
@@ -203,13 +203,13 @@ def read_replays(
     activities: Mapping[str, Activity],
     names: Mapping[str, str],
 ) -> list[GameReplay]:
-    """Read games back.
+    """Read games from the log.
 
     Args:
         store: the log.
-        games: which games.
+        games: the games to read.
         activities: the known activities, by name; a game of another one has fewer details.
-        names: of the people, by id, for what Tangy said.
+        names: people's names by id, for Tangy's speech.
     """
     events: dict[str, list[Event[EventRecord]]] = {game.id: [] for game in games}
     for event in _events(store, games):
@@ -239,7 +239,7 @@ def _replay(
     told = (event for event in events if isinstance(event.record, FaultDiagnosed | FaultMove))
     replay = GameReplay(game, faults=fold_faults(told, names))
     faults = {fault.id: fault for fault in replay.faults}
-    moved: dict[str, int] = {}  # of the faults that were told of so far
+    moved: dict[str, int] = {}  # fault id -> number of its moves so far
     step, acted = 0, 0.0
     for event in events:
         what: What
@@ -261,7 +261,7 @@ def _replay(
             case GameResumed(by=by):
                 what = Noted(RESUMED, by)
             case StaffAction(what=words, by=by, taken_back=taken, seconds=at):
-                acted = max(acted, at or 0.0)  # while a step was carried out that comes later
+                acted = max(acted, at or 0.0)  # logged during a step that ends later
                 what = Noted(words, by, taken)
             case CallMade() as what:
                 pass
@@ -275,7 +275,7 @@ def _replay(
                 replay.seconds = max(replay.seconds, move.seconds)
                 what = Moved(faults[id], faults[id].moves[moved[id]])
                 moved[id] += 1
-            case _:  # an end; or told of before, or done about a fault that is left out
+            case _:  # an ending; a repeated fault; or a move of an unknown fault
                 continue
         replay.moments.append(Moment(max(acted, replay.seconds), step, event.at, what))
     return replay

@@ -1,4 +1,4 @@
-"""The fault rules looked over: what each looks at, and what none of them does."""
+"""Check of fault rules: the evidence that each uses, and the evidence that none uses."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from tangy_tui.monitoring.drill_rounds import round_kinds
 class Rules:
     """Checked fault rules.
 
-    `unseen` is the evidence of the robot's devices that no rule looks at; `unruled` the kinds of
-    fault of the simulator whose right diagnosis is no rule; `untried` the rules that nothing in
-    the simulator brings about; `together` those that only some kinds at once do, with these kinds.
+    `unseen` is the devices' evidence that no rule uses; `unruled` the simulator's kinds of fault
+    whose diagnosis has no rule; `untried` the rules that nothing in the simulator triggers;
+    `together` the rules that only a combination of kinds triggers, with these kinds.
     """
 
     file: str
@@ -55,7 +55,7 @@ class Rules:
 
 
 def check_rules(robot: Robot, path: Path | None = None) -> Rules:
-    """Look over fault rules: those that ship, or a file of the same form."""
+    """Check fault rules: the built-in ones, or a file in the same format."""
     book, mistakes = check_faults(robot, path)
     if book is None:
         return Rules(path.name if path is not None else "faults.toml", tuple(mistakes))
@@ -74,13 +74,13 @@ def check_rules(robot: Robot, path: Path | None = None) -> Rules:
 
 
 def looks_at(rule: FaultRule) -> tuple[str, ...]:
-    """Return the evidence by which a rule is recognised, in the order of the file."""
+    """Return the evidence that a rule uses, in the order of the file."""
     keys = (condition.key for conditions in rule.when for condition in conditions)
     return tuple(dict.fromkeys(key for key in keys if key not in CONTEXT))
 
 
 def _unseen(book: FaultBook, robot: Robot) -> tuple[str, ...]:
-    """Return the devices' evidence that is in no rule; how old it is, the state says as well."""
+    """Return the devices' evidence that no rule uses, without ages, which the state covers."""
     seen = {key for rule in book.rules for key in looks_at(rule)}
     keys = [
         f"{device.name}.{fact}"

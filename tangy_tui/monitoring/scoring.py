@@ -16,7 +16,7 @@ Z = 1.96  # of a 95% interval
 
 
 def share_interval(share: float, n: int) -> tuple[float, float]:
-    """Return the 95% interval of a share seen in n tries (Wilson), which never leaves [0, 1]."""
+    """Return the Wilson 95% interval of a share in n trials, within [0, 1]."""
     middle = (share + Z * Z / (2 * n)) / (1 + Z * Z / n)
     half = Z * sqrt(share * (1 - share) / n + Z * Z / (4 * n * n)) / (1 + Z * Z / n)
     return max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half))
@@ -24,7 +24,7 @@ def share_interval(share: float, n: int) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class ScoredInjection:
-    """One fault that was brought about, and what became of it; steps, and s of the game's time."""
+    """One injected fault and its diagnosis, in steps; recovery in s of game time."""
 
     game: int
     kind: str
@@ -33,9 +33,9 @@ class ScoredInjection:
     seen: int | None
     named: int | None
     called: str
-    """The code of the fault that it was taken for first, "" if it was not seen."""
+    """The code of its first diagnosis; "" if it was not detected."""
     recovered: float | None
-    """The s from its diagnosis until it was over, or Tangy went on with it."""
+    """The time (s) from its diagnosis until it was over, or Tangy continued with it."""
 
     def to_json(self) -> dict[str, Any]:
         """Return it as `--json` lists it; `step` is when it occurred."""
@@ -53,7 +53,7 @@ class ScoredInjection:
 
 @dataclass(frozen=True)
 class GameScore:
-    """The faults of one game that were brought about, and the codes that nothing had caused."""
+    """The injected faults of one game, and the codes of false alarms."""
 
     injections: tuple[ScoredInjection, ...]
     false_alarms: tuple[str, ...]
@@ -62,12 +62,12 @@ class GameScore:
 def score_game(
     number: int, injected: Sequence[Injected], faults: Sequence[Fault], book: FaultBook
 ) -> GameScore:
-    """Attribute the faults that were diagnosed in a game to those that were brought about.
+    """Match the diagnosed faults of a game to the injected ones.
 
-    A fault is named right by the code of its kind, or by that which it gives together with others
-    that came (no voice and no screen: mute). A diagnosis of another code, while one that could show
-    is not named yet, has seen that one and named it wrong. The others are false alarms, except for
-    that which takes over from a fault that was named: its requests were in vain.
+    The right diagnosis is the code of the injected kind, or that of its combination with other
+    injected kinds (no voice and no screen: mute). A wrong code, while a detectable injection has no
+    right diagnosis yet, counts as a wrong diagnosis of that injection. All others are false alarms,
+    except a fault that takes over from a rightly diagnosed one whose requests failed.
     """
     told = [fault for fault in faults if not fault.asks_only]
     right = {id(one): _codes(one, injected, book) for one in injected}
@@ -110,7 +110,7 @@ def score_game(
 
 
 def takes_over(fault: Fault, earlier: Fault) -> bool:
-    """Say whether an earlier fault was left at this one, which speaks for it as well."""
+    """Return whether a fault takes over from an earlier one with the same person."""
     last = earlier.moves[-1] if earlier.moves else None
     left = last is not None and last.kind == "left" and last.seconds == fault.seconds
     return left and earlier.person == fault.person is not None
@@ -127,7 +127,7 @@ def _codes(one: Injected, injected: Sequence[Injected], book: FaultBook) -> froz
 
 
 def seconds_to_recover(fault: Fault) -> float | None:
-    """Return the s from the diagnosis until a fault was over or Tangy went on with it, or None."""
+    """Return the time (s) from diagnosis to recovery or toleration, or None."""
     for move in fault.moves:
         if move.kind in ENDINGS or move.kind == "went on":
             return move.seconds - fault.seconds
@@ -135,10 +135,10 @@ def seconds_to_recover(fault: Fault) -> float | None:
 
 
 def summary(games: Sequence[GameScore]) -> dict[str, Any]:
-    """Return recall and precision, in all and for each kind, with n and 95% intervals.
+    """Return recall and precision, overall and by kind, with n and 95% intervals.
 
-    Recall: of those that could show, the share that was named right. Precision of a kind: of those
-    that were seen, the share that was named right at first; in all, false alarms count as well.
+    Recall: the share of detectable injections with a right diagnosis. Precision of a kind: the
+    share of detected injections whose first diagnosis was right; overall, false alarms count too.
     """
     every = [one for game in games for one in game.injections]
     false = [code for game in games for code in game.false_alarms]
@@ -153,7 +153,7 @@ def summary(games: Sequence[GameScore]) -> dict[str, Any]:
 
 
 def scores_document(games: Sequence[GameScore]) -> dict[str, Any]:
-    """Return every injection, and what they add up to, as `--json` prints it."""
+    """Return every injection and the summary, as `--json` prints them."""
     scored = [one.to_json() for game in games for one in game.injections]
     return {"scored": scored, "score": summary(games)}
 
@@ -176,7 +176,7 @@ def _of_kind(those: Sequence[ScoredInjection]) -> Mapping[str, Any]:
 
 
 def share_document(flags: Sequence[bool]) -> dict[str, Any]:
-    """Return how many there are, which share is true, and its 95% interval."""
+    """Return the number of flags, the share that is true, and its 95% interval."""
     if not flags:
         return {"n": 0, "share": None, "interval": None}
     share = sum(flags) / len(flags)

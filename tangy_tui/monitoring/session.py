@@ -1,4 +1,4 @@
-"""A session: one game or some together, as a report tells of them. Only the log is read."""
+"""A session: one or more games, as a report presents them, read from the log alone."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ RESULTS = (
     ("void", "void"),
     ("awaited", "without an answer"),
 )
-"""Outcomes of a request: the counts of `Attempts`, and each in words."""
+"""Outcomes of a request: the counts of `Attempts`, and their words."""
 
 SET_ASIDE = "set aside"
-"""The remedy after which a person is left alone: somebody should look after them."""
+"""The remedy that leaves a person alone: staff should look after them."""
 
 
 @dataclass
 class Attempts:
     """Results of one strategy with one person: its uses, and the responses.
 
-    `late`: they did it, but not soon enough to count as complied. `void` are left out of the
-    belief, `awaited` have no answer yet. `before` and `after` are the beliefs.
+    `late`: followed too late to count as complied. `void` ones do not count in the belief,
+    `awaited` ones have no answer yet. `before` and `after` are the beliefs.
     """
 
     complied: int = 0
@@ -78,7 +78,7 @@ class Attempts:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """One person in a session: strategy -> what came of it."""
+    """One person in a session: strategy -> results."""
 
     id: str
     name: str
@@ -90,7 +90,7 @@ class Progress:
         return sum(one.used for one in self.strategies.values())
 
     def total(self, what: str) -> int:
-        """Add up one of the counts over the strategies."""
+        """Sum one of the counts over the strategies."""
         return sum(getattr(one, what) for one in self.strategies.values())
 
     @property
@@ -100,7 +100,7 @@ class Progress:
 
 
 def result_words(counts: Mapping[str, int]) -> str:
-    """Say how requests ended; results that did not occur are left out."""
+    """Format the outcomes of requests in words, without zero counts."""
     return ", ".join(f"{counts[what]} {words}" for what, words in RESULTS if counts[what])
 
 
@@ -109,9 +109,9 @@ NoteKind: TypeAlias = Literal["unknown activity", "no times", "brought about"]
 
 @dataclass(frozen=True, slots=True)
 class SessionNote:
-    """A limit of a report: an activity that is not here, games without times, or faults by request.
+    """A limit of a report: an unknown activity, games without times, or injected faults.
 
-    `about` is the activity's name, or what was asked for.
+    `about` is the activity's name, or the injected faults.
     """
 
     kind: NoteKind
@@ -120,7 +120,7 @@ class SessionNote:
 
 @dataclass(frozen=True, slots=True)
 class Session:
-    """The contents of a session's report. `title` is the activity's."""
+    """The contents of a session's report; `title` is the activity's."""
 
     replays: tuple[GameReplay, ...]
     title: str
@@ -130,12 +130,12 @@ class Session:
     """Notes for the reader about the sources of the report."""
     names: Mapping[str, str]
     reads: frozenset[str] = frozenset()
-    """The stages in which Tangy helps somebody."""
+    """The stages in which Tangy helps a person."""
     activity: Activity | None = None
-    """The first activity that is known of those that were played."""
+    """The first known activity of the games."""
 
     def name(self, person: str) -> str:
-        """Return what a person is called."""
+        """Return a person's name."""
         return self.names.get(person, person)
 
     @property
@@ -145,7 +145,7 @@ class Session:
 
     @property
     def timed_faults(self) -> tuple[tuple[str, Fault], ...]:
-        """The faults in order, each with when it was diagnosed (ISO 8601)."""
+        """The faults in order, each with the time of its diagnosis (ISO 8601)."""
         return tuple(
             (moment.at, moment.what.fault)
             for replay in self.replays
@@ -155,7 +155,7 @@ class Session:
 
     @property
     def games(self) -> tuple[Game, ...]:
-        """The games, the newest last."""
+        """The games, newest last."""
         return tuple(replay.game for replay in self.replays)
 
     @property
@@ -165,12 +165,12 @@ class Session:
 
     @property
     def questions(self) -> tuple[Fault, ...]:
-        """Where Tangy did not know what to do, though nothing was wrong."""
+        """The questions about what to do, though nothing was wrong."""
         return tuple(fault for r in self.replays for fault in r.faults if fault.asks_only)
 
     @property
     def look_after(self) -> tuple[Fault, ...]:
-        """Points for staff: open and tolerated faults, and people whom Tangy never visited."""
+        """Faults for staff to follow up: open and tolerated ones, and people left alone."""
         return tuple(
             fault
             for replay in self.replays
@@ -181,16 +181,16 @@ class Session:
 
     @property
     def seconds(self) -> float:
-        """How long the games took together, in the world's own time (s)."""
+        """The duration of all games, in the world's own time (s)."""
         return sum(replay.seconds for replay in self.replays)
 
     @property
     def timed(self) -> bool:
-        """Whether the log says how long everything took."""
+        """Whether the log has all durations."""
         return all(replay.timed for replay in self.replays)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the document that `--json` prints, but for the words of its notes."""
+        """Return the document that `--json` prints, without the words of its notes."""
         return {
             "title": self.title,
             "seconds": self.seconds if self.timed else None,
@@ -235,13 +235,13 @@ def read_session(
     activities: Mapping[str, Activity],
     names: Mapping[str, str],
 ) -> Session:
-    """Put the session of some games together from the log.
+    """Build the session of some games from the log.
 
     Args:
         store: the log.
-        games: which games.
+        games: the games.
         activities: the known activities, by name; a game of another one has fewer details.
-        names: of the people, by id.
+        names: people's names, by id.
     """
     replays = tuple(read_replays(store, games, activities, names))
     activity = next((activities[g.activity] for g in games if g.activity in activities), None)
@@ -294,7 +294,7 @@ def _people(
     activity: Activity | None,
     names: Mapping[str, str],
 ) -> tuple[Progress, ...]:
-    present = tuple(attention(replays))  # without those who were away all along
+    present = tuple(attention(replays))  # without those who were away for all games
     if not present:
         return ()
     said = {a.uuid: a.followed for replay in replays for _, a in replay.answers}
@@ -325,9 +325,9 @@ def _progress(
     replays: Sequence[GameReplay],
     said: Mapping[str, bool | None],
 ) -> Progress:
-    """Count what came of each strategy, and say what was believed before and after.
+    """Count the results of each strategy, and compute the beliefs before and after.
 
-    What counts is as the log has it now: a response that was void later, counts in neither.
+    Corrections made later apply: a response that was voided counts in neither belief.
     """
     games = {replay.game.id for replay in replays}
     first, last = replays[0].game, replays[-1].game
@@ -344,7 +344,7 @@ def _progress(
     for entry in history:
         one = found.get(entry.strategy)
         if entry.game not in games or one is None or entry.settled:
-            continue  # another line holds the answer to a request that is settled
+            continue  # another entry has the answer to this request
         if entry.void:
             one.void += 1
         elif entry.complied is None:

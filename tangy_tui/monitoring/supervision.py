@@ -1,9 +1,9 @@
-"""Supervision (III-C): a game that is run with an eye on what goes wrong, and what then.
+"""Supervision (III-C): runs a game with fault detection and recovery.
 
-`Supervision` stands in for the `Facilitation` that it holds: screens, lines and scripts begin,
-step and answer through it. `FaultWatch` diagnoses faults before and after every behaviour,
-`Recovery` handles them; people act through the methods here. While the robot is halted, nothing is
-executed until staff clear the fault. Every event is logged before it is reported.
+`Supervision` wraps a `Facilitation` and has the same interface: screens, the line mode and scripts
+begin, step and answer through it. `FaultWatch` diagnoses faults before and after every behaviour,
+and `Recovery` handles them; people act through the methods here. While the robot is halted, nothing
+is executed until staff clear the fault. Every event is logged before it is reported.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ from tangy_tui.monitoring.watch import FaultWatch
 from tangy_tui.world import World
 
 MOST_CLEARINGS = 5
-"""A fault that was cleared so often in a game ends the game when it comes back."""
+"""The game ends if a fault comes back after this many clearings."""
 
 MOST_MOVES = 200
-"""After so many moves against faults without a behaviour in between, a game is ended."""
+"""A game ends after this many consecutive recovery moves without a behaviour."""
 
 
 class Supervision:
-    """Games under execution monitoring. `begin` a game, then `step` until it is `over`.
+    """Games under execution monitoring: `begin` a game, then `step` until it is `over`.
 
-    While `halted` is a fault, the robot stands still: `acknowledge` it, `call_expert`, and `clear`
+    While `halted` is a fault, the robot is stopped: `acknowledge` it, `call_expert`, and `clear`
     it, or `give_up` the game. While `question` is set, a teacher is asked: `answer`, `accept`, or
     `give_up`.
     """
@@ -66,13 +66,13 @@ class Supervision:
         """Prepare to supervise.
 
         Args:
-            game: what runs the games.
+            game: runs the games.
             book: the fault rules.
             robot: its profile.
             store: the log.
-            effects_of: learns the effects that a policy's demonstrations show.
-            name: what a person is called.
-            to_come: faults that are brought about on purpose, for the log.
+            effects_of: learns the effects from a policy's demonstrations.
+            name: returns a person's name.
+            to_come: faults that will be injected, for the log.
         """
         game.looked_over = True
         self.game = game
@@ -89,7 +89,7 @@ class Supervision:
         self._clearings: Counter[str] = Counter()
         self._stops = 0
         self.calls: Calls | None = None
-        """Who is called about what halts the robot; None: nobody is, as in simulated games."""
+        """Calls people when the robot is halted; None in simulated games."""
 
     @property
     def book(self) -> FaultBook:
@@ -98,20 +98,20 @@ class Supervision:
 
     @property
     def faults(self) -> list[Fault]:
-        """The faults of the present game, in the order in which they were diagnosed."""
+        """The faults of the current game, in the order of diagnosis."""
         return self.recovery.faults
 
     @property
     def halted(self) -> Fault | None:
-        """The fault because of which the robot stands still."""
+        """The fault that halts the robot."""
         return self.recovery.halted
 
     @property
     def seconds(self) -> float:
-        """The time in the present game, in s."""
+        """The time in the current game, in s."""
         return self.recovery.seconds
 
-    # ------------------------------------------------------------- what it stands in for
+    # ------------------------------------------------------ the interface of Facilitation
 
     @property
     def world(self) -> World:
@@ -135,7 +135,7 @@ class Supervision:
 
     @property
     def steps(self) -> int:
-        """How many behaviours the present game has had."""
+        """How many behaviours were executed in the current game."""
         return self.game.steps
 
     @property
@@ -145,20 +145,20 @@ class Supervision:
 
     @property
     def question(self) -> Unsure | None:
-        """The question to the teacher."""
+        """The open question to a teacher, or None."""
         return self.game.question
 
     def verifier(self) -> Verifier:
-        """Make the door through which a teacher answers."""
+        """Make the verifier of a teacher's answers."""
         return self.game.verifier()
 
     # ---------------------------------------------------------------------- running games
 
     def begin(self, past: PastGame | None = None, by: str = "") -> list[Event]:
-        """Begin the next game, or go on with a past one, in which nothing is known to be wrong.
+        """Begin the next game, or continue a past one, without any known fault.
 
         Raises:
-            NotResumable: the world cannot come to where the past game was.
+            NotResumable: the world cannot restore the state of the past game.
         """
         told = list[Event](self.game.begin() if past is None else self.game.resume(past, by))
         self.recovery.begin(0.0 if past is None else past.seconds)
@@ -170,7 +170,7 @@ class Supervision:
         return told
 
     def step(self) -> list[Event]:
-        """Do the next thing: one move against the most urgent fault, or else one behaviour."""
+        """Make one move against the most urgent fault, or else carry out one behaviour."""
         with serving():
             return self._step()
 
@@ -201,21 +201,21 @@ class Supervision:
         return told + self._end_if_hopeless()
 
     def stopped_by_staff(self) -> None:
-        """Note a STOP: the interrupted behaviour is no fault, and its effects are not checked."""
+        """Record a STOP: the interrupted behaviour is no fault, and its effects are not checked."""
         self._stops += 1
 
     def look(self) -> list[Event]:
         """Check the devices without acting, and return the new faults.
 
-        It may be called as often as one likes, also while the robot is halted or asks.
+        It may be called at any rate, also while the robot is halted or asks.
         """
         return self.watch.look() + self._end_if_hopeless()
 
     @property
     def status(self) -> tuple[str, str]:
-        """The worst that there is, rolled up, and its cause.
+        """The worst current state, and its cause.
 
-        HALTED, ASKS or WARN name a fault; STALE or ERROR a device about which there is none.
+        HALTED, ASKS or WARN name a fault; STALE or ERROR a device without a fault.
         """
         if self.halted is not None:
             return "HALTED", self.halted.name
@@ -233,20 +233,20 @@ class Supervision:
 
     @property
     def waiting(self) -> list[Fault]:
-        """The faults that are still to be dealt with, the most urgent first."""
+        """The open faults, most urgent first."""
         return self.recovery.waiting
 
-    # ------------------------------------------------------------------- what people do
+    # ------------------------------------------------------------------- actions of people
 
     def acknowledge(self, by: str, fault: Fault | None = None) -> list[Event]:
-        """Let staff say that they have seen a fault (default: the one that halts the robot)."""
+        """Acknowledge a fault (default: the one that halts the robot)."""
         fault = fault or self.halted
         if fault is None or fault.acknowledged:
             return []
         return self.recovery.move(fault, RecoveryEvent("acknowledged", self.seconds, by=by))
 
     def call_expert(self, by: str) -> list[Event]:
-        """Note that staff turn to the expert about what halts the robot, and do what Tangy can."""
+        """Log that staff call the expert about the halt, call them, and check the devices again."""
         fault = self.halted
         if fault is None:
             return []
@@ -258,19 +258,19 @@ class Supervision:
         return told + self.look()
 
     def reached(self, by: str) -> bool:
-        """Let staff say that they have reached the expert; return whether one is named."""
+        """Record that staff reached the expert by other means; return whether one is named."""
         fault, calls = self.halted, self.calls
         return fault is not None and calls is not None and calls.reached(EXPERT, fault, by)
 
     def call_by(self, calls: Calls) -> None:
-        """Have people called when the robot halts, and when staff turn to the expert."""
+        """Call people when the robot halts, and when staff ask for the expert."""
         self.calls = calls
         self.recovery.on_halt, self.recovery.on_release = calls.begin, calls.end
 
     def clear(self, by: str) -> list[Event]:
-        """Let the robot move again, if what halted it was seen and is gone.
+        """Let the robot move again, if the fault that halted it was acknowledged and is gone.
 
-        A fault that is still there stays; one that nobody acknowledged as well.
+        Otherwise the fault stays.
         """
         fault = self.halted
         if fault is None or not fault.acknowledged:
@@ -290,21 +290,21 @@ class Supervision:
         return told + self._end_if_hopeless()
 
     def note(self, what: str, by: str, taken_back: int = 0) -> None:
-        """Log what people did in a game beside all this: a STOP, a fault brought about."""
+        """Log another action of people in a game: a STOP, an injected fault."""
         if not self.over:
-            now = max(self.seconds, self.game.log.seconds)  # of a later moment than the last step
+            now = max(self.seconds, self.game.log.seconds)  # later than the last step
             done = StaffAction(
                 game=self.game.game, what=what, by=by, seconds=now, taken_back=taken_back
             )
             self._store.append(done)
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
-        """Do what a teacher answered, and go on."""
+        """Carry out a teacher's answer, and go on."""
         with serving():
             return self._answer(behaviour, target, teacher)
 
     def _answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
-        told = self.look()  # what came up while the teacher was thinking comes first
+        told = self.look()  # faults that occurred before the answer come first
         question = self.question
         if question is None:
             return told
@@ -312,19 +312,19 @@ class Supervision:
         events = self.game.answer(behaviour, target, teacher)
         self._idle = 0
         wanted = bool(question.fault) and self._asked_about(question) is None
-        otherwise = wanted and behaviour.name != chosen.behaviour  # staff said so, unasked
+        otherwise = wanted and behaviour.name != chosen.behaviour  # staff's choice, unasked
         taught = any(isinstance(event, Taught) for event in events)
         if taught or any(isinstance(event, DoneOnce) for event in events):
             told += self._answered(question, RecoveryEvent("taught", self.seconds, by=teacher))
         ordered = otherwise or self._stops != stops
-        # by what was expected before the answer was learnt
+        # compare with the effects expected before the answer was learnt
         found = self.watch.after(events, ordered=ordered)
         if taught:
             self.detector.effects = self.effects_of(self.policy)
         return found + told + self._end_if_hopeless()
 
     def accept(self, by: str) -> list[Event]:
-        """Let a teacher say that what happened is all right; it is expected from now on."""
+        """Accept an observed effect: it is expected from now on."""
         told = self.look()
         question, fault = self.question, self._asked_about(self.question)
         if question is None or fault is None or not self.acceptable:
@@ -339,13 +339,13 @@ class Supervision:
 
     @property
     def acceptable(self) -> bool:
-        """Whether staff may accept the observation in question: no rule explains it."""
+        """Whether a teacher may accept the observed effect: no rule explains it."""
         fault = self._asked_about(self.question)
         unexplained = fault is not None and fault.code == self.book.fallback.code
         return unexplained and fault is not None and fault.id in self.watch.acted
 
     def give_up(self) -> list[Event]:
-        """End a game in which Tangy asks or is halted, and nobody helps."""
+        """End a game in which Tangy asks or is halted, because nobody helps."""
         halted, question = self.halted, self.question
         if self.over or (halted is None and question is None):
             return []
@@ -380,7 +380,7 @@ class Supervision:
     # -------------------------------------------------------------------------- the teacher
 
     def _asked_about(self, question: Unsure | None) -> Fault | None:
-        """Return the fault about which Tangy asks a teacher."""
+        """Return the fault that the question to a teacher is about."""
         if question is None:
             return None
         asked = [

@@ -1,7 +1,7 @@
 """Fault watch of a game (III-C): compares observations with expectations, and explains them.
 
-Detection and diagnosis go together here: after each behaviour, and whenever the devices report
-something else. A new mismatch becomes a fault, which `Recovery` handles.
+It runs detection and diagnosis after each behaviour, and whenever a device's reading changes. A new
+diagnosis becomes a fault, which `Recovery` handles.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from tangy_tui.monitoring.fault import BORNE, Fault, RecoveryEvent
 from tangy_tui.monitoring.recovery import Event, Recovery
 
 NOT_SHOWN: Evidence = {"situation.shown": False}
-"""The evidence that nobody has shown what to do in a situation."""
+"""The evidence that a situation was never demonstrated."""
 
 HIDING = frozenset(("mismatch.card", "mismatch.what was asked about"))
-"""Explained by a device fault that hides cards: an unseen response is then no refusal."""
+"""Symptoms explained by a device fault that hides cards: an unseen response is no refusal then."""
 
 
 class FaultWatch:
-    """Finds the faults of a game. `begin` each game."""
+    """Finds the faults of a game; call `begin` for each game."""
 
     def __init__(
         self, game: Facilitation, book: FaultBook, detector: Detector, recovery: Recovery
     ) -> None:
         self.book = book
         self.acted: dict[str, Acted] = {}
-        """After which behaviour a fault was noticed, by its id."""
+        """The behaviour after which a fault was detected, by fault id."""
         self._game = game
         self._detector = detector
         self._recovery = recovery
@@ -70,16 +70,16 @@ class FaultWatch:
         return told + self._take(self._diagnose(evidence), None)
 
     def look_after(self, fault: Fault) -> list[Event]:
-        """Look at what a fault had explained, now that staff say that it is over."""
+        """Check the symptoms that a fault had explained, now that staff cleared it."""
         if self._aftermath.end(fault.code):
             self._seen = None
         return self.look()
 
     def after(self, events: Sequence[GameEvent], *, ordered: bool = False) -> list[Event]:
-        """Check a behaviour against its expectation; end a finished game.
+        """Check a behaviour against its expected effects; end a finished game.
 
-        What was `ordered` otherwise, by a STOP or by staff who took over, is held against nothing:
-        what comes of it is theirs, and neither a fault nor anybody's refusal.
+        If it was `ordered` by staff (a STOP, or staff took over), its effects are neither a fault
+        nor a refusal.
         """
         told: list[Event] = []
         for event in events:
@@ -105,7 +105,7 @@ class FaultWatch:
         return self._take(diagnose(self.book, self._detector.refusals(person)), None, person)
 
     def spare(self) -> list[Event]:
-        """Leave a person in peace who would be asked once more than the activity allows."""
+        """Leave a person alone who has reached the limit of requests."""
         if not self._detector.spent:
             return []
         state = self._game.world.observe()
@@ -124,7 +124,7 @@ class FaultWatch:
         return self._take(diagnose(self.book, self._detector.refusals(person)), None, person)
 
     def foresee(self) -> list[Event]:
-        """Where nobody can be asked, say why the game is about to end: nobody has shown this."""
+        """Without a teacher, explain why the game is about to end: the situation is unknown."""
         decision = self._game.policy.decide(self._game.look().situation)
         if decision.sure:
             return []
@@ -146,12 +146,12 @@ class FaultWatch:
         return self._take(self._diagnose(evidence, mismatches), acted)
 
     def _hides_cards(self) -> bool:
-        """Return whether the devices show a fault that explains why a card cannot be seen."""
+        """Return whether a device fault explains why a card cannot be seen."""
         faults = diagnose(self.book, self.devices)
         return any(not HIDING.isdisjoint(one.rule.also) for one in faults)
 
     def _diagnose(self, evidence: Evidence, mismatches: Sequence[Mismatch] = ()) -> list[Diagnosis]:
-        """Explain what no fault explains that was there before."""
+        """Diagnose the symptoms that no earlier fault explains."""
         unexplained = self._aftermath.without(evidence, lambda: self._game.world.seconds)
         found = diagnose(self.book, unexplained, mismatches)
         self._aftermath.take(found, unexplained)
@@ -160,12 +160,12 @@ class FaultWatch:
     def _take(
         self, found: Sequence[Diagnosis], acted: Acted | None, whose: str | None = None
     ) -> list[Event]:
-        """Keep new diagnoses; halt at once if one is critical.
+        """Record new diagnoses; halt at once if one is critical.
 
         Args:
             found: the diagnoses.
-            acted: the behaviour that they were noticed after.
-            whose: the person whom they are about, where that is not whom the behaviour attended.
+            acted: the behaviour after which they were detected.
+            whose: the person concerned, if not the one the behaviour attended.
         """
         told: list[Event] = []
         attended = acted.state.attended if acted is not None else whose
@@ -176,7 +176,7 @@ class FaultWatch:
             try:
                 told += self._recovery.keep(diagnosis, acted, person)
             except TangyError:
-                self._seen = None  # so that the next look finds it again
+                self._seen = None  # so that the next check finds it again
                 raise
             fault = self._recovery.faults[-1]
             if diagnosis.rule.quiet:
@@ -196,7 +196,7 @@ class FaultWatch:
         return told
 
     def _whose(self, diagnosis: Diagnosis, attended: str | None) -> str | None:
-        """Return whom a diagnosis is about; None: no single person."""
+        """Return the one person a diagnosis is about, or None."""
         if not diagnosis.mismatches or any(m.variable != OTHERS for m in diagnosis.mismatches):
             return attended
         withdrew = self._detector.withdrew
