@@ -1,1 +1,1 @@
-"""The paper's scenarios run again, and what came out beside what it printed."""
+"""Repetition of the paper's experiments, and comparison with its results."""

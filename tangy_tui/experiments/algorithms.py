@@ -1,8 +1,8 @@
-"""Every way to choose a strategy, beside the paper's, on the same draws and without games.
+"""Comparison of all methods to choose a strategy, on the same random draws and without games.
 
-Person i at interaction t would answer strategy s the same way whichever method asks, so that
-methods differ by what they choose and by nothing else. Regret is the expected compliance lost:
-the sum, over interactions, of the best strategy's rate less the chosen one's.
+Person i at interaction t would answer strategy s the same way for every method, so methods differ
+only by their choices. Regret is the expected loss of compliance: the sum, over interactions, of the
+best strategy's rate minus the chosen one's.
 """
 
 from __future__ import annotations
@@ -27,25 +27,25 @@ from tangy_tui.interaction.methods import (
 )
 
 HORIZONS = (23, 60, 300)
-"""Interactions at which regret is reported: 20 games of the paper are 23 of them."""
+"""Interactions after which regret is reported; 20 games of the paper have 23."""
 
 KEEP = 0.98
-"""The share that the forgetting methods keep from one interaction to the next."""
+"""The share of evidence that the forgetting methods keep per interaction."""
 
 EARLIER = 40
-"""People whom the robot has met before, for the methods that begin from them."""
+"""People met before, for the methods with an empirical prior."""
 
 MET = 23
-"""How often it has met each of them."""
+"""Interactions with each of them."""
 
 CHANGE = 100
-"""The interaction after which everybody's preference is another one, where they drift."""
+"""The interaction after which everybody's preference changes, in the drifting crowd."""
 
 A_PIECE = 100
 """People in one piece of work."""
 
 Rates = tuple[float, ...]
-"""One person's probabilities of complying, strategy by strategy."""
+"""One person's probability of complying with each strategy."""
 
 METHODS: Mapping[str, Callable[[Sequence[Counts]], Method]] = {
     "thompson": lambda earlier: Thompson(),
@@ -55,16 +55,16 @@ METHODS: Mapping[str, Callable[[Sequence[Counts]], Method]] = {
     "thompson_forgetting": lambda earlier: Forgetting(Thompson(), KEEP),
     "bayes_ucb_forgetting": lambda earlier: Forgetting(BayesUcb(), KEEP),
 }
-"""The options that the program offers, each made with the counts of earlier people."""
+"""The methods of the program; each factory takes the counts of earlier people."""
 
 
 @dataclass(frozen=True)
 class Crowd:
-    """A crowd of people to choose for.
+    """A population of simulated people.
 
-    `alike`: how much all have in common: 0 for preferences that are shared out evenly, and
-    otherwise the concentration of each strategy's rate around its mean among `means`. `drift`:
-    the interaction after which preferences move on to the next strategy (0: never).
+    `alike` is how much they have in common: 0 for preferences distributed evenly over the
+    strategies, else the concentration of each strategy's rate around its mean in `means`. `drift`
+    is the interaction after which preferences move on to the next strategy (0: never).
     """
 
     name: str
@@ -74,7 +74,7 @@ class Crowd:
     drift: int = 0
 
     def rates(self, person: int, strategies: int, seed: int) -> Rates:
-        """Return the rates of one person."""
+        """Return one person's rates (probabilities of complying)."""
         if not self.means:
             users = load_users()
             return tuple(
@@ -86,7 +86,7 @@ class Crowd:
         return tuple(draw(self.alike * mean, self.alike * (1 - mean)) for mean in means)
 
     def at(self, rates: Rates, time: int) -> Rates:
-        """Return a person's rates at an interaction (from 0)."""
+        """Return a person's rates (probabilities) at an interaction (from 0)."""
         return rates[-1:] + rates[:-1] if self.drift and time >= self.drift else rates
 
 
@@ -106,11 +106,11 @@ CROWDS = {
 
 
 def meet(settings: Settings, case: Case) -> list[list[float]]:
-    """Let a method meet people: a case is (crowd, method, first person, how many).
+    """Let a method interact with people: a case is (crowd, method, first person, count).
 
     Returns:
-        For each person: the regret at each of HORIZONS, the share of optimal choices in all, and
-        the share of optimal choices in the interactions after CHANGE, as many again.
+        For each person: the regret at each of HORIZONS, the share of optimal choices overall, and
+            the share of optimal choices in the CHANGE interactions after CHANGE.
     """
     crowd, name, first, count = case
     strategies, seed = settings["strategies"], settings["seed"]
@@ -139,7 +139,7 @@ def _met(
 
 
 def _stakes(crowd: Crowd, rates: Rates) -> tuple[list[int], list[list[float]]]:
-    """Return the best strategy, and what each one loses, before and after a change."""
+    """Return the best strategy and each strategy's loss, before and after a change."""
     both = [rates, crowd.at(rates, crowd.drift)]
     best = [max(range(len(now)), key=now.__getitem__) for now in both]
     return best, [[now[b] - rate for rate in now] for now, b in zip(both, best, strict=True)]
@@ -154,16 +154,16 @@ def choices(
     seed: int,
     times: int,
 ) -> list[tuple[int, int, bool]]:
-    """Meet one person so many times; return (time, chosen strategy, complied) for each.
+    """Simulate interactions with one person; return (time, chosen strategy, complied) for each.
 
     Args:
-        crowd: from which the person comes.
-        method: how is chosen.
-        person: its number.
-        rng: the method's own chance; what the person would answer does not depend on it.
-        strategies: how many can be chosen.
-        seed: of the random generators.
-        times: how often is chosen.
+        crowd: the population of the person.
+        method: the method of choice.
+        person: the person's number.
+        rng: the method's random generator; the person's answers do not depend on it.
+        strategies: the number of strategies.
+        seed: seed of the random generators.
+        times: the number of interactions.
     """
     names = [str(place) for place in range(strategies)]
     answers = Random(f"{seed}/answers/{person}").random
@@ -186,9 +186,9 @@ def choices(
 
 @cache
 def earlier_people(crowd: str, strategies: int, seed: int) -> tuple[Counts, ...]:
-    """Meet EARLIER people of a crowd by Thompson sampling, and return their counts.
+    """Simulate EARLIER people of a crowd with Thompson sampling, and return their counts.
 
-    They are others than those who are met later.
+    They are different from the people of the comparison.
     """
     found: list[Counts] = []
     for person in range(-EARLIER, 0):
@@ -203,10 +203,10 @@ def earlier_people(crowd: str, strategies: int, seed: int) -> tuple[Counts, ...]
 
 
 def lai_robbins(best: float, others: Sequence[float]) -> float:
-    """Return the factor of log T (in responses) that no uniformly good method's regret beats.
+    """Return the Lai-Robbins factor of log T in the regret (in responses) of a consistent method.
 
     It is the sum over the other strategies of (best - p) / KL(p, best) (Lai and Robbins 1985). It
-    says how regret grows in the long run, and does not bound it at a small T.
+    is asymptotic, and no bound for small T.
     """
 
     def divergence(p: float, q: float) -> float:
@@ -216,7 +216,7 @@ def lai_robbins(best: float, others: Sequence[float]) -> float:
 
 
 def run(strategies: int, people: int, seed: int, where: Where) -> dict[str, Any]:
-    """Let every method meet every crowd; the even one in full, the others a quarter of it."""
+    """Run every method on every crowd; the even crowd in full, the others with a quarter."""
     settings = {"strategies": strategies, "seed": seed}
     many = {"even": people, "uneven": -(-people // 4), "drifting": -(-people // 4)}
     cases = [

@@ -1,8 +1,8 @@
-"""A classroom: games demonstrated through the real teaching engine, and policies learnt from them.
+"""Games demonstrated through the real teaching engine, and policies learnt from them.
 
-What the simulated teachers of these experiments do goes through the door that people use:
-commands in words, questions that are answered, steps in a log. Only the log is on a scratch
-folder, and a game is committed as a whole, which takes .1 ms a step instead of 4.
+The simulated teachers of these experiments use the same interface as people: commands in words,
+answered questions, logged steps. Only the log is in a temporary folder, and each game is one
+transaction, which takes 0.1 ms per step instead of 4.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ from tangy_tui.world import World
 
 GUIDED = "guided"
 RANDOM = "random"
-"""How the games of a demonstration come about: planned to show everything, or by chance."""
+"""The kinds of games to demonstrate: arranged to show everything, or random."""
 
 SEED_SPACE = 10_000
-"""Seeds that belong to one --seed, so that two of them never share a game."""
+"""Seeds that belong to one --seed, so that different ones never share a game."""
 
 PARTS = ("demonstrations", "teachers", "mistakes")
-"""The parts of Scenario 1, each of which has games that no other one has."""
+"""The parts of Scenario 1, each with its own games."""
 
 PART_SPACE = 1_000_000
 """Courses that belong to one part and one --seed."""
@@ -52,7 +52,7 @@ Steps = Iterator[TeachingEvent]
 
 
 class Teacher(Protocol):
-    """Somebody who demonstrates one game to its end."""
+    """A teacher who demonstrates one game to its end."""
 
     def demonstrate(self) -> Steps:
         """Demonstrate, event by event."""
@@ -60,7 +60,7 @@ class Teacher(Protocol):
 
 
 class MakeTeacher(Protocol):
-    """Puts a teacher into a session."""
+    """Creates a teacher for a session."""
 
     def __call__(self, teaching: TeachingSession) -> Teacher:
         """Return the teacher."""
@@ -69,7 +69,7 @@ class MakeTeacher(Protocol):
 
 @dataclass(frozen=True)
 class Course:
-    """What is taught (a shipped activity or its file), to how many people, in which games."""
+    """A series of demonstrations: the activity (or its file), the people, the kind of games."""
 
     activity: str
     users: int
@@ -78,13 +78,13 @@ class Course:
 
 
 def course_number(part: str, seed: int, place: int = 0, places: int = 1) -> int:
-    """Return which course a part has for a seed; no two parts, seeds or places have the same.
+    """Return a unique course number for a part, a seed and a place.
 
     Args:
-        part: of the experiments, one of `PARTS`.
-        seed: of the random generators.
-        place: which of a seed's courses in this part, of `places`.
-        places: how many courses a seed has in this part.
+        part: the part of the experiments, one of `PARTS`.
+        seed: seed of the random generators.
+        place: the index of the course, among `places`.
+        places: the number of courses per seed in this part.
     """
     block, at = divmod(seed, SEED_SPACE)
     return (len(PARTS) * block + PARTS.index(part)) * PART_SPACE + places * at + place
@@ -92,17 +92,17 @@ def course_number(part: str, seed: int, place: int = 0, places: int = 1) -> int:
 
 @cache
 def activity_of(name: str) -> Activity:
-    """Return an activity by name, read once in each process."""
+    """Return an activity by name, cached in each process."""
     return load_activity(name)
 
 
 def about(name: str) -> dict[str, Any]:
-    """Return the settings of a sweep that say which activity it is about.
+    """Return the settings of a sweep that identify its activity.
 
-    A file of somebody's own may change under the same name, so its content is among them.
+    They include the content of a user's file, which may change under the same name.
 
     Raises:
-        TangyError: there is no such activity, or it does not say what is expected.
+        TangyError: there is no such activity, or it does not declare the expected behaviours.
     """
     if not activity_of(name).expected:
         raise TangyError(
@@ -115,9 +115,9 @@ def about(name: str) -> dict[str, Any]:
 
 
 def taught(course: Course, make_teacher: MakeTeacher = ScriptedTeacher) -> Iterator[Demonstration]:
-    """Yield one finished demonstration after another, without end.
+    """Yield finished demonstrations, endlessly.
 
-    Their steps are numbered through the course, as they would be in one log.
+    Their step ids are unique within the course, as in one log.
     """
     activity = activity_of(course.activity)
     kind = GuidedWorld if course.games == GUIDED else SimulatedWorld
@@ -152,7 +152,7 @@ def learnt(
 
 
 def is_exact(policy: Policy, activity: Activity, users: int) -> bool:
-    """Say whether a policy is right on every joint state, whatever comes about or does not."""
+    """Return whether a policy is right in every joint state."""
     people = [person.id for person in load_people(users)]
     return policy.exact(activity) and all(
         policy.decide(state.situation).behaviour == activity.expected.get(state.situation)
@@ -161,6 +161,6 @@ def is_exact(policy: Policy, activity: Activity, users: int) -> bool:
 
 
 def covered(activity: Activity, shown: Sequence[Demonstration]) -> bool:
-    """Say whether demonstrations show every situation that the activity can bring about."""
+    """Return whether demonstrations show every situation that can occur in the activity."""
     seen = {step.state.situation for one in shown for step in one.steps}
     return seen >= set(activity.expected)

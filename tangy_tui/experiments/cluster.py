@@ -1,4 +1,4 @@
-"""The same pieces of work on a Dask cluster that exists already; it is never started or ended."""
+"""Runs pieces of work on an existing Dask cluster, which is never started or stopped."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from tangy_tui.experiments.sweep import Case, Piece, Settings
 
 REACHED_WITHIN = 3.0
-"""Seconds after which a scheduler that does not answer counts as not there."""
+"""Timeout (s) of the connection to a scheduler."""
 
 
 def on_cluster(
     address: str, piece: Piece, settings: Settings, cases: Sequence[Case]
 ) -> Iterator[tuple[int, Any]]:
-    """Yield (index of the case, result) as a cluster's workers are done with them.
+    """Yield (index of the case, result) as the cluster's workers finish them.
 
     Raises:
-        TangyError: Dask is not installed, nobody answers at the address, it has no workers, or
-            they have another version of this code.
+        TangyError: Dask is not installed, there is no scheduler at the address, it has no workers,
+            or they have another version of this code.
     """
     distributed = _distributed()
     with _connected(distributed, address) as client:
@@ -44,7 +44,7 @@ def on_cluster(
             raise TangyError(
                 plain(f"--dask {address}: the cluster was lost; what was done is kept.")
             ) from None
-        finally:  # what is left when somebody has had enough
+        finally:  # cancel the rest if the caller stops early
             if client.status == "running":
                 client.cancel(list(futures))
 
@@ -59,26 +59,26 @@ def _distributed() -> Any:
 
 
 def _connected(distributed: Any, address: str) -> Any:
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # one sentence is enough
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # the error below is enough
     try:
         return distributed.Client(address, timeout=REACHED_WITHIN, set_as_default=False)
-    except (OSError, ValueError, TypeError):  # what Dask raises for a bad or a silent address
+    except (OSError, ValueError, TypeError):  # for an invalid address or no answer
         raise TangyError(
             plain(f"--dask {address}: no Dask scheduler answers there; is its address right?")
         ) from None
 
 
 def versions_there(client: Any) -> dict[str, str]:
-    """Return the digest of the code that each worker has."""
+    """Return the digest of each worker's code."""
     found: dict[str, str] = client.run(code_digest)
     return found
 
 
 def _check_workers(client: Any, address: str) -> None:
-    """See that there are workers, and that they would do the work as it would be done here."""
+    """Check that there are workers, and that they have the same code."""
     try:
         theirs = set(versions_there(client).values())
-    except Exception:  # a worker without this package raises whatever its unpickling raises
+    except Exception:  # unpickling fails on a worker without this package
         theirs = {"none"}
     if not theirs:
         raise TangyError(plain(f"--dask {address}: the scheduler has no workers yet."))

@@ -1,4 +1,4 @@
-"""Scenario 3 on the bench: games in which planned faults come about in devices."""
+"""Scenario 3 on the bench: games with planned faults of simulated devices."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ from tangy_tui.experiments.supervised import keep, lessons
 from tangy_tui.experiments.sweep import Case, Settings
 
 GAMES_A_PIECE = 5
-"""Games on one bench, with the same people: so each core has something to do."""
+"""Games on one bench with the same people: few, so that each core has work."""
 
 
 class InducingBench(BenchedWorld):
-    """A world on the bench in which planned faults come."""
+    """A world on the bench with planned faults."""
 
     def plan(self, plan: Sequence[Sequence[Planned]]) -> InducingBench:
-        """Return the planned faults of each game."""
+        """Set the planned faults of each game."""
         self.inducer = Inducer(plan)
         return self
 
     def begin(self) -> ActivityState:
         """Begin the next game of the plan."""
         self.inducer.begin()
-        self.link.release()  # nobody is there to say that all is well
+        self.link.release()  # nobody is there to release it
         return super().begin()
 
     def execute(self, action: Action) -> Outcome:
-        """Let a planned fault come that can show now, and carry out the action."""
+        """Inject a planned fault that can show now, and carry out the action."""
         if not self.over:
             self._note_lifted()
             step = self.tracker.step + 1
@@ -57,10 +57,10 @@ class InducingBench(BenchedWorld):
         return outcome
 
     def _note_hidden(self) -> None:
-        """Note, at a game's end, of which faults nothing could be seen any more.
+        """At a game's end, mark the faults that could no longer be observed.
 
-        A chair that found no room before the robot stands nowhere; and that somebody asks no more
-        is seen with the next behaviour.
+        These are a chair that found no room in front of the robot, and a withdrawn request, which
+        only shows with the next behaviour.
         """
         self._note_lifted()
         placed = {fault["kind"]: fault["shown"] for fault in self.truth()["faults"]}
@@ -70,7 +70,7 @@ class InducingBench(BenchedWorld):
             fault.hidden = nowhere or (late and fault.kind.shows == WAITING)
 
     def recover(self, remedy: Remedy) -> float:
-        """Note that something is done about a fault, and do it; return the s it took."""
+        """Record that a fault is treated, and carry out the remedy; return the s it took."""
         self.inducer.treated(remedy.fault)
         seconds = super().recover(remedy)
         self._note_lifted()
@@ -80,7 +80,7 @@ class InducingBench(BenchedWorld):
         there, step = self.present, self.tracker.step
         for fault in self.inducer.induced:
             if fault.kind.name not in there:
-                late = fault.kind.shows == WAITING  # who asks no more is missed a moment later
+                late = fault.kind.shows == WAITING  # a withdrawn request shows one step later
                 self.inducer.lifted(fault.kind.name, step + late)
 
 
@@ -88,7 +88,7 @@ def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
     """Play games on a bench: a case is (seed, first game, games, games in all).
 
     Returns:
-        As `experiments.recovering.play`, and the `score` of what was read and found.
+        As `experiments.recovering.play`, and the `score` of the cards read and people found.
     """
     seed, first, some, games = case
     plan = plan_of(games, seed, GAMES_A_PIECE)[first : first + some]
@@ -98,7 +98,7 @@ def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
     with TemporaryDirectory(prefix="tangy-bench-") as scratch:
         workspace = Workspace(Path(scratch), activity=activity, users=users)
         try:
-            for one in shown:  # from which the effects of behaviours are learnt as well
+            for one in shown:  # also used to learn the effects
                 keep(workspace.store, one)
             with open_bench(
                 workspace,

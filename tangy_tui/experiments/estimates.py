@@ -1,4 +1,4 @@
-"""Numbers said with how sure they are: mean, deviation and standard error over n."""
+"""Summary statistics: mean, standard deviation and standard error over n."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tangy_tui.monitoring.scoring import share_interval as share_interval
 
 
 def summary(values: Sequence[float]) -> dict[str, Any]:
-    """Return n, mean, standard deviation (of the sample) and standard error of the mean."""
+    """Return n, mean, sample standard deviation and standard error of the mean."""
     n = len(values)
     sd = stdev(values) if n > 1 else 0.0
     return {"n": n, "mean": fmean(values) if n else None, "sd": sd, "se": sd / sqrt(n) if n else 0}
@@ -23,7 +23,7 @@ def share_of(flags: Sequence[bool]) -> float | None:
 
 
 def spread(values: Sequence[float]) -> dict[str, Any]:
-    """Return n, the median, and the quantile that 95% do not exceed (None of nothing)."""
+    """Return n, the median, and the 95% quantile (None without values)."""
     ordered = sorted(values)
     if not ordered:
         return {"n": 0, "median": None, "p95": None}

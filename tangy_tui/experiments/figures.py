@@ -1,4 +1,4 @@
-"""The reports' figures: matplotlib's objects, drawn as SVG that takes its colours from the page."""
+"""The figures of reports: matplotlib drawings as SVG, with the colours of the page."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ INKS = {
     "#030303": "var(--line)",
     **{f"#0{n}0{n}0{n}": f"var(--series-{n - 3})" for n in range(4, 10)},
 }
-"""Colours that stand for the page's own, so that figures are readable in light and in dark."""
+"""Placeholder colours that are replaced by the page's, to suit light and dark themes."""
 
 INK, DIM, LINE, *SERIES = INKS
 LEGEND: dict[str, Any] = {"frameon": False, "labelcolor": INK, "fontsize": 9}
@@ -24,7 +24,7 @@ BARS: dict[str, Any] = {"ecolor": INK, "capsize": 3, "error_kw": {"elinewidth": 
 
 
 class Figure:
-    """One drawing (its height in px), with some axes side by side; `svg` goes into the page."""
+    """One drawing (its height in px) with axes side by side; `svg` returns it for the page."""
 
     def __init__(self, name: str, panels: int = 1, *, height: float = 3.2, rows: int = 1) -> None:
         from matplotlib.figure import Figure as Drawing
@@ -38,12 +38,12 @@ class Figure:
             _plain(axes)
 
     def legend(self, *, columns: int) -> None:
-        """Name what the first axes show, below all of them."""
+        """Draw one legend for the first axes, below all of them."""
         lines, names = self.axes[0].get_legend_handles_labels()
         self._drawing.legend(lines, names, loc="outside lower center", ncols=columns, **LEGEND)
 
     def svg(self) -> str:
-        """Return the drawing as an SVG element: no header, no outside names, ids of its own."""
+        """Return the drawing as an SVG element without header and namespaces, with unique ids."""
         from matplotlib import rc_context
 
         text = StringIO()
@@ -77,7 +77,7 @@ def _named(axes: Any, title: str, across: str, up: str) -> None:
 
 
 def _counted(axes: Any) -> None:
-    axes.yaxis.get_major_locator().set_params(integer=True)  # there is no half of a person
+    axes.yaxis.get_major_locator().set_params(integer=True)  # whole people only
 
 
 def _papers(axes: Any, at: float, label: str) -> None:
@@ -87,7 +87,7 @@ def _papers(axes: Any, at: float, label: str) -> None:
 
 
 def demonstrations(document: Mapping[str, Any]) -> str:
-    """Draw how many demonstrations it took, and how long they were."""
+    """Plot how many demonstrations were needed, and their lengths."""
     figure = Figure("demonstrations", 2)
     first, second = figure.axes
     within = document["random"]["exact_within"]
@@ -116,13 +116,13 @@ def demonstrations(document: Mapping[str, Any]) -> str:
 
 
 def mistakes(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Draw in how many sequences the policy was exact, with wrong answers and after settling."""
+    """Plot the share of exact policies, with wrong answers and after resolving conflicts."""
     places = list(dict.fromkeys(row["placed"] for row in rows))
     figure = Figure("mistakes", len(places), height=2.8)
     for axes, place in zip(figure.axes, places, strict=True):
         some = [row for row in rows if row["placed"] == place]
         rates = [100 * row["rate"] for row in some]
-        # The first is broad with hollow marks, so that the second on top of it does not hide it.
+        # The first line is thick with hollow markers, so that the second does not cover it.
         broad = {"linewidth": 4, "markersize": 11, "markerfacecolor": "none"}
         thin = {"linewidth": 1.2, "markersize": 4}
         for key, label, ink, form, drawn in (
@@ -138,7 +138,7 @@ def mistakes(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def optimal_shares(users: Sequence[Mapping[str, Any]]) -> str:
-    """Draw Fig. 5: the percentage of optimal strategies for each user, over interactions."""
+    """Plot Fig. 5: the percentage of optimal strategies for each user, over interactions."""
     across = min(len(users), 4)
     rows = -(-len(users) // across)
     figure = Figure("optimal", across, height=2.6 * rows, rows=rows)
@@ -164,7 +164,7 @@ def optimal_shares(users: Sequence[Mapping[str, Any]]) -> str:
 
 
 def before_convergence(document: Mapping[str, Any]) -> str:
-    """Draw how many sub-optimal strategies came before convergence, person by person."""
+    """Plot the histogram of sub-optimal strategies before convergence."""
     figure = Figure("before", height=2.8)
     (axes,) = figure.axes
     counts = document["suboptimal_before_convergence"]["all"]
@@ -182,11 +182,11 @@ def regrets(
     names: Mapping[str, str],
     log_term: Mapping[str, float],
 ) -> str:
-    """Draw the regret (in responses) of every method at every horizon, a panel for each crowd.
+    """Plot the regret (in responses) of every method at every horizon, one panel per crowd.
 
     Args:
-        crowds: (title, method -> row); the first one gets the Lai-Robbins log term drawn in.
-        names: what each method is called, in the order of the lines.
+        crowds: (title, method -> row); the first panel also shows the Lai-Robbins log term.
+        names: the names of the methods, in the order of the lines.
         log_term: the regret of the Lai-Robbins log term, by horizon.
     """
     figure = Figure("regret", len(crowds), height=3.6)
@@ -195,7 +195,7 @@ def regrets(
         for place, (name, row) in enumerate(methods.items()):
             times = [int(horizon) for horizon in row["regret"]]
             axes.errorbar(
-                [time * beside[name] for time in times],  # so that equal ones do not hide another
+                [time * beside[name] for time in times],  # shifted against overlaps
                 list(row["regret"].values()),
                 yerr=list(row["regret_se"].values()),
                 color=SERIES[place % len(SERIES)],
@@ -216,15 +216,15 @@ def regrets(
 
 
 MARKERS = {"expert": "X", "continue": "o", "user": "^", "teacher": "s"}
-"""The marker of each class of recovery; its colour is the series' of the same place."""
+"""The marker of each class of recovery; its colour is the series at the same index."""
 
 
 def faults_by_game(games: Sequence[Mapping[str, Any]], names: Mapping[str, str]) -> str:
-    """Draw a line for each game, with a mark where a fault was diagnosed.
+    """Plot a line for each game, with a marker for each diagnosed fault.
 
     Args:
         games: each with its `number`, its `steps` and its faults.
-        names: what each recovery is called.
+        names: the names of the recoveries.
     """
     figure = Figure("faults", height=1.2 + 0.2 * len(games))
     (axes,) = figure.axes
@@ -257,7 +257,7 @@ def faults_by_game(games: Sequence[Mapping[str, Any]], names: Mapping[str, str])
 
 
 def times_to_recover(games: Sequence[Mapping[str, Any]], names: Mapping[str, str]) -> str:
-    """Draw how long each recovery took, a line of marks for each class."""
+    """Plot the duration of each recovery, one row per class."""
     figure = Figure("times", height=2.4)
     (axes,) = figure.axes
     for place, (recovery, marker) in enumerate(MARKERS.items()):
@@ -267,7 +267,7 @@ def times_to_recover(games: Sequence[Mapping[str, Any]], names: Mapping[str, str
             for fault in game["faults"]
             if fault["called_for"] == recovery and fault["seconds"] is not None
         )
-        # Beside each other where they took the same time, so that each can be seen.
+        # Spread vertically, so that equal durations do not overlap.
         beside = [0.6 * (at + 1) / (len(seconds) + 1) - 0.3 for at in range(len(seconds))]
         axes.plot(seconds, [place + up for up in beside], marker, color=SERIES[place], markersize=4)
     axes.set_yticks(range(len(MARKERS)), [names[recovery] for recovery in MARKERS])

@@ -1,8 +1,8 @@
-"""Scenario 1, first part: how many demonstrations it takes until the policy is the expected one.
+"""Scenario 1, first part: how many demonstrations are needed for an exact policy.
 
-A teacher demonstrates one game after another; after each the policy is learnt from all of them,
-and looked at on every joint state. Games by chance are the paper's; guided games show everything
-in one.
+A teacher demonstrates games one after another. After each, the policy is learnt from all of them
+and checked in every joint state. Random games are the paper's; a guided game shows everything at
+once.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ from tangy_tui.experiments.published import USERS
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
 
 MOST_GAMES = 12
-"""Games by chance after which a teacher gives up; four are nearly always enough."""
+"""Random games after which a teacher gives up; four are nearly always enough."""
 
 COUNTS = (1, 2, 3, 4)
-"""Demonstrations at which the share of exact policies is reported."""
+"""Numbers of demonstrations for which the share of exact policies is reported."""
 
 
 def until_exact(settings: Settings, case: Case) -> dict[str, Any]:
-    """Teach until the policy is exact: a case is (how games come about, people, seed).
+    """Teach until the policy is exact: a case is (kind of games, people, seed).
 
     Returns:
-        `games` it took (None: not within `most`), the `behaviours` of each demonstration, and
-        after each one how decisions stood: [wrong, wrong and flagged, right, right and flagged].
+        The number of `games` needed (None: more than `most`), the `behaviours` of each
+        demonstration, and the `flagged` counts after each.
     """
     games, users, seed = case
     activity = activity_of(settings["activity"])
@@ -61,9 +61,9 @@ def until_exact(settings: Settings, case: Case) -> dict[str, Any]:
 
 
 def flagged(policy: Any, activity: Any) -> list[int]:
-    """Count the decisions on expected situations: wrong, of these flagged, right, of these flagged.
+    """Count the decisions in expected situations: [wrong, wrong flagged, right, right flagged].
 
-    A decision is flagged when Tangy would ask instead of acting on it.
+    A decision is flagged if Tangy would ask instead of carrying it out.
     """
     counts = Counter[tuple[bool, bool]]()
     for situation, behaviour in activity.expected.items():
@@ -74,7 +74,7 @@ def flagged(policy: Any, activity: Any) -> list[int]:
 
 
 def flagged_shares(counts: Sequence[Sequence[int]]) -> dict[str, Any]:
-    """Add up `flagged` counts: how many wrong and right decisions, and the shares flagged."""
+    """Sum `flagged` counts: the numbers of wrong and right decisions, and the shares flagged."""
     wrong, wrong_flagged, right, right_flagged = (
         (sum(column) for column in zip(*counts, strict=True)) if counts else (0, 0, 0, 0)
     )
@@ -87,7 +87,7 @@ def flagged_shares(counts: Sequence[Sequence[int]]) -> dict[str, Any]:
 
 
 def run(activity: str, users: Sequence[int], seeds: Sequence[int], where: Where) -> dict[str, Any]:
-    """Run both ways of teaching: guided for each number of people, by chance for the paper's."""
+    """Run both kinds: guided games for each number of people, random ones for the paper's."""
     settings = {**about(activity), "most": MOST_GAMES}
     cases = [(GUIDED, count, seed) for count in users for seed in seeds]
     guided = Sweep("guided", until_exact, settings, cases).run(where)

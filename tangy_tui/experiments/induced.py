@@ -1,8 +1,8 @@
-"""Faults that are induced in games: how many of which class, which kinds, in which game and when.
+"""Faults induced in games: how many of each class, which kinds, in which game and when.
 
-Chance draws the plan from a seed. A planned fault comes at its step, or with the first behaviour
-after it in which it can show. One that could not for long gives way to another of its class, and
-one that could not in its game comes in the next one.
+The plan is drawn from a seed. A planned fault occurs at its step, or with the first later behaviour
+in which it can be observed. If that takes too long, another fault of its class may replace it; if
+it does not happen in its game, the fault moves to the next one.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import AT_ONCE, KINDS, MOVING_ON, WAITING, Kind
 
 LATEST = 30
-"""Steps among which the one is drawn from which a fault may come; few games have fewer."""
+"""The last step at which a fault may be planned; few games are shorter."""
 
 LONG = 20
-"""Steps that a planned fault waits to show before another kind of its class may come instead."""
+"""Steps after which a planned fault may be replaced by another kind of its class."""
 
 NOT_BOTH = (("voice-dead", "screen-dead"), ("requests-silent", "request-withdrawn"))
-"""Kinds of which a game has one: both together are a third fault, or the first hides the other."""
+"""Kinds of which a game has only one: together they are a third fault, or one hides the other."""
 
 
 @dataclass(frozen=True)
 class Planned:
-    """A fault that is to come from some step of a game on; `others` are kinds of its class."""
+    """A fault planned for some step of a game or later; `others` are kinds of its class."""
 
     kind: Kind
     step: int
@@ -40,24 +40,24 @@ class Planned:
 
 @dataclass
 class Induced:
-    """A fault that came about, from its step to the one at which it was lifted (None: never)."""
+    """A fault that occurred, from its step to the step at which it was removed (None: never)."""
 
     kind: Kind
     step: int
     seconds: float
     lifted: int | None = None
     hidden: bool = False
-    """Whether the game was over before there was anything to be noticed of it."""
+    """Whether the game ended before the fault could be observed."""
 
     @property
     def could_show(self) -> bool:
         """Whether the fault could be observed."""
-        once = self.kind.shows in (WAITING, MOVING_ON)  # is over as soon as it has come about
+        once = self.kind.shows in (WAITING, MOVING_ON)  # a momentary event
         return not self.hidden and (not once or self.lifted is not None)
 
 
 def recovery_of(kind: Kind, book: FaultBook) -> str:
-    """Return the recovery that is right for a kind: the first one of the rule for its code."""
+    """Return the right recovery for a kind: the first one of the rule for its code."""
     return book.rule(kind.code).recovery[0]
 
 
@@ -70,9 +70,9 @@ def kinds_by_recovery(book: FaultBook) -> dict[str, list[str]]:
 
 
 def in_proportion(mix: Mapping[str, int], of: int, games: int) -> dict[str, int]:
-    """Scale how many faults of each class `of` games have to another number of games.
+    """Scale the number of faults of each class in `of` games to another number of games.
 
-    The total is rounded, and the largest remainders get what is left (Hamilton's method).
+    The total is rounded and distributed by the largest remainders (Hamilton's method).
     """
     exact = {name: count * games / of for name, count in mix.items()}
     scaled = {name: int(value) for name, value in exact.items()}
@@ -85,12 +85,12 @@ def in_proportion(mix: Mapping[str, int], of: int, games: int) -> dict[str, int]
 def draw_plan(
     counts: Mapping[str, int], games: int, seed: int, book: FaultBook
 ) -> list[list[Planned]]:
-    """Spread faults over games: of each class as evenly as can be, at most one of a kind in each.
+    """Distribute faults over games: each class evenly, at most one of a kind per game.
 
     Args:
-        counts: how many faults there are of each class of recovery.
-        games: how many games.
-        seed: of the random generators.
+        counts: the number of faults of each class of recovery.
+        games: the number of games.
+        seed: seed of the random generators.
         book: the fault rules.
     """
     rng = Random(f"{seed}/plan")
@@ -103,7 +103,7 @@ def draw_plan(
             for _ in range(count // games + (place < count % games)):
                 had = [planned.kind.name for planned in plan[game]]
                 free = [KINDS[name] for name in kinds[recovery] if fits(name, had)]
-                if game == games - 1:  # what could not show in this game would come in none
+                if game == games - 1:  # there is no later game to move to
                     free = [kind for kind in free if kind.shows == AT_ONCE] or free
                 if free:
                     kind = rng.choice(free)
@@ -116,25 +116,25 @@ def draw_plan(
 
 
 def fits(name: str, had: Sequence[str]) -> bool:
-    """Say whether a kind may come in a game that has had others."""
+    """Return whether a kind may occur in a game that had these others."""
     return name not in had and not any(
         name in pair and not set(pair).isdisjoint(had) for pair in NOT_BOTH
     )
 
 
 class Inducer:
-    """Brings planned faults about, one after the other: none while another is new.
+    """Induces planned faults, one at a time: none while another one is new.
 
-    A fault is new until something was done about it. None comes with a behaviour that ends the
-    game, and none while `held`, as when a teacher is asked.
+    A fault is new until something was done about it. None is induced with a behaviour that ends the
+    game, and none while `held`, for example while a teacher is asked.
     """
 
     def __init__(self, plan: Sequence[Sequence[Planned]]) -> None:
         self.held = False
         self.due: list[Planned] = []
-        """What is to come in this game, also of what could not in those before."""
+        """The faults still planned, including those left over from earlier games."""
         self.induced: list[Induced] = []
-        """What came about in this game."""
+        """The faults that occurred in this game."""
         self._left = list(plan)
         self._treated: set[str] = set()
 
@@ -148,13 +148,13 @@ class Inducer:
     def choose(
         self, step: int, action: Action, there: Iterable[Kind], shows: Callable[[Kind], bool]
     ) -> str:
-        """Return the kind of fault planned for an action, "" if none.
+        """Return the kind of fault to induce with an action; "" if none.
 
         Args:
-            step: the number of the behaviour that the action is of.
-            action: what is to be done.
-            there: the kinds that are there.
-            shows: says whether a kind would be seen if it came now.
+            step: the step number of the action.
+            action: the next action.
+            there: the kinds of the present faults.
+            shows: returns whether a kind could be observed if it occurred now.
         """
         new = any(kind.code not in self._treated for kind in there)
         if self.held or new or action.behaviour.effect == "finish":
@@ -171,22 +171,22 @@ class Inducer:
         return ""
 
     def came(self, name: str, step: int, seconds: float) -> None:
-        """Record an occurred fault of a kind, at a time in s of the game."""
+        """Record that a fault of a kind occurred, at a time in s of the game."""
         self.induced.append(Induced(KINDS[name], step, seconds))
 
     def lifted(self, name: str, step: int) -> None:
-        """Note that a fault of a kind was put right."""
+        """Record that a fault of a kind was removed."""
         for fault in self.induced:
             if fault.kind.name == name and fault.lifted is None:
                 fault.lifted = step
 
     def treated(self, code: str) -> None:
-        """Note that something is done about a fault."""
+        """Record that something was done about a fault."""
         self._treated.add(code)
 
 
 class InducingWorld(FaultyWorld):
-    """A simulated world in which planned faults come."""
+    """A simulated world with planned faults."""
 
     def __init__(
         self,
@@ -204,17 +204,17 @@ class InducingWorld(FaultyWorld):
 
     @property
     def induced(self) -> list[Induced]:
-        """What came about in this game."""
+        """The faults that occurred in this game."""
         return self.inducer.induced
 
     def begin(self) -> ActivityState:
         """Begin the next game of the plan."""
-        if self._made:  # a world begins when it is made, too
+        if self._made:  # the constructor also calls it
             self.inducer.begin()
         return super().begin()
 
     def execute(self, action: Action) -> Outcome:
-        """Let a planned fault come that can show now, and carry out the action."""
+        """Inject a planned fault that can show now, and carry out the action."""
         if not self.over:
             self._induce(action)
         return super().execute(action)
@@ -235,12 +235,12 @@ class InducingWorld(FaultyWorld):
         self.inject(name)
 
     def lift(self, kind: str) -> None:
-        """Put a fault right, and note when."""
+        """Remove a fault, and record when."""
         if kind in self.present:
             self.inducer.lifted(kind, self.tracker.step)
         super().lift(kind)
 
     def recover(self, remedy: Remedy) -> float:
-        """Note that something is done about a fault, and do it; return the s it took."""
+        """Record that a fault is treated, and carry out the remedy; return the s it took."""
         self.inducer.treated(remedy.fault)
         return super().recover(remedy)

@@ -1,4 +1,4 @@
-"""Matching of diagnoses and induced faults: right, wrong, repeated, missed, or false."""
+"""Matching of diagnoses to induced faults: right, wrong, repeated, missed, or false."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.scoring import seconds_to_recover as seconds_to_recover
 
 RIGHT, AGAIN, WRONG, NOTHING = "right", "again", "wrong cause", "no cause"
-"""What a diagnosis can be: of what was induced; of the same once more; of another; of nothing."""
+"""Verdicts: the right cause; the same fault again; a wrong cause; no cause (a false alarm)."""
 
 
 @dataclass(frozen=True)
 class CommandMatch:
-    """A diagnosis, what it is, and the induced fault that it is about."""
+    """A diagnosis, its verdict, and the induced fault it was matched to."""
 
     fault: Fault
     verdict: str
@@ -24,12 +24,12 @@ class CommandMatch:
 
 @dataclass
 class MatchCounts:
-    """All diagnoses of a game, and the induced faults that were never recognised."""
+    """All diagnoses of a game, and the induced faults that were never diagnosed."""
 
     matches: list[CommandMatch] = field(default_factory=list)
     missed: list[Induced] = field(default_factory=list)
     asked: int = 0
-    """How often Tangy only asked what to do where nobody had shown it."""
+    """How often Tangy only asked what to do in an unknown situation."""
 
     def of(self, induced: Induced) -> list[CommandMatch]:
         """Return the diagnoses of one induced fault."""
@@ -42,10 +42,11 @@ class MatchCounts:
 
 
 def match_faults(induced: Sequence[Induced], faults: Sequence[Fault]) -> MatchCounts:
-    """Attribute each diagnosis of a game to an induced fault that was there at that step.
+    """Match each diagnosis of a game to an induced fault that was present at that step.
 
-    An induced fault is there until it is lifted or the game ends, and is recognised by the code of
-    its kind. Another diagnosis while one is not recognised yet is about that one, and wrong.
+    An induced fault is present until it is removed or the game ends. The code of its kind is the
+    right diagnosis. Any other diagnosis, while one is still undiagnosed, is a wrong diagnosis of
+    that one.
     """
     found = MatchCounts()
     known: list[Induced] = []

@@ -1,8 +1,8 @@
-"""Wrong answers in demonstrations: are they found, and is the policy right once they are settled?
+"""Wrong answers in demonstrations: are they found, and is the policy right after settling them?
 
-Demonstrations that show everything get a share of wrong answers: anywhere, in the situation that
-comes about most, or in the ones that come about least. The steps stay where they are and only the
-answer changes, so that how many are wrong, and where, is as it was meant to be.
+A share of the steps of complete demonstrations gets a wrong answer: anywhere, in the most frequent
+situation, or in the rarest ones. Only the answers change, not the steps, so the number and place of
+wrong answers are exactly as planned.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ PLACES = ("anywhere", "commonest", "rarest")
 
 
 def with_mistakes(settings: Settings, case: Case) -> dict[str, Any]:
-    """Learn from demonstrations with wrong answers: a case is (share wrong, where, seed).
+    """Learn from demonstrations with wrong answers: a case is (share wrong, place, seed).
 
     Returns:
-        How many steps were made `wrong`, how many of these lie in a conflict that was found, the
-        situations with contradicting answers and how many of them were found, whether the policy
-        was exact before and after a teacher settled the conflicts, `flagged` counts before and
-        after, and `silent`: situations in which no right answer was left.
+        The number of `wrong` steps, how many of them are in a detected conflict, the number of
+        situations with contradicting answers and how many were detected, whether the policy was
+        exact before and after a teacher settled the conflicts, `flagged` counts before and after,
+        and `silent`: the number of situations without any right answer left.
     """
     rate, place, seed = case
     activity = activity_of(settings["activity"])
@@ -86,11 +86,11 @@ def with_mistakes(settings: Settings, case: Case) -> dict[str, Any]:
 def places(
     activity: Activity, shown: Sequence[Demonstration], rate: float, place: str, rng: Random
 ) -> set[int]:
-    """Choose the steps (ids) that are to be wrong, a share `rate` of them (0 to 1).
+    """Choose the steps (ids) to make wrong, a share `rate` (0 to 1) of all steps.
 
-    On the commonest and the rarest, one situation after another gets one wrong answer, in the
-    order of how often they came about, and again from the first, for as long as each keeps a
-    right one; on the commonest all of them are put into one situation. Anywhere is anywhere.
+    For "commonest" all are in the most frequent situation. For "rarest" the situations get one
+    wrong answer each, in order of frequency and then again from the rarest. Each situation keeps at
+    least one right answer. For "anywhere" there is no restriction.
     """
     steps = [step for one in shown for step in one.steps]
     wanted = round(rate * len(steps))
@@ -128,7 +128,7 @@ def _spoilt(
 
 
 def run(activity: str, seeds: Sequence[int], where: Where) -> list[dict[str, Any]]:
-    """Run every rate at every place; one row each, the first of them without a mistake."""
+    """Run every rate at every place; one row each, the first one without mistakes."""
     kinds = [(0.0, PLACES[0]), *((rate, place) for place in PLACES for rate in RATES)]
     cases = [(rate, place, seed) for rate, place in kinds for seed in seeds]
     results = Sweep("mistakes", with_mistakes, about(activity), cases).run(where)

@@ -1,6 +1,6 @@
-"""How well faults are noticed: every kind with every behaviour, false alarms, and faults in pairs.
+"""How well faults are detected: each kind with each behaviour, false alarms, and pairs of faults.
 
-Each function plays games and counts; `tests/bench/faults.py` shows it for many, the tests for few.
+Each function plays games and counts; `tests/bench/faults.py` runs many, the tests few.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.comparison import TO_ITS_END
 
 REQUESTS = 20
-"""Behaviours within which a person who follows nothing was asked often enough to be told of."""
+"""The most behaviours until a person who never follows must have been diagnosed."""
 
 """The effects of behaviours for which the robot drives."""
 
 TURNS = ("asked", "remedied", "teacher asked", "halted")
-"""The moves by which it is a fault's turn."""
+"""The recovery moves that count as treating a fault."""
 
 
 class AimingWorld(InducingWorld):
-    """A world in which kinds of faults come together, once, with a behaviour (None: any)."""
+    """A world that injects given kinds together, once, with a given behaviour (None: any)."""
 
     kinds: Sequence[str] = ()
     behaviour: str | None = None
     after = 0
-    """Steps before which nothing comes."""
+    """The steps before which nothing is injected."""
     executed = 0
     """How often the behaviour was about to be carried out."""
 
@@ -49,7 +49,7 @@ class AimingWorld(InducingWorld):
             return
         self.executed += 1
         ends = self.behaviour is None and action.behaviour.effect == "finish"
-        if self.tracker.step < self.after or ends:  # after the end there is no time to recover
+        if self.tracker.step < self.after or ends:  # too late to recover
             return
         kinds = [KINDS[name] for name in self.kinds]
         if all(self.can_show(kind, action) for kind in kinds) and apart(kinds, action):
@@ -60,8 +60,8 @@ class AimingWorld(InducingWorld):
 def apart(kinds: Sequence[Kind], action: Action) -> bool:
     """Return whether faults of several kinds stay distinguishable in the same action.
 
-    A robot that is held does not arrive, whatever else came to nothing; and while nothing at all
-    is heard, nobody can see what happens once.
+    A robot that cannot move never arrives, which hides other failures; and while the link is lost,
+    momentary events cannot be observed.
     """
     held = any(kind.holds for kind in kinds) and action.behaviour.effect in DRIVES
     deaf = any(kind.holds and kind.blinds for kind in kinds)
@@ -72,7 +72,7 @@ def apart(kinds: Sequence[Kind], action: Action) -> bool:
 
 
 class HalfHeartedWorld(InducingWorld):
-    """A world in which people follow a request with a probability only; nothing is amiss."""
+    """A world in which people follow requests only with a probability; there are no faults."""
 
     follows = 1.0
 
@@ -85,7 +85,7 @@ class HalfHeartedWorld(InducingWorld):
 
 
 def complying(workspace: Supervised, share: float | None) -> Preferences | None:
-    """Return people who comply with every strategy with one probability (None: with their own)."""
+    """Return people who comply with this probability (None: with their own preferences)."""
     if share is None:
         return None
     strategies = activity_of(workspace.activity).strategies
@@ -96,14 +96,14 @@ def complying(workspace: Supervised, share: float | None) -> Preferences | None:
 
 
 def matrix(settings: Settings, case: Case) -> list[dict[str, Any]]:
-    """Bring about a kind with each behaviour in turn: a case is (kind, first seed, seeds).
+    """Inject a kind with each behaviour in turn: a case is (kind, first seed, seeds).
 
     Settings: `activity`, `users`, and `complies` (a probability, or None for the usual ones).
 
     Returns:
-        A row for each behaviour: in how many games it was `executed`, the fault `came`, was
-        `detected` within its behaviour, with the right `class` and `cause`, and how often there
-        was a `false` alarm.
+        A row for each behaviour: the number of games in which it was `executed`, the fault `came`,
+            was `detected` in the same behaviour, with the right `class` and `cause`, and the number
+            of `false` alarms.
     """
     name, seed, seeds = case
     activity = activity_of(settings["activity"])
@@ -159,7 +159,7 @@ def _aiming(
 
 
 def _settled(game: Supervision, world: AimingWorld) -> bool:
-    """Say whether it is known what became of the fault that was brought about."""
+    """Return whether the outcome of the injected fault is known."""
     if not world.induced:
         return False
     first = world.induced[0]
@@ -206,11 +206,11 @@ def alarms(settings: Settings, case: Case) -> dict[str, Any]:
 
 
 def pairs(settings: Settings, case: Case) -> dict[str, Any]:
-    """Bring about a critical kind and another at once: a case is (critical, other, seed, seeds).
+    """Inject a critical kind and another one at once: a case is (critical, other, seed, seeds).
 
     Returns:
-        In how many games both `came`, both were `diagnosed`, the critical one had its turn
-        `first`, and both were `ended` (over, or borne where that was planned).
+        The number of games in which both `came`, both were `diagnosed`, the critical one was
+        treated `first`, and both were `ended` (over, or tolerated as planned).
     """
     critical, other, seed, seeds = case
     count = Counter[str]()
@@ -239,12 +239,12 @@ def pairs(settings: Settings, case: Case) -> dict[str, Any]:
 
 
 def _turns(events: Sequence[Event]) -> list[str]:
-    """Return whose turn it was, by the ids of the faults."""
+    """Return the ids of the faults in the order in which they were treated."""
     return [e.fault.id for e in events if isinstance(e, Moved) and e.move.kind in TURNS]
 
 
 def crowd(settings: Settings, case: Case) -> list[dict[str, Any]]:
-    """Play games in which every kind may come at every step: a case is (seed, games, chance)."""
+    """Play games in which any kind may occur at any step: a case is (seed, games, chance)."""
     seed, games, chance = case
     played: list[dict[str, Any]] = []
     with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as workspace:
@@ -273,5 +273,5 @@ def crowd(settings: Settings, case: Case) -> list[dict[str, Any]]:
 
 
 def added(rows: Sequence[Mapping[str, Any]], name: str) -> int:
-    """Add up one of the counts of rows."""
+    """Sum one of the counts over rows."""
     return sum(row.get(name, 0) for row in rows)

@@ -1,8 +1,8 @@
-"""What Scenario 2 would have given, had what the paper does not say been chosen otherwise.
+"""Sensitivity of Scenario 2 to the parameters that the paper does not state.
 
-The paper names neither how often its simulated people comply nor what it counts as convergence.
-Both were chosen here with its figure in view, so that it comes near is no result; how far other
-choices move it is one.
+The paper states neither the compliance rates of its simulated people nor its criterion of
+convergence. Both were chosen here to come near its figure, so the agreement is no result; the
+effect of other choices is.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from tangy_tui.experiments.sweep import Settings, Sweep, Where
 from tangy_tui.interaction.persuasion import Persuasion
 
 PREFERRED = (0.8, 0.9, 0.95)
-"""Probabilities of complying with the strategy that a person prefers."""
+"""Probabilities of complying with the preferred strategy."""
 OTHER = (0.2, 0.4, 0.6)
-"""Probabilities of complying with any other."""
+"""Probabilities of complying with any other strategy."""
 IN_A_ROW = (5, 10)
 """Optimal strategies in a row that may count as convergence."""
 
 LONGEST = 1_500
-"""Interactions after which a person who has not converged is counted as such, and left."""
+"""Interactions after which a person counts as not converged."""
 
 ENOUGH = 200
-"""People for each choice: with so many a mean is known to about one strategy."""
+"""People for each choice; they give the mean to within about one strategy."""
 
 
 def meet(settings: Settings, case: Sequence[Any]) -> list[int | None]:
-    """Meet people who comply at these rates; return how many sub-optimal strategies each took.
+    """Simulate people with these rates; return each person's number of sub-optimal strategies.
 
     `case` is (preferred, other, in a row). None: the person never converged.
     """
@@ -61,11 +61,11 @@ def meet(settings: Settings, case: Sequence[Any]) -> list[int | None]:
 
 
 def run(activity: str, people: int, seed: int, where: Where) -> list[dict[str, Any]]:
-    """Try every choice with so many people each.
+    """Run every choice with this many people each.
 
     Returns:
-        For each choice `preferred`, `other`, `in_a_row`, whether it is the one that is `used`,
-        the `mean` of sub-optimal strategies before convergence, and how many `never` converged.
+        For each choice `preferred`, `other`, `in_a_row`, whether it is the one `used` here, the
+        `mean` of sub-optimal strategies before convergence, and how many `never` converged.
     """
     cases = list(product(PREFERRED, OTHER, IN_A_ROW))
     settings = {**about(activity), "people": people, "seed": seed}

@@ -1,8 +1,8 @@
 """Scenario 2: does Tangy learn which strategy works with which person, and how soon?
 
-Games are facilitated by a policy that was learnt as in Scenario 1, for four people who each
-comply best with another strategy. What is counted is how often the chosen strategy was the best
-one, interaction by interaction, and how many others were tried before one was settled on.
+Games are facilitated by a policy learnt as in Scenario 1, for four people who each prefer another
+strategy. The results are how often the chosen strategy was the best one, by interaction, and how
+many others were tried before convergence.
 """
 
 from __future__ import annotations
@@ -36,30 +36,30 @@ from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.policy import Policy
 
 CONVERGED = 10
-"""Optimal strategies in a row that count as convergence; the paper does not say its own."""
+"""Optimal strategies in a row that count as convergence; the paper does not state its own."""
 
 SHOWN = 60
-"""Interactions of each person that Fig. 5 is drawn over."""
+"""Interactions of each person in Fig. 5."""
 
 LONGEST = 2_000
-"""Games after which somebody who has not converged is counted as such, and left."""
+"""Games after which a person counts as not converged."""
 
 GROUPS_A_PIECE = 5
 MOST_GUIDED = 8
 
 
 LONGEST_GAME = 2_000
-"""Behaviours after which a game goes round in circles."""
+"""Behaviours after which a game is considered endless."""
 
 
 @cache
 def policy_of(activity: str, users: int) -> Policy:
     """Learn the policy that facilitates, from guided demonstrations of Scenario 1.
 
-    One is enough for an activity that can show everything in one game.
+    One demonstration is enough for an activity that can show everything in one game.
 
     Raises:
-        TangyError: some situation never comes about, so that it cannot be demonstrated.
+        TangyError: some situation never occurs, so that it cannot be demonstrated.
     """
     shown: list[Demonstration] = []
     for demonstration in islice(taught(Course(activity, users, GUIDED, 1)), MOST_GUIDED):
@@ -70,12 +70,12 @@ def policy_of(activity: str, users: int) -> Policy:
 
 
 def check(name: str) -> None:
-    """See, before anything is worked at, that there is something to persuade people of.
+    """Check that the activity persuades people, before any work is done.
 
     Raises:
-        TangyError: no behaviour that is expected persuades.
+        TangyError: no expected behaviour persuades.
     """
-    about(name)  # which says whether anything is expected
+    about(name)  # raises if nothing is expected
     activity = activity_of(name)
     expected = [activity.behaviours[name] for name in activity.expected.values()]
     if not any(behaviour.persuades and behaviour.attends for behaviour in expected):
@@ -89,16 +89,16 @@ def play(settings: Settings, case: Case) -> list[dict[str, Any]]:
     """Play games with some groups until everybody has converged: a case is (first seed, groups).
 
     Returns:
-        One document a group: `games`, `interactions` of everybody in these, and for each person
-        (in their order) `optimal`, the first interactions as a text of 1 (the best strategy) and
-        0, and `suboptimal`, how many others came before convergence (None: it never came).
+        One document per group: `games`, the number of `interactions` of each person, and for each
+            person `optimal`, their first interactions as a text of 1 (the best strategy) and 0, and
+            `suboptimal`, the number of other choices before convergence (None: never converged).
     """
     first, groups = case
     return [group(settings, seed) for seed in range(first, first + groups)]
 
 
 def group(settings: Settings, seed: int) -> dict[str, Any]:
-    """Play the games of one group, and return what came of each method."""
+    """Play the games of one group, and return its document (see `play`)."""
     activity = activity_of(settings["activity"])
     people = tuple(person.id for person in load_people(settings["users"]))
     preferences = preferences_in_turn(people, tuple(activity.strategies), load_users())
@@ -151,7 +151,7 @@ def suboptimal_before_convergence(optimal: Sequence[bool], in_a_row: int = CONVE
 
 
 def run(activity: str, users: int, groups: int, seed: int, where: Where) -> dict[str, Any]:
-    """Play with many groups of people and say what Scenario 2 says of its four.
+    """Play with many groups of people, and return the results of Scenario 2.
 
     Raises:
         TangyError: nobody is ever persuaded in this activity.
@@ -167,7 +167,7 @@ def run(activity: str, users: int, groups: int, seed: int, where: Where) -> dict
 
 
 def _shares(runs: Sequence[str]) -> list[float]:
-    """Return the share of optimal strategies at each interaction, of the runs that came so far."""
+    """Return the share of optimal strategies at each interaction, over the runs of that length."""
     columns = ([run[at] for run in runs if len(run) > at] for at in range(SHOWN))
     return [column.count("1") / len(column) for column in columns if column]
 
@@ -209,7 +209,7 @@ def _document(name: str, users: int, groups: Sequence[Mapping[str, Any]]) -> dic
             [sum(g["suboptimal"]) / users for g in groups if None not in g["suboptimal"]]
         ),
         "interactions_per_user_game": interactions / (games * users),
-        # A mean over n games varies as 1 / sqrt(n): from that of a group to that of twenty games.
+        # The sd of a mean over n games scales as 1 / sqrt(n): from one group to twenty games.
         "interactions_sd_of_twenty_games": summary(rates)["sd"] * sqrt(games / len(groups) / 20),
         "games": games,
         "groups": len(groups),

@@ -1,4 +1,4 @@
-"""What results rest on: a digest of the code that makes them, and the versions around it."""
+"""Provenance of results: a digest of the code, and the versions of the packages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROOMS = (
     ("tangy_tui", "monitoring"),
     ("tangy_tui", "experiments"),
 )
-"""The packages, and the folders in them, whose change may change a result."""
+"""The packages and folders whose changes may change a result."""
 
 ONLY_SHOWN = (
     "report.py",
@@ -28,22 +28,22 @@ ONLY_SHOWN = (
     "comparison.py",
     "published.py",
 )
-"""Files of these rooms that only show results."""
+"""Files in these folders that only present results."""
 
 PACKAGES = ("tangy", "numpy", "scikit-learn", "joblib", "matplotlib", "distributed")
 
 
 def digest_of(document: Any) -> str:
-    """Return a SHA-256 over a JSON document."""
+    """Return the SHA-256 of a JSON document."""
     canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 
 @cache
 def code_digest() -> str:
-    """Return a SHA-256 over the code and data files that results come from, and what they use.
+    """Return the SHA-256 of the code and data files behind the results.
 
-    So results that older code left in a data folder are never taken for those of this one.
+    So results that older code left in a data folder are never reused.
     """
     digest = hashlib.sha256()
     for package, room in ROOMS:
@@ -58,7 +58,7 @@ def code_digest() -> str:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that have a part in the results."""
+    """Return the versions of Python and of the packages behind the results."""
     found = {"python": platform.python_version()}
     for name in PACKAGES:
         try:

@@ -1,4 +1,4 @@
-"""What the paper published of its three scenarios, to be put beside what comes out here."""
+"""The published results of the paper's three scenarios, for comparison."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SCENARIO_ONE: Mapping[str, float] = MappingProxyType(
         "teachers": 5,
     }
 )
-"""Section V-A, results of Scenario 1. Every teacher's policy was the same."""
+"""Section V-A, results of Scenario 1; every teacher's policy was the same."""
 
 SCENARIO_TWO: Mapping[str, float] = MappingProxyType(
     {
@@ -27,17 +27,17 @@ SCENARIO_TWO: Mapping[str, float] = MappingProxyType(
         "interactions_per_user_game": 1.13,
     }
 )
-"""Section V-A, results of Scenario 2. Fig. 5 is a drawing; its values are not in the text."""
+"""Section V-A, results of Scenario 2; the values of Fig. 5 are not in the text."""
 
 USERS = 4
-"""How many people took part in every scenario of the paper."""
+"""The number of people in every scenario of the paper."""
 
 SCENARIO_THREE: Mapping[str, Any] = MappingProxyType(
     tomllib.loads(
         files("tangy_tui.experiments").joinpath("table_two.toml").read_text(encoding="utf-8")
     )
 )
-"""Table II, results of Scenario 3: rows of behaviours, and faults by the recovery they called for.
+"""Table II, results of Scenario 3: rows of behaviours, and faults by the right recovery.
 
-It is read from a file, because it holds words of an activity.
+It is read from a file, because it contains words of an activity.
 """

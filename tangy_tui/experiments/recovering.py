@@ -1,7 +1,7 @@
 """Scenario 3: does Tangy detect faults in games, and choose the right recovery?
 
-Games of four people with a learnt policy, and faults that are induced in the proportions of
-Table II. What is counted was diagnosed and done; what was induced is only held against it.
+Four people play games with a learnt policy, with faults induced in the proportions of Table II.
+Diagnoses and recoveries are what Tangy did; the induced faults are only the ground truth.
 """
 
 from __future__ import annotations
@@ -44,22 +44,22 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text import comparison
 
 GAMES_A_PIECE = 20
-"""Games after which other people come, whom Tangy does not know."""
+"""Games with the same people; the next ones are unknown to Tangy."""
 
 
 def plan_of(games: int, seed: int, piece: int = GAMES_A_PIECE) -> list[list[Planned]]:
     """Return the faults to induce in each game, in the paper's proportions.
 
     Args:
-        games: how many games.
-        seed: of the random generators.
-        piece: games that are played in a row, and have their share of the faults.
+        games: the number of games.
+        seed: seed of the random generators.
+        piece: games with the same people, which get their share of the faults.
     """
     book = load_faults(load_robot())
     mix = {row["recovery"]: row["instances"] for row in published.SCENARIO_THREE["faults"]}
     plan: list[list[Planned]] = []
     counts = in_proportion(mix, published.SCENARIO_THREE["games"], games)
-    for first in range(0, games, piece):  # so that each piece has its share
+    for first in range(0, games, piece):  # each piece gets its share
         some = min(piece, games - first)
         share = {
             name: round(count * (first + some) / games) - round(count * first / games)
@@ -73,7 +73,7 @@ def play(settings: Settings, case: Case) -> dict[str, Any]:
     """Play games with one group of people: a case is (seed, first game, games, games in all).
 
     Returns:
-        `games`, each with its faults, and `rows` as `tangy play --json` has them.
+        `games`, each with its faults, and `rows` as in `tangy play --json`.
     """
     seed, first, some, games = case
     plan = plan_of(games, seed)[first : first + some]
@@ -86,7 +86,7 @@ def play(settings: Settings, case: Case) -> dict[str, Any]:
 
 
 def play_games(game: Supervision, inducer: Inducer, first: int, some: int) -> dict[str, Any]:
-    """Play some games, from the one of this number on (from 0), and return them as `play` does."""
+    """Play `some` games, from number `first` (from 0), and return them as `play` does."""
     tally = Tally()
     played = [_game(game, inducer, tally, first + at + 1) for at in range(some)]
     document = tally.to_json(game.world.activity.situations, game.persuasion.beliefs)
@@ -164,20 +164,20 @@ def run(
     piece: Piece = play,
     a_piece: int = GAMES_A_PIECE,
 ) -> dict[str, Any]:
-    """Play games with induced faults, and report as Scenario 3 does for its twenty.
+    """Play games with induced faults, and return the results of Scenario 3.
 
     Args:
-        activity: what is played.
-        users: how many people play.
-        games: how many games.
-        seed: of the random generators.
-        where: where the work is kept and done.
-        name: of the sweep, under which its pieces are kept.
+        activity: the activity.
+        users: the number of people.
+        games: the number of games.
+        seed: seed of the random generators.
+        where: where the work is done and stored.
+        name: the name of the sweep, under which its pieces are stored.
         piece: plays one piece of the games.
-        a_piece: games that it plays in a row.
+        a_piece: games in one piece.
 
     Raises:
-        TangyError: the activity does not say what is expected.
+        TangyError: the activity does not declare the expected behaviours.
     """
     cases = [
         (seed, first, min(a_piece, games - first), games) for first in range(0, games, a_piece)
@@ -220,7 +220,7 @@ def _class_row(
     induced: Iterable[Mapping[str, Any]],
     faults: Iterable[Mapping[str, Any]],
 ) -> dict[str, Any]:
-    """Say of one class of recovery how often it was called for, how often had, how well."""
+    """Return the row of a class of recovery: induced, diagnosed, and recovered faults."""
     recovery = row["recovery"]
     some = [one for one in induced if one["recovery"] == recovery and one["could_show"]]
     mine = [fault for fault in faults if fault["called_for"] == recovery]
@@ -239,7 +239,7 @@ def _class_row(
 
 
 def _kinds(induced: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Say of each kind that came about how often it was recognised."""
+    """Return, for each kind that occurred, how often it was diagnosed."""
     found = []
     for name, kind in KINDS.items():
         some = [one for one in induced if one["kind"] == name]
@@ -259,7 +259,7 @@ def _kinds(induced: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _rows(pieces: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Add up the rows of all pieces, in the order in which they come first."""
+    """Sum the rows of all pieces, in order of first occurrence."""
     names = ("stage", "request", "user_state", "behaviour")
     total: Counter[tuple[str, ...]] = Counter()
     right: Counter[tuple[str, ...]] = Counter()

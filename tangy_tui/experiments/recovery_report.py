@@ -1,4 +1,4 @@
-"""The report's part on Scenario 3: faults game by game, how long they took, kind by kind."""
+"""The report of Scenario 3: faults by game, times to recover, faults by kind."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from tangy_tui.text.numbers import number, percent
 Document = Mapping[str, Any]
 
 MOST_DRAWN = 20
-"""Games that are drawn one by one."""
+"""Games that are drawn individually."""
 
 WHO = {"expert": "expert", "continue": "goes on", "user": "user", "teacher": "teacher"}
-"""The recoveries in a word, for figures."""
+"""Short names of the recoveries, for figures."""
 
 
 def recovery(document: Document) -> Iterator[str]:
@@ -71,7 +71,7 @@ def recovery(document: Document) -> Iterator[str]:
 
 
 def _others(document: Document) -> Iterator[str]:
-    """Say what did not come about, and of games that were stopped."""
+    """Yield the faults that did not occur, and the games that were stopped."""
     if left := document["did_not_come_about"]:
         yield paragraph(words.left_words(left))
     for reason, count in document["ended"].items():

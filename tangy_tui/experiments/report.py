@@ -1,4 +1,4 @@
-"""The report of a scenario: its document as a page with figures, tables and the paper beside."""
+"""The report of a scenario: a page with figures, tables and the paper's results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Document = Mapping[str, Any]
 
 
 def report(document: Document) -> str:
-    """Return the page for the document of a scenario; it is made from nothing else."""
+    """Return the page for the document of a scenario, made from it alone."""
     which = document["experiment"]
     parts = {1: _learning, 2: _persuasion, 3: recovery}[which](document)
     return page(
@@ -188,7 +188,7 @@ def _methods(document: Document) -> Iterator[str]:
 
 
 def _regret_table(methods: Document, first: Document, change: int) -> str:
-    """Return a table of the methods; those of all crowds have the same columns."""
+    """Return the regret table of a crowd; the columns are the same for all crowds."""
     horizons = list(first["regret"])
     base = first["regret"]
     return table(

@@ -1,4 +1,4 @@
-"""The three scenarios as whole documents: what came out, what the paper printed, and from what."""
+"""The documents of the three scenarios: results, the paper's results, and provenance."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from tangy_tui.experiments.provenance import code_digest, versions
 from tangy_tui.experiments.sweep import Piece, Where
 
 A_GROUP_OF = 5
-"""Of the seeds, one in so many has its own five teachers."""
+"""One in this many seeds has its own five teachers."""
 
 A_SHARE_OF = 4
-"""Of the seeds, one in so many is taught with every rate of mistakes in every place."""
+"""One in this many seeds is taught with every rate of mistakes in every place."""
 
 
 @dataclass(frozen=True)
 class Learning:
-    """What Scenario 1 is asked for: seeds, numbers of people in guided games, and whether to type.
+    """The parameters of Scenario 1: seeds, numbers of people in guided games, and whether to type.
 
-    `typed_steps` leaves the typed game after so many steps (None: a whole game).
+    `typed_steps` ends the typed game after this many steps (None: a whole game).
     """
 
     activity: str
@@ -47,13 +47,13 @@ class Learning:
 
     @property
     def all_seeds(self) -> range:
-        """The seeds themselves."""
+        """All seeds."""
         return range(self.seed * SEED_SPACE, self.seed * SEED_SPACE + self.seeds)
 
 
 @dataclass(frozen=True)
 class PersuasionScenario:
-    """What Scenario 2 is asked for: people in a group, people in all, and the first seed."""
+    """The parameters of Scenario 2: people in a group, people in all, and the first seed."""
 
     activity: str
     users: int
@@ -63,7 +63,7 @@ class PersuasionScenario:
 
 @dataclass(frozen=True)
 class Recovering:
-    """What Scenario 3 is asked for: people, games, and the seed of games and faults."""
+    """The parameters of Scenario 3: people, games, and the seed of games and faults."""
 
     activity: str
     users: int
@@ -72,10 +72,10 @@ class Recovering:
 
 
 def learning(asked: Learning, where: Where) -> dict[str, Any]:
-    """Run Scenario 1 and return its document (shares run from 0 to 1, times are in minutes)."""
+    """Run Scenario 1 and return its document (shares from 0 to 1, times in minutes)."""
     seeds = asked.all_seeds
     typed = None
-    if asked.typing:  # alone on the machine, before the cores are busy
+    if asked.typing:  # first, while the cores are idle
         typed = typing.run(asked.activity, [asked.seed], where, steps=asked.typed_steps)
     until = incremental.run(asked.activity, asked.users, seeds, where)
     taught = teachers.run(asked.activity, seeds[: -(-len(seeds) // A_GROUP_OF)], where)
@@ -105,7 +105,7 @@ def learning(asked: Learning, where: Where) -> dict[str, Any]:
 
 
 def persuasion(asked: PersuasionScenario, where: Where) -> dict[str, Any]:
-    """Run Scenario 2 and return its document (shares run from 0 to 1)."""
+    """Run Scenario 2 and return its document (shares from 0 to 1)."""
     strategies = len(activity_of(asked.activity).strategies)
     groups = -(-asked.people // asked.users)
     played = persuading.run(asked.activity, asked.users, groups, asked.seed, where)
@@ -140,13 +140,13 @@ def recovery(
     bench: Piece | None = None,
     a_piece: int = recovering.GAMES_A_PIECE,
 ) -> dict[str, Any]:
-    """Run Scenario 3 and return its document (times are in the world's s).
+    """Run Scenario 3 and return its document (times in the world's s).
 
     Args:
-        asked: the settings of the scenario.
-        where: where the work is kept and done.
-        bench: what plays the games on the bench, with simulated devices under the real hardware
-            layer; without it all is simulated.
+        asked: the parameters of the scenario.
+        where: where the work is done and stored.
+        bench: plays the games on the bench, with simulated devices under the real hardware layer;
+            without it, everything is simulated.
         a_piece: games with the same people.
     """
     run = partial(recovering.run, asked.activity, asked.users, asked.games, asked.seed, where)

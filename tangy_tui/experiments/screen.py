@@ -1,7 +1,7 @@
-"""What stands on a terminal's screen, read from what a program writes to it.
+"""A minimal terminal emulator: the screen's text from the output of a program.
 
-It knows what full-screen programs send: text, the cursor's place, clearing. Colours, modes and
-questions to the terminal are passed over.
+It handles what full-screen programs send: text, cursor movement, clearing. Colours, modes and
+terminal queries are ignored.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from unicodedata import combining, east_asian_width
 _SEQUENCE = re.compile(
     "\x1b(?:"
     r"\[(?P<values>[0-9;:<=>?]*)[ -/]*(?P<final>[@-~])"
-    "|\\][^\x07\x1b]*(?:\x07|\x1b\\\\)"  # a title or a colour, to the end of its text
+    "|\\][^\x07\x1b]*(?:\x07|\x1b\\\\)"  # a title or a colour, until its terminator
     "|[PX^_][^\x1b]*\x1b\\\\"
     r"|(?![\[\]PX^_])[ -/]*[0-~]"
     ")"
@@ -21,7 +21,7 @@ _SEQUENCE = re.compile(
 
 
 class Screen:
-    """A grid of characters: `feed` it what a program writes, and look at its `text`."""
+    """A grid of characters: `feed` it the output of a program, and read its `text`."""
 
     def __init__(self, columns: int, lines: int) -> None:
         self._columns = columns
@@ -32,7 +32,7 @@ class Screen:
 
     @property
     def lines(self) -> list[str]:
-        """The lines, without the spaces at their ends."""
+        """The lines, without trailing spaces."""
         return ["".join(cells).rstrip() for cells in self._cells]
 
     @property
@@ -41,7 +41,7 @@ class Screen:
         return "\n".join(self.lines)
 
     def feed(self, written: bytes) -> None:
-        """Take in what was written; a sequence may be torn anywhere between two calls."""
+        """Process output; a sequence may be split between two calls."""
         text = self._left + self._decode(written)
         at = 0
         while at < len(text):
@@ -51,7 +51,7 @@ class Screen:
                 continue
             found = _SEQUENCE.match(text, at)
             if found is None:
-                if len(text) - at < 1000:  # the rest of it is still to come
+                if len(text) - at < 1000:  # incomplete: wait for the rest
                     break
                 at += 1
                 continue

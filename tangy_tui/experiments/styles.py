@@ -1,4 +1,4 @@
-"""Simulated teachers who differ: how they speak, whom they help first, what they get wrong."""
+"""Simulated teachers with different styles: phrases, order of visits, mistakes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, Reply, Say
 
 Order = Callable[[Sequence[str], Sequence[str], str, Random], str]
-"""Chooses whom to go to: (who asks, first come first; the seats; where the robot is; chance)."""
+"""Chooses the next person from those asking (first come first), the seats, the place, and rng."""
 
 
 def first_come(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
@@ -29,18 +29,18 @@ def last_come(asking: Sequence[str], seats: Sequence[str], place: str, rng: Rand
 
 
 def by_seat(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
-    """Go along the table from its beginning."""
+    """Go to the first seat along the table."""
     return min(asking, key=seats.index)
 
 
 def nearest(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
-    """Go to the nearest seat; the front is before the middle of the table."""
+    """Go to the nearest seat; the front is opposite the middle of the table."""
     here = (len(seats) - 1) / 2 if place == FRONT else seats.index(place)
     return min(asking, key=lambda person: (abs(seats.index(person) - here), seats.index(person)))
 
 
 def anybody(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
-    """Go to any of them."""
+    """Go to a random person."""
     return asking[int(rng.random() * len(asking))]
 
 
@@ -48,10 +48,10 @@ def anybody(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random
 class Style:
     """How one teacher teaches.
 
-    `varied`: whether every phrase of a behaviour is used, or always the one at `phrase`.
-    `mistakes`: P(giving a wrong command) per step. Of these, `reads` is the share that is noticed
-    in the question and answered with no; of the others, `mends` is undone when it is seen
-    happening. The rest stay in the demonstration.
+    `varied`: use all phrases of a behaviour, or else always the one at index `phrase`. `mistakes`:
+    P(giving a wrong command) per step. Of these, the share `reads` is noticed in the question and
+    answered with no; of the others, the share `mends` is undone after execution. The rest stay in
+    the demonstration.
     """
 
     name: str
@@ -70,18 +70,18 @@ STYLES = (
     Style("shortest way", nearest, 0.03, 0.5, 0.0, phrase=2),
     Style("hasty, anybody", anybody, 0.05, 0.3, 0.2, varied=True),
 )
-"""Five teachers, as many as the paper had; from none to one mistake in twenty steps."""
+"""Five teachers, as in the paper, with no mistakes up to one in twenty steps."""
 
 
 class StyledTeacher:
-    """Demonstrates what the activity expects, in a style, mistakes and all."""
+    """Demonstrates the expected behaviours in a style, with its mistakes."""
 
     def __init__(self, style: Style, teaching: TeachingSession, seed: int) -> None:
         self._style = style
         self._teaching = teaching
         self._rng = Random(f"{seed}/{style.name}")
         self.made = self.noticed = self.mended = 0
-        """Wrong commands given; those answered with no; those undone."""
+        """The numbers of wrong commands, of those answered with no, and of those undone."""
 
     def demonstrate(self) -> Steps:
         """Demonstrate to the end of the game, event by event."""
@@ -103,7 +103,7 @@ class StyledTeacher:
         events = teaching.apply(Say(command))
         yield from events
         if not isinstance(events[-1], Asked):
-            return  # it could not be done there: that is a mistake noticed, too
+            return  # refused, so the mistake is noticed too
         if wrong is not None and rng.random() < style.reads:
             self.noticed += 1
             yield from teaching.apply(Reply(yes=False))

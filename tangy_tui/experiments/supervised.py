@@ -1,6 +1,6 @@
 """A workspace for experiments on monitoring: demonstrations, a policy, supervised games.
 
-All is on a scratch folder: what teachers answer in games is learnt there as it is in the program.
+It is in a temporary folder, where teachers' answers in games are learnt as in the program.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ from tangy_tui.monitoring.accepted import expected_effects
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 DEMONSTRATIONS = 3
-"""Demonstrations that a policy is learnt from, as the paper's was."""
+"""Demonstrations that a policy is learnt from, as in the paper."""
 
 ENDLESS = 20_000
-"""Moves after which a game is taken to go round in circles."""
+"""Moves after which a game is considered endless."""
 
 
 @dataclass(frozen=True)
 class Supervised:
-    """Demonstrations in a scratch log, the learnt policy and effects, and the fault rules."""
+    """Demonstrations in a temporary log, the learnt policy and effects, and the fault rules."""
 
     activity: str
     people: tuple[Person, ...]
@@ -53,7 +53,7 @@ class Supervised:
     book: FaultBook
 
     def games(self, world: FaultyWorld, seed: int) -> Supervision:
-        """Return a run of games in a world, with a teacher who can be asked; nobody is known."""
+        """Return a supervision of games in a world, with a teacher to ask and unknown people."""
         people = tuple(person.id for person in self.people)
         names = {person.id: person.name for person in self.people}
         strategies = tuple(world.activity.strategies)
@@ -78,7 +78,7 @@ class Supervised:
 
 @cache
 def lessons(course: Course) -> tuple[tuple[Demonstration, ...], Policy]:
-    """Return the first demonstrations of a course, and the policy that is learnt from them."""
+    """Return the first demonstrations of a course, and the policy learnt from them."""
     games = taught(course)
     shown = tuple(next(games) for _ in range(DEMONSTRATIONS))
     return shown, learnt(activity_of(course.activity), shown)
@@ -86,9 +86,9 @@ def lessons(course: Course) -> tuple[tuple[Demonstration, ...], Policy]:
 
 @contextmanager
 def supervised(course: Course) -> Iterator[Supervised]:
-    """Open a workspace in which the demonstrations of a course were given and learnt from.
+    """Open a workspace with the demonstrations and the policy of a course.
 
-    Nothing in it outlives it, so all is one transaction.
+    It is temporary, so everything is one transaction.
     """
     shown, policy = lessons(course)
     robot = load_robot()
@@ -114,10 +114,10 @@ def keep(store: Store, shown: Demonstration) -> None:
 def play(
     game: Supervision, *, until: Callable[[Supervision], bool] = lambda _: False
 ) -> list[Event]:
-    """Play one game with scripted people to its end, or until something is so.
+    """Play one game with scripted people to its end, or until a condition holds.
 
     Raises:
-        RuntimeError: it goes round in circles.
+        RuntimeError: the game does not end.
     """
     control = scripted_controller(game)
     events = control.begin()

@@ -1,8 +1,8 @@
-"""A sweep: independent pieces of work on all cores or on a cluster, each kept when it is done.
+"""A sweep: independent pieces of work on all cores or on a cluster, each stored when done.
 
-A piece is a function of settings and one case; the same two give the same result anywhere. What
-is done is a line in a file of the data folder, so a sweep that was interrupted goes on where it
-was, and neither the number of jobs nor the order in which pieces end can change its results.
+A piece is a function of settings and one case, and deterministic. Each result is a line in a file
+of the data folder, so an interrupted sweep resumes where it stopped, and neither the number of jobs
+nor the order of completion changes the results.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ from tangy_tui.experiments.provenance import code_digest, digest_of
 
 Settings: TypeAlias = Mapping[str, Any]
 Case: TypeAlias = Sequence[Any]
-"""Which piece: JSON values, such as ("guided", 4, 17) for a way to teach, people and a seed."""
+"""The case of a piece, as JSON values, such as ("guided", 4, 17): kind of games, people, seed."""
 
 Piece: TypeAlias = Callable[[Settings, Case], Any]
-"""A function at the top of a module, which returns JSON; it holds neither clock nor chance."""
+"""A function at module level that returns JSON; it uses neither the clock nor unseeded chance."""
 
 Tell: TypeAlias = Callable[[str, int, int], None]
-"""Is told the name of the sweep, how many pieces are done, and how many there are."""
+"""Called with the name of the sweep, the number of finished pieces, and of all pieces."""
 
 
 @dataclass(frozen=True)
 class Where:
     """Where sweeps run, and where their results are stored.
 
-    `jobs`: processes on this machine (-1: one for each core). `cluster`: the address of a Dask
-    scheduler that does the work instead. `folder`: where the results are kept (None: nowhere).
-    `fresh`: forget what was kept before.
+    `jobs`: processes on this machine (-1: one per core). `cluster`: the address of a Dask scheduler
+    to use instead. `folder`: where to store results (None: nowhere). `fresh`: discard earlier
+    results.
     """
 
     folder: Path | None = None
@@ -56,14 +56,14 @@ class Sweep:
 
     @property
     def digest(self) -> str:
-        """What its results rest on besides the cases: the settings and the code itself."""
+        """The digest of the settings and the code, without the cases."""
         return digest_of([self.name, dict(self.settings), code_digest()])
 
     def run(self, where: Where) -> list[Any]:
         """Return the results in the order of the cases.
 
         Raises:
-            TangyError: the folder cannot be written, or the cluster not be reached.
+            TangyError: the folder is not writable, or the cluster not reachable.
         """
         kept = Kept(where.folder, f"{self.name}-{self.digest[:12]}.jsonl", fresh=where.fresh)
         done = {
@@ -80,14 +80,14 @@ class Sweep:
 
 
 class Kept:
-    """The results of a sweep that are on the disk already, one JSON line each.
+    """The stored results of a sweep, one JSON line each.
 
-    A line is written in one go; a line that a kill or a full disk tore is passed over, and the
-    next one begins on a line of its own.
+    A line is written at once; a line truncated by a kill or a full disk is ignored, and the next
+    one starts on a new line.
     """
 
     def __init__(self, folder: Path | None, name: str, *, fresh: bool = False) -> None:
-        """Read what there is.
+        """Read the stored results.
 
         Raises:
             TangyError: the file cannot be read or written.
@@ -99,7 +99,7 @@ class Kept:
         try:
             if folder is not None and not folder.exists():
                 folder.mkdir(parents=True)
-                folder.chmod(0o700)  # as the log of this folder would have it
+                folder.chmod(0o700)  # the mode of a log's folder
             self.path.parent.mkdir(exist_ok=True)
             if fresh:
                 self.path.unlink(missing_ok=True)
@@ -116,7 +116,7 @@ class Kept:
             self.results[_key(case)] = result
 
     def add(self, key: str, result: Any) -> None:
-        """Keep a result."""
+        """Store a result."""
         if self.path is not None:
             line = f"[{key},{json.dumps(result, ensure_ascii=False, separators=(',', ':'))}]\n"
             try:
@@ -154,7 +154,7 @@ def _work(sweep: Sweep, cases: list[Case], where: Where) -> Iterator[tuple[str, 
     else:
         results = _on_cores(where.jobs, sweep, cases)
     for index, result in results:
-        # Through JSON, so that a result that was just made is what a kept one is.
+        # Through JSON, so that new results equal stored ones.
         yield _key(cases[index]), json.loads(json.dumps(result))
 
 
@@ -169,9 +169,9 @@ def _on_cores(jobs: int, sweep: Sweep, cases: list[Case]) -> Iterator[tuple[int,
 
 
 def _one(of: int, index: int, piece: Piece, settings: Settings, case: Case) -> tuple[int, Any]:
-    """Work at one piece for the process `of`, which on a single core is this one."""
+    """Do one piece of work for the process `of`, which may be this one."""
     import signal
 
     if os.getpid() != of:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who hands out the work
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # only the parent handles Ctrl-C
     return index, piece(settings, case)

@@ -1,8 +1,8 @@
 """Scenario 1, second part: do different teachers lead to different policies?
 
-Five simulated teachers give the paper's three demonstrations each, in games of their own, and go
-on while the program tells them that a situation has not been shown. Then they are asked about the
-conflicts that were found, and answer by what they know of the activity.
+Five simulated teachers give the paper's three demonstrations each, in their own games, and continue
+while some situation was not shown. Then they settle the detected conflicts by what they know about
+the activity.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.teaching_session import TeachingSession
 
 FEWEST, MOST = int(SCENARIO_ONE["demonstrations"]), 8
-"""Games that a teacher gives at least and at most."""
+"""The fewest and most games of a teacher."""
 
 
 def resolved(activity: Activity, shown: Sequence[Demonstration]) -> list[Resolution]:
@@ -52,11 +52,11 @@ def wrong_steps(activity: Activity, shown: Sequence[Demonstration]) -> int:
 
 
 def teach(settings: Settings, case: Case) -> dict[str, Any]:
-    """Let one teacher teach: a case is (which style, seed).
+    """Let one teacher teach: a case is (index of the style, seed).
 
     Returns:
-        What was given and got wrong, and how the policy came out after three demonstrations
-        (`three`), then with the conflicts resolved (`three_resolved`), and at the end (`end`).
+        The demonstrations and mistakes, and the policy after three demonstrations (`three`), then
+        with the conflicts resolved (`three_resolved`), and at the end (`end`).
     """
     place, seed = case
     style, activity = STYLES[place], activity_of(settings["activity"])
@@ -103,7 +103,7 @@ def _outcome(activity: Activity, policy: Policy) -> dict[str, Any]:
 
 
 def run(activity: str, seeds: Sequence[int], where: Where) -> dict[str, Any]:
-    """Let groups of five teachers teach, a group for each seed, and compare within each group."""
+    """Run groups of five teachers, one group per seed, and compare within each group."""
     cases = [(place, seed) for seed in seeds for place in range(len(STYLES))]
     results = Sweep("teachers", teach, about(activity), cases).run(where)
     groups = [results[at : at + len(STYLES)] for at in range(0, len(results), len(STYLES))]
@@ -124,7 +124,7 @@ def run(activity: str, seeds: Sequence[int], where: Where) -> dict[str, Any]:
 
 
 def _row(results: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Say of one style what its teachers added up to."""
+    """Return the totals of the teachers of one style."""
     steps = sum(sum(result["behaviours"]) for result in results)
     return {
         "style": results[0]["style"],

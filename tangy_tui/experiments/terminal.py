@@ -1,4 +1,4 @@
-"""The program itself in a terminal of its own, as somebody has it who types."""
+"""The program in a pseudo-terminal, for typing into it like a person."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from tangy_tui.experiments.screen import Screen
 PROGRAM = (sys.executable, "-c", "from tangy_tui.cli import main; main()")
 COLUMNS, LINES = 120, 40
 PATIENCE = 60.0
-"""Seconds after which something that should be on the screen is missed."""
+"""Timeout (s) of an expected text on the screen."""
 
 
 class Terminal:
-    """A pty with the program in it; closing it ends the program."""
+    """A pseudo-terminal that runs the program; closing it ends the program."""
 
     def __init__(self, words: Sequence[str]) -> None:
-        """Start the program with these words.
+        """Start the program with these arguments.
 
         Raises:
             TangyError: this system has no pseudo-terminals.
@@ -43,7 +43,7 @@ class Terminal:
         self.screen = Screen(COLUMNS, LINES)
         self._mine, theirs = pty.openpty()
         fcntl.ioctl(self._mine, termios.TIOCSWINSZ, struct.pack("HHHH", LINES, COLUMNS, 0, 0))
-        # Colours may be asked for by a setting of the person's own; a plain terminal is enough.
+        # The user's environment may request colours; a plain terminal is enough.
         environment = {**os.environ, "TERM": "xterm-256color", "LANG": "C.UTF-8"}
         self._process = subprocess.Popen(  # noqa: S603 - our own program
             [*PROGRAM, *words],
@@ -66,7 +66,7 @@ class Terminal:
     ) -> None:
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGTERM)
-        os.close(self._mine)  # so that it does not wait for somebody to read its last words
+        os.close(self._mine)  # so that it does not wait for its last output to be read
         try:
             self._process.wait(10)
         except subprocess.TimeoutExpired:
@@ -78,13 +78,13 @@ class Terminal:
         os.write(self._mine, keys.encode())
 
     def watch(self, seconds: float) -> None:
-        """Look at the screen for so many s."""
+        """Read the screen for some s."""
         until = monotonic() + seconds
         while (left := until - monotonic()) > 0:
             self._read(left)
 
     def sees(self, seen: Callable[[Screen], bool], seconds: float) -> bool:
-        """Watch, for so many s at most, until something is on the screen; say whether it is."""
+        """Wait up to some s until a condition on the screen holds; return whether it does."""
         deadline = monotonic() + seconds
         while not seen(self.screen):
             if monotonic() > deadline or not self._read(max(0.0, deadline - monotonic())):
@@ -92,21 +92,21 @@ class Terminal:
         return True
 
     def until(self, seen: Callable[[Screen], bool], what: str) -> None:
-        """Watch until something is on the screen.
+        """Wait until a condition on the screen holds.
 
         Raises:
-            TangyError: it never came, or the program has ended.
+            TangyError: it timed out, or the program has ended.
         """
         if not self.sees(seen, PATIENCE):
             raise TangyError(f"The program in the terminal never showed {what}.")
 
     def _read(self, seconds: float) -> bool:
-        """Read once, for at most some time; say whether the program is still there."""
+        """Read once, with a timeout; return whether the program is still running."""
         if not select.select([self._mine], [], [], seconds)[0]:
             return self._process.poll() is None
         try:
             written = os.read(self._mine, 65536)
-        except OSError:  # Linux says so when the program has closed its side
+        except OSError:  # on Linux, when the program has closed its side
             return False
         self.screen.feed(written)
         return bool(written)

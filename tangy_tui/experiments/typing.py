@@ -1,9 +1,9 @@
 """How long teaching a game takes: typed into the real program, in a terminal, in real time.
 
-Somebody who types very fast and never errs teaches one game by chance: looks, types the shortest
-command, waits until the question is on the screen, reads it, presses y, and sees that it is done.
-Every one of these moments passes for real; the wall clock is what is measured. What to type is
-known from the same simulated game, played along in this process.
+A very fast typist without errors teaches one random game: look, type the shortest command, wait for
+the question on the screen, read it, press y, and see that the step is done. Each of these pauses is
+real, and wall-clock time is measured. The typist knows what to type from the same simulated game,
+played in parallel in this process.
 """
 
 from __future__ import annotations
@@ -33,19 +33,19 @@ from tangy_tui.text.questions import DID_YOU_SAY
 UP, ENTER = "\x1b[A", "\r"
 PROMPT = "> "
 AGAIN = 1.0
-"""Seconds after which somebody presses y again whose question is still there."""
+"""Time (s) after which the typist presses y again if the question is still there."""
 MOST_AGAIN = 20
 
 BEGINNING = 20
-"""Characters of a question by which it is known on the screen, where the rest may be wrapped."""
+"""Characters of a question to look for on the screen, as the rest may be wrapped."""
 
 
 @dataclass(frozen=True)
 class Pace:
-    """How fast somebody types: keys in a second, and seconds for looking and for reading.
+    """A typing speed: keys per second, and seconds for looking and for reading.
 
-    `look` is what passes from seeing a step done to the first key of the next command; `read` is
-    what passes from seeing the question to the y.
+    `look` is the time from seeing a step done to the first key of the next command; `read` is the
+    time from seeing the question to the y.
     """
 
     keys: float
@@ -54,26 +54,26 @@ class Pace:
 
 
 FASTEST = Pace(keys=10.0, look=0.3, read=0.3)
-"""120 words a minute, and the reaction time of somebody who knows what is coming."""
+"""120 words per minute, and the reaction time of an expert."""
 
 ORDINARY = Pace(keys=4.0, look=1.5, read=1.0)
-"""About 50 words a minute, and time to think; never typed, only worked out."""
+"""About 50 words per minute, with time to think; only used for estimates."""
 
 
 def shortest(behaviour: Behaviour) -> str:
-    """Return the shortest phrase that asks for a behaviour."""
+    """Return the shortest phrase of a behaviour."""
     return min(behaviour.phrases, key=len)
 
 
 def teach_by_typing(settings: Settings, case: Case) -> dict[str, Any]:
     """Teach one game through the real program: a case is (seed,).
 
-    It takes minutes of real time, and its times are measured: it is the one piece of work that
-    does not come out the same again.
+    It takes minutes of real time. It is the only piece of work that is not reproducible, because
+    its times are measured.
 
     Returns:
-        `seconds` in all, from starting the program to the end of the game on its screen; how many
-        `steps` and `keys` there were, `human`, the seconds of the typist's pace in these, and
+        `seconds` from starting the program to the end of the game on its screen; the numbers of
+        `steps` and `keys`; `human`, the seconds of these for typing, looking and reading; and
         `start`, the seconds until the program was ready.
     """
     activity = activity_of(settings["activity"])
@@ -102,7 +102,7 @@ def teach_by_typing(settings: Settings, case: Case) -> dict[str, Any]:
 
 
 def _ready(screen: Screen) -> bool:
-    """Whether the command line takes keys: its prompt stands at the bottom, and no question."""
+    """Return whether the command line accepts keys: a prompt at the bottom, and no question."""
     return any(line.startswith(PROMPT) for line in screen.lines[-3:]) and (
         DID_YOU_SAY not in screen.text
     )
@@ -117,7 +117,7 @@ def _kept_steps(folder: Path, activity: Activity) -> list[str]:
 
 
 class _Typist:
-    """Types what the activity expects, at a pace, and plays the same game along."""
+    """Types the expected commands at a pace, and plays the same game in parallel."""
 
     def __init__(self, terminal: Terminal, activity: Activity, pace: Pace, seed: int) -> None:
         self._terminal = terminal
@@ -132,7 +132,7 @@ class _Typist:
         self.keys = 0
 
     def teach(self, steps: int | None) -> None:
-        """Teach to the end of the game, or so many steps."""
+        """Teach to the end of the game, or this many steps."""
         while not self.world.over and (steps is None or len(self.done) < steps):
             self._step()
 
@@ -151,7 +151,7 @@ class _Typist:
         for _ in range(MOST_AGAIN):
             if terminal.sees(lambda screen: DID_YOU_SAY not in screen.text, AGAIN):
                 break
-            self._press("y")  # it came too early: the program takes none in its first moment
+            self._press("y")  # pressed too early: the question ignores its first moment
         self.world.execute(activity.action(behaviour, target, None))
         self.done.append(behaviour.name)
         number = re.compile(rf"\bstep {len(self.done)}\b")
@@ -162,7 +162,7 @@ class _Typist:
         )
 
     def _command(self, behaviour: Behaviour) -> None:
-        """Type a command, or bring back the last one where it is the same."""
+        """Type a command, or recall the last one if it is the same."""
         if self.done and self.done[-1] == behaviour.name:
             self._press(UP)
         else:
@@ -179,13 +179,13 @@ class _Typist:
 def run(
     activity: str, seeds: Sequence[int], where: Where, *, steps: int | None = None
 ) -> dict[str, Any]:
-    """Type games one after another on this machine, whatever else works elsewhere.
+    """Type games one after another, always on this machine.
 
     Args:
-        activity: what is played.
-        seeds: of the games.
-        where: where the work is kept and done.
-        steps: leave each game after so many steps (None: whole games).
+        activity: the activity.
+        seeds: the seeds of the games.
+        where: where results are stored.
+        steps: end each game after this many steps (None: whole games).
     """
     settings = {**about(activity), "pace": asdict(FASTEST), "steps": steps}
     here = Where(where.folder, 1, None, where.fresh, where.tell)
