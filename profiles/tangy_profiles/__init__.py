@@ -2,4 +2,4 @@
 
 import logging
 
-logging.getLogger(__name__).addHandler(logging.NullHandler())  # or it would go to stderr
+logging.getLogger(__name__).addHandler(logging.NullHandler())  # else warnings go to stderr

@@ -1,8 +1,8 @@
-"""An activity as TOML describes it: stages, user states, behaviours, phrasebook, deck.
+"""An activity, read from TOML: stages, user states, behaviours, phrasebook, deck.
 
 Section III-A-3 of the paper models an activity as discrete stages and a robot as behaviours, each
-with actions ac = f(theta, sp, im, l, ps). Every word of one activity lives in its TOML file;
-nothing here or above names one.
+with actions ac = f(theta, sp, im, l, ps). All words of an activity are in its TOML file; no code
+names one.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import Outcome, Request, Situation
 
 LISTENING = ("tiers", "paper")
-"""How spoken words are matched: in tiers by how sure they are, or by n-gram and keywords alone."""
+"""How spoken words are matched: in tiers of confidence, or by n-grams and keywords alone."""
 CONDITIONS = ("before", "after", "beside requester", "requested or away", "count", "otherwise")
 
 
 @dataclass(frozen=True)
 class StageRule:
-    """One line of the stage table; the first whose condition holds names the stage.
+    """One line of the stage table; the first one whose condition holds gives the stage.
 
     Conditions: `before`/`after` a behaviour has succeeded once; `beside requester`: the robot is
-    with a person who asks for help; `requested or away`: somebody asks, or the robot is not at
-    the front; `count`: `behaviour` was executed `at_least` times since `since`; `otherwise`.
+    with a person who asks for help; `requested or away`: somebody asks, or the robot is not at the
+    front; `count`: `behaviour` was executed `at_least` times since `since`; `otherwise`.
     """
 
     stage: str
@@ -55,16 +55,16 @@ class StageRule:
     since: str = ""
     at_least: int = 0
     not_yet: Mapping[str, str] = field(default_factory=dict)
-    """By request (ANR, AR): how to say that nobody has shown this stage yet."""
+    """By request (ANR, AR): the words that this stage was not shown yet."""
     label: Mapping[str, str] = field(default_factory=dict)
-    """By request: what people call this stage."""
+    """By request: the name of this stage for people."""
     now: Mapping[str, str] = field(default_factory=dict)
-    """By request: what a host might do now, in a sentence; {name} is who asks."""
+    """By request: a sentence that says what a host might do now; {name} is the person who asks."""
 
 
 @dataclass(frozen=True)
 class Activity:
-    """Everything that Tangy knows of one activity before anybody has demonstrated it."""
+    """The definition of an activity, before any demonstration."""
 
     name: str
     title: str
@@ -81,16 +81,16 @@ class Activity:
     object: str = "card"
     """The object people handle, in their words."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """How words of the phrases are pronounced, in place of what the dictionary says of them."""
+    """Pronunciations of words in the phrases that replace those of the dictionary."""
     listening: str = LISTENING[0]
     """How spoken words are matched, one of LISTENING."""
     pressing: tuple[str, ...] = ()
-    """The strategies that are not used any more in a visit in which a person has refused."""
+    """The strategies that are not used again in a visit after the person has refused."""
     names_pressing: bool = False
-    """Whether the file says which strategies press people, or that none does."""
+    """Whether the file lists its pressing strategies (or says that it has none)."""
     asking: AskingLimits = field(default_factory=AskingLimits)
     rules: GameRules = NO_RULES
-    summary: str = ""  # for how many people it is, how long it takes, what they need
+    summary: str = ""  # for how many people, how long it takes, what is needed
     file: str = ""  # its path, if it comes neither with Tangy nor with a package
 
     @cached_property
@@ -104,18 +104,18 @@ class Activity:
         return tuple(s for s in self.user_states if s.checker != "unread")
 
     def state_label(self, user_state: str) -> str:
-        """Return what a user activity state is called in front of people."""
+        """Return the name of a user activity state for people."""
         return next((s.label for s in self.user_states if s.name == user_state), user_state)
 
     def reads(self, stage: str) -> bool:
-        """Whether the card beside the robot is looked at in a stage."""
+        """Return whether the robot reads the card beside it in a stage."""
         return any(r.stage == stage and r.condition == "beside requester" for r in self.stage_rules)
 
     def in_words(self, situation: Situation) -> str:
-        """Write a triple in a few words: the stage, and what matters about the attended person.
+        """Describe a triple in a few words: the stage, and the attended person's state.
 
-        Within the stage of helping that is how the person is doing, elsewhere whether somebody
-        asks. A stage has the name that the activity gives it for people, if it gives it one.
+        In the stage of helping, that is the person's activity state, in other stages whether
+        somebody asks. The activity's own label of a stage is used if it has one.
         """
         stage, request, user_state = situation
         rules = (rule for rule in self.stage_rules if rule.stage == stage)
@@ -136,7 +136,7 @@ class Activity:
         return words or f"not shown yet: {self.in_words(situation)}"
 
     def host_words(self, situation: Situation) -> str:
-        """Say what a host might do in a situation, {name} for the person; "" if nothing is said."""
+        """Return what a host might do in a situation, with {name} for the person; "" if unknown."""
         stage, request, user_state = situation
         if self.reads(stage):
             return next((s.now for s in self.user_states if s.name == user_state), "")
@@ -144,12 +144,12 @@ class Activity:
         return next((words for rule in rules if (words := rule.now.get(request))), "")
 
     def behaviour_words(self, name: str) -> str:
-        """Return what people call a behaviour; one that the activity does not know, by its name."""
+        """Return the words for a behaviour; an unknown one keeps its name."""
         known = self.behaviours.get(name)
         return name if known is None else known.question
 
     def behaviour_named(self, words: str) -> str:
-        """Return the name of the behaviour that people call so; other words as they are."""
+        """Return the name of the behaviour with these words; else the words unchanged."""
         wanted = " ".join(words.casefold().split())
         named = (b.name for b in self.behaviours.values() if b.question.casefold() == wanted)
         return words if words in self.behaviours else next(named, words)
@@ -163,9 +163,9 @@ class Activity:
     def situations(self) -> tuple[Situation, ...]:
         """All triples that the stage rules can reach, from the opening to the end.
 
-        Before the first `before` rule is passed nobody can have asked; beside a requester every
-        user state can be seen; a `requested or away` stage comes with and without a request; so
-        does an `after` stage, except after a win, whose winner's request is still open.
+        Before the first `before` rule has passed, nobody can have asked. Beside a requester every
+        user state can occur. A `requested or away` stage occurs with and without a request, and so
+        does an `after` stage, except after a win, when the winner's request is still open.
         """
         found: list[Situation] = []
         for rule in sorted(self.stage_rules, key=lambda rule: rule.condition == "after"):
@@ -184,21 +184,21 @@ class Activity:
         return tuple(dict.fromkeys(found))
 
     def imaginable(self) -> Iterable[Situation]:
-        """Yield every situation that the policy has an answer to, reachable or not."""
+        """Yield every situation for which a policy has a decision, reachable or not."""
         requests: tuple[Request, ...] = ("ANR", "AR")
         for stage, request, state in product(self.stages, requests, self.user_states):
             yield Situation(stage, request, state.name)
 
     def need_cards(self) -> None:
-        """Refuse what can only be done with an activity that is played with cards.
+        """Raise an error unless the activity is played with cards.
 
         Raises:
-            ProfileError: it is played without.
+            ProfileError: it is played without cards.
         """
 
     @property
     def teams(self) -> tuple[str, ...]:
-        """The teams that take turns, where people do not play each for themselves."""
+        """The teams that take turns; empty if people play individually."""
         return ()
 
     def expected_selector(self, situation: Situation) -> str | None:
@@ -206,7 +206,7 @@ class Activity:
         return None
 
     def leaves_request(self, rule: StageRule) -> bool:
-        """Whether an `after` stage begins beside somebody whose request stays open (a winner)."""
+        """Return whether an `after` stage begins beside a winner, whose request stays open."""
         behaviour = self.behaviours[rule.behaviour]
         return bool(behaviour.needs) and behaviour.closes == "never"
 
@@ -214,7 +214,7 @@ class Activity:
         """Return a behaviour by its name.
 
         Raises:
-            ProfileError: there is none of that name; says which is nearest.
+            ProfileError: there is none; the message suggests the nearest name.
         """
         try:
             return self.behaviours[name]
@@ -224,7 +224,7 @@ class Activity:
             ) from None
 
     def action(self, behaviour: Behaviour, target: str | None, strategy: str | None) -> Action:
-        """Choose the action of a behaviour for a persuasive strategy (none: the plain one)."""
+        """Return the action of a behaviour for a persuasive strategy (None: the plain one)."""
         chosen = strategy or self.plain_strategy
         return Action(
             behaviour,
@@ -239,7 +239,7 @@ class Activity:
     def words_of(
         self, action: Action, outcome: Outcome, name: Callable[[str], str]
     ) -> tuple[str, str]:
-        """Return the speech and picture text of an action, "" if it lacks its numbers."""
+        """Return the speech and picture text of an action; "" if numbers are missing."""
         called = name(action.target) if action.target is not None else ""
         return (
             self.fill(action.speech, called, outcome.numbers),
@@ -247,7 +247,7 @@ class Activity:
         )
 
     def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
-        """Put name and numbers into a text; "" if it needs numbers and there are none."""
+        """Fill name and numbers into a text; return "" if it needs numbers and there are none."""
         if not numbers and ("{numbers}" in template or "{call}" in template):
             return ""
         labels = [self.deck.label(number) for number in numbers]
@@ -257,13 +257,13 @@ class Activity:
 
 
 def shipped_activities() -> dict[str, Path]:
-    """The activities that come with Tangy, by name."""
+    """Return the files of the activities that come with Tangy, by name."""
     folder = SHIPPED / "activities"
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
 def known_activities() -> dict[str, Path]:
-    """The activities that come with Tangy and those that other packages bring, by name."""
+    """Return the files of Tangy's activities and those of other packages, by name."""
     return {**activity_files(), **shipped_activities()}
 
 
@@ -271,15 +271,15 @@ def load_activity(name: str) -> Activity:
     """Load an activity by name, or by the path of its TOML file.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word; there is no
-            such activity, or it is a folder.
+        ProfileError: there is no such activity, or its file has a mistake; one line with file, key,
+            value and the nearest valid word.
     """
     shipped = shipped_activities()
     if name in shipped:
         return read_activity(shipped[name])
     if name.endswith(".toml"):
         return replace(read_activity(Path(name)), file=str(Path(name).resolve()))
-    if isdir(name):  # noqa: PTH112 - it says no to a name too long, where Path raises
+    if isdir(name):  # noqa: PTH112 - False for a name too long, where Path raises
         raise ProfileError(plain(f"{name}: is a folder; name the TOML file in it."))
     known = known_activities()
     if name in known:
@@ -291,7 +291,7 @@ def read_activity(path: Path) -> Activity:
     """Read and check one activity file.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
+        ProfileError: one line with file, key, value and the nearest valid word.
     """
     top = read_toml(path)
     if declares(top):

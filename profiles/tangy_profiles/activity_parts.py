@@ -1,4 +1,4 @@
-"""Parts of an activity's file that are read by themselves: strategies and user states."""
+"""Separate parts of an activity's file: strategies and user states."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tangy_profiles.reading import Table
 
 
 def read_strategies(table: Table) -> dict[str, str]:
-    """Read the persuasive strategies, each with what it does."""
+    """Read the persuasive strategies with their descriptions."""
     strategies = {key: table.text(key) for key in table}
     if not strategies:
         raise table.wrong("", "must name at least one persuasive strategy.")
@@ -19,7 +19,7 @@ def read_strategies(table: Table) -> dict[str, str]:
 
 
 def read_pressing(top: Table, strategies: dict[str, str]) -> tuple[str, ...]:
-    """Read which strategies press people, or take those that usually do."""
+    """Read which strategies press people; the default is the usual ones."""
     usual = tuple(name for name in PRESSING_STRATEGIES if name in strategies)
     usual = usual if len(usual) < len(strategies) else ()
     pressing = top.words("pressing_strategies", strategies, usual)
@@ -29,7 +29,7 @@ def read_pressing(top: Table, strategies: dict[str, str]) -> tuple[str, ...]:
 
 
 def read_user_states(top: Table) -> tuple[CardState, ...]:
-    """Read how a person can be doing, by what a card shows."""
+    """Read the user activity states and the checkers that recognise them on a card."""
     states: list[CardState] = []
     for entry in top.tables("user_states"):
         name = entry.text("name")

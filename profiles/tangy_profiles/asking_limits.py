@@ -1,4 +1,4 @@
-"""How often a person is asked in vain before they are left in peace."""
+"""Limits on how often a person is asked without success."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from tangy_profiles.reading import Table
 
 VISIT, GAME = "asks_in_visit", "asks_in_game"
-"""The keys of an activity's file that say how often."""
+"""The keys of these limits in an activity's file."""
 
 
 @dataclass(frozen=True)
 class AskingLimits:
-    """After so many requests that a person did not follow they are asked no more.
+    """The number of refused requests after which a person is asked no more.
 
-    `visit` counts those in a row, `game` all of a game. `named`: the activity's file says both.
+    `visit` counts those in a row, `game` all of a game. `named`: the activity's file has both.
     """
 
     visit: int = 3
@@ -23,10 +23,10 @@ class AskingLimits:
 
 
 def read_asking_limits(top: Table) -> AskingLimits:
-    """Read how often people are asked; what a file leaves out is as usual.
+    """Read the limits of an activity; missing ones get the defaults.
 
     Raises:
-        ProfileError: a number that is out of range, or more in a visit than in a game.
+        ProfileError: a number is out of range, or the limit per visit exceeds that per game.
     """
     usual = AskingLimits()
     named = VISIT in top and GAME in top

@@ -1,7 +1,7 @@
-"""A behaviour that an activity gives the robot, and an action: one way to execute it.
+"""A behaviour of an activity, and an action: one way to execute it.
 
-Each action is ac = f(theta, sp, im, l, ps) of Section III-A-3-i: posture, speech, image, place
-and persuasive strategy.
+Each action is ac = f(theta, sp, im, l, ps) of Section III-A-3-i: posture, speech, image, place and
+persuasive strategy.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from tangy_profiles.reading import Table, nearest
 CLOSINGS = ("never", "always", "when correct")
 PLACES = ("front", "attended", "here")
 SLOTS = ("name", "call", "numbers")
-"""Slots in texts for voice and screen: {name}, {call}, {numbers}."""
+"""Slots in texts for speech and screen: {name}, {call}, {numbers}."""
 
 
 @dataclass(frozen=True)
 class Behaviour:
     """A primitive behaviour b that the robot has from the start (Section III-A-3-i).
 
-    `posture` is theta by name (the robot's profile has the joint angles), `speech` holds sp for
-    each persuasive strategy, `image` is what the chest screen shows (im), and `place` is l.
+    `posture` is the name of theta (the robot's profile has the joint angles), `speech` maps each
+    persuasive strategy to sp, `image` is the text of the chest screen (im), and `place` is l.
     `persuades` marks behaviours that need a person to comply; `closes` says when the attended
-    person's request is over; `needs` lists the user states in which it can succeed (all if empty).
+    person's request is closed; `needs` lists the user states in which it can succeed (empty: all).
     """
 
     name: str
@@ -45,7 +45,7 @@ class Behaviour:
     phrases: tuple[str, ...]
     keywords: tuple[tuple[str, ...], ...]
     wordings: tuple[str, ...] = ()
-    """Other ways to ask for it: the understanding learns from them, nothing listens for them."""
+    """Other wordings: training data for understanding, but not for speech recognition."""
     to: tuple[str, ...] = ()
     """In activities declared by facts: the selectors of its possible persons."""
 
@@ -57,10 +57,10 @@ class Behaviour:
 
 @dataclass(frozen=True)
 class Action:
-    """One way to execute a behaviour: ac = f(theta, sp, im, l, ps), and for whom.
+    """One way to execute a behaviour: ac = f(theta, sp, im, l, ps), with its target.
 
-    `speech` and `image` still hold their slots: only the world that executes the action knows
-    which number it calls. `Activity.fill` puts the words in.
+    `speech` and `image` still have their slots, as only the world that executes the action knows
+    which number it calls. `Activity.fill` fills them in.
     """
 
     behaviour: Behaviour
@@ -76,7 +76,7 @@ def read_behaviour(entry: Table, strategies: dict[str, str], states: list[str]) 
     """Read one [[behaviours]] entry.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
+        ProfileError: one line with file, key, value and the nearest valid word.
     """
     name = entry.text("name")
     spoken = entry.table("speech")

@@ -8,23 +8,23 @@ from dataclasses import dataclass
 from random import Random
 
 GRID = 400
-"""Points of the midpoint rule on [0, 1] that P(best) is integrated with."""
+"""Intervals of the midpoint rule on [0, 1] that integrates P(best)."""
 
 
 SETTLED = 0.9
-"""From this P(best) on a person's best strategy is as good as known."""
+"""The P(best) from which a person's best strategy is considered known."""
 
 SURE = 0.9
-"""How probable it is that the truth lies in the interval that is shown."""
+"""The probability of the displayed credible interval."""
 
 
 @dataclass(frozen=True, slots=True)
 class Beta:
     """A Beta(alpha, beta) belief about the probability that a person complies with a strategy.
 
-    `counts` are the responses it rests on, (complied, did not), where alpha and beta hold more
-    or less than these: what earlier people lent it, or what was forgotten since. None if they
-    are alpha - 1 and beta - 1, as in the paper.
+    `counts` are the responses behind it, (complied, did not), if alpha and beta differ from these
+    because of a prior from earlier people or of forgetting. None if they are alpha - 1 and beta -
+    1, as in the paper.
     """
 
     alpha: float = 1.0
@@ -38,12 +38,12 @@ class Beta:
 
     @property
     def complied(self) -> int:
-        """How many of the responses that it rests on were compliance."""
+        """The number of responses that were compliance."""
         return round(self.alpha - 1) if self.counts is None else self.counts[0]
 
     @property
     def trials(self) -> int:
-        """How many responses it rests on; neither the start nor earlier people count."""
+        """The number of responses, without those of the prior."""
         return round(self.alpha + self.beta - 2) if self.counts is None else sum(self.counts)
 
     def updated(self, complied: bool) -> Beta:
@@ -55,17 +55,17 @@ class Beta:
         return Beta(self.alpha + a, self.beta + b, (yes + a, no + b))
 
     def quantile(self, share: float) -> float:
-        """Return the probability below which the truth lies with the probability `share`."""
+        """Return the quantile of the belief at the probability `share`."""
         from scipy.special import betaincinv
 
         return float(betaincinv(self.alpha, self.beta, share))
 
     def interval(self, sure: float = SURE) -> tuple[float, float]:
-        """Return the equal-tailed credible interval; it holds the value with probability `sure`."""
+        """Return the equal-tailed credible interval with probability `sure`."""
         return self.quantile((1 - sure) / 2), self.quantile((1 + sure) / 2)
 
     def sample(self, rng: Random) -> float:
-        """Draw one probability from the belief."""
+        """Sample a probability from the belief."""
         return rng.betavariate(self.alpha, self.beta)
 
     def density(self, points: int) -> list[float]:
@@ -83,12 +83,12 @@ Beliefs = dict[str, Beta]
 
 
 def uniform_beliefs(strategies: Iterable[str]) -> Beliefs:
-    """Return the profile M of a person nobody has met: Beta(1, 1) for every strategy."""
+    """Return the profile M of an unknown person: Beta(1, 1) for every strategy."""
     return dict.fromkeys(strategies, UNIFORM)
 
 
 def probability_best(beliefs: Mapping[str, Beta]) -> dict[str, float]:
-    """Return, for each strategy, the probability that it is the one the person complies with most.
+    """Return, for each strategy, the probability that the person complies with it most.
 
     P(best = i) is the integral of f_i(x) times the product of the other strategies' F_j(x).
     """
@@ -115,13 +115,13 @@ def probability_best(beliefs: Mapping[str, Beta]) -> dict[str, float]:
 
 
 def leading(best: Mapping[str, float]) -> str | None:
-    """Return the strategy of the highest probability of being best; None if no single one is."""
+    """Return the strategy with the highest probability of being best; None if tied."""
     top = max(best.values(), default=0.0)
     leaders = [strategy for strategy, share in best.items() if share > top - 1e-9]
     return leaders[0] if len(leaders) == 1 else None
 
 
 def settled(best: Mapping[str, float]) -> str | None:
-    """Return the strategy that is settled on, its P(best) being .9 or more; None: not yet."""
+    """Return the strategy with a P(best) of at least SETTLED, or None."""
     first = leading(best)
     return first if first is not None and best[first] >= SETTLED else None

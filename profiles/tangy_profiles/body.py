@@ -1,6 +1,7 @@
-"""A robot's body as its file describes it: how large it is, how it drives, where its devices sit.
+"""A robot's body, read from its profile: size, dynamics, and the mounting of its devices.
 
-The origin is the middle between its wheels, round which it turns: x is ahead, y to the left, in m.
+The origin is the midpoint between its wheels, about which it turns: x is ahead, y to the left, in
+m.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from types import MappingProxyType
 
 from tangy_profiles.reading import Table
 
-LARGEST = 2.0  # metres from its middle to its edge
+LARGEST = 2.0  # metres from its centre to its edge
 FASTEST_TURN = 6.0  # rad/s
 HARDEST = 5.0  # m/s^2
 HIGHEST = 3.0  # metres above the floor
@@ -20,9 +21,9 @@ HIGHEST = 3.0  # metres above the floor
 
 @dataclass(frozen=True)
 class Mount:
-    """Where a device sits on the robot: x, y and height in m; yaw in degrees, to the left.
+    """The mounting of a device: x, y and height in m; yaw in degrees, to the left.
 
-    `reach` is how far it sees, in m; 0: as far as the device itself says.
+    `reach` is its range in m; 0: the range that the device reports.
     """
 
     x: float = 0.0
@@ -36,9 +37,9 @@ class Mount:
 class BodyProfile:
     """The body of a robot; the defaults are Tangy's.
 
-    It is round, of `radius` m, or has `corners` (x, y) in m, of which `radius` is the distance of
-    the outermost. `turn` is in rad/s, `acceleration` and `braking` are in m/s^2: how it may speed
-    up, and how hard its base brakes. `arms` is how far its arms reach out, in m from its middle.
+    It is round with `radius` m, or has `corners` (x, y) in m, and `radius` is then the distance of
+    the outermost one. `turn` is in rad/s; `acceleration` and `braking` are in m/s^2. `arms` is how
+    far its arms reach, in m from its centre.
     """
 
     radius: float = 0.25
@@ -52,7 +53,7 @@ class BodyProfile:
 
 
 def read_body(top: Table, cameras: Iterable[str]) -> BodyProfile:
-    """Read the table `body` of a robot's file, if there is one; `cameras` are those that it has.
+    """Read the table `body` of a robot's profile; `cameras` are the names of its cameras.
 
     Raises:
         ProfileError: names the key and its problem.
@@ -95,7 +96,7 @@ def _mount(entry: Table) -> Mount:
 
 
 def _corners(entry: Table) -> tuple[tuple[float, float], ...]:
-    """Read the corners of a robot that is not round: x, y, x, y, ... once round it, in m."""
+    """Read the corners of a polygonal footprint: x, y, x, y, ... around the robot, in m."""
     if "corners" not in entry:
         return ()
     count = entry.length("corners")
@@ -117,13 +118,13 @@ Point = tuple[float, float]
 
 
 def _left_of(a: Point, b: Point, c: Point) -> int:
-    """Say whether c lies to the left (1) or right (-1) of the line from a to b, or on it (0)."""
+    """Return whether c is to the left (1) or right (-1) of the line from a to b, or on it (0)."""
     across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     return (across > 1e-9) - (across < -1e-9)
 
 
 def outline(body: BodyProfile, count: int = 24) -> tuple[Point, ...]:
-    """Return points on the edge of a robot (x, y) in m: its corners, or so many on its circle."""
+    """Return the footprint (x, y) in m: the corners, or `count` points on the circle."""
     if body.corners:
         return body.corners
     angles = [2 * pi * number / count for number in range(count)]
@@ -131,6 +132,6 @@ def outline(body: BodyProfile, count: int = 24) -> tuple[Point, ...]:
 
 
 def looks(mount: Mount, metres: float) -> Point:
-    """Return the point so many metres before a device on the robot."""
+    """Return the point this many metres in front of a device on the robot."""
     yaw = radians(mount.yaw)
     return mount.x + metres * cos(yaw), mount.y + metres * sin(yaw)

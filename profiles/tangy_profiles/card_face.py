@@ -1,7 +1,7 @@
-"""The face of a printed card: its numbers, and where on it everything is.
+"""The layout of a printed card: its numbers and all positions.
 
-Lengths are in mm from the top left corner of the card. Paper, pictures, the simulated camera and
-the reader all take them from here, so a card looks everywhere the same.
+Lengths are in mm from the top left corner of the card. Printing, pictures, the simulated camera and
+the card reader all use this layout.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from tangy_profiles.cards import Deck
 from tangy_profiles.errors import TangyError
 
 WIDTH, HEIGHT = 148.0, 210.0  # A5
-GRID, FEWEST = 130.0, 5  # the longer side of the grid if it has at least so many cells
-TAG = 26.0  # a corner tag; a tag is 6 x 6 modules, its black rim among them
+GRID, FEWEST = 130.0, 5  # the longer side of the grid, if it has at least this many cells
+TAG = 26.0  # a corner tag of 6 x 6 modules, including its black border
 LINE = 1.0  # thickness of the lines
-MARGIN = 9.0  # to the left and right, so that printers reach all of it
+MARGIN = 9.0  # left and right, within the printable area of any printer
 TAGS_TOP, TAGS_BOTTOM = 5.0, 179.0
 GRID_TOP = 44.5
-LETTERS_ABOVE, LETTERS_HIGH = 5.75, 7.0  # of their middle, above the grid
+LETTERS_ABOVE, LETTERS_HIGH = 5.75, 7.0  # letters: their middle above the grid, and their height
 LAST_CARD = 249
 """Cards are numbered from 1; each has four of the thousand tags of its dictionary."""
 USUAL_SEED = 1
-"""The deck that is printed and read where none is named."""
+"""The default deck, for printing and reading."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """A text that is centred on a point; `high` is the height of its capitals in mm."""
+    """A text centred on a point; `high` is the height of its capitals in mm."""
 
     text: str
     x: float
@@ -50,7 +50,7 @@ class Words:
 
 @dataclass(frozen=True)
 class CardLayout:
-    """Where everything is on the cards of a deck."""
+    """The layout of the cards of a deck."""
 
     deck: Deck
 
@@ -61,19 +61,19 @@ class CardLayout:
 
     @cached_property
     def grid(self) -> Box:
-        """The grid, from line to line (their middles)."""
+        """The grid, between the centres of its outer lines."""
         width, height = self.cell * len(self.deck.columns), self.cell * self.deck.rows
         left, top = (WIDTH - width) / 2, GRID_TOP + (GRID - height) / 2
         return Box(left, top, left + width, top + height)
 
     @cached_property
     def number_high(self) -> float:
-        """How high a number is printed, in mm: as large as the longest one allows."""
+        """The height of a printed number in mm, limited by the longest number."""
         longest = max(len(str(number)) for number in self.deck.numbers)
         return 0.729 * min(0.6 * self.cell, 0.84 * self.cell / (0.696 * longest))
 
     def crossings(self) -> list[tuple[float, float]]:
-        """Return where the lines cross, in mm, row by row."""
+        """Return the crossings of the lines, in mm, row by row."""
         return [
             (self.grid.left + column * self.cell, self.grid.top + row * self.cell)
             for row in range(self.deck.rows + 1)
@@ -99,7 +99,7 @@ class CardLayout:
             yield Box(x - half, grid.top - half, x + half, grid.bottom + half)
 
     def words(self, card: int, seed: int, title: str) -> Iterator[Words]:
-        """Yield all that is written on a card."""
+        """Yield all texts on a card."""
         for column, told in enumerate(self.deck.columns):
             x = self.grid.left + (column + 0.5) * self.cell
             yield Words(told.letter, x, self.grid.top - LETTERS_ABOVE, LETTERS_HIGH)
@@ -133,7 +133,7 @@ def tag_ids(card: int) -> tuple[int, ...]:
 
 
 def numbers_of(deck: Deck, card: int, seed: int = USUAL_SEED) -> tuple[int, ...]:
-    """Return the numbers of a card, row by row: the same for a card and a seed wherever it is.
+    """Return the numbers of a card, row by row; they depend only on card and seed.
 
     Raises:
         TangyError: there is no card of this number.
@@ -144,11 +144,11 @@ def numbers_of(deck: Deck, card: int, seed: int = USUAL_SEED) -> tuple[int, ...]
 
 
 def rows_of(deck: Deck, card: int, seed: int = USUAL_SEED) -> list[list[int]]:
-    """Return the numbers of a card as rows, as `numbers_of` does."""
+    """Return the numbers of a card as rows (see `numbers_of`)."""
     numbers, width = numbers_of(deck, card, seed), len(deck.columns)
     return [list(numbers[row * width : (row + 1) * width]) for row in range(deck.rows)]
 
 
 def called_cells(deck: Deck, numbers: tuple[int, ...], called: set[int]) -> int:
-    """Return the cells of a card whose number was called, the free one among them, as a mask."""
+    """Return the cells whose number was called, and the free cell, as a mask."""
     return deck.free | sum(1 << cell for cell, number in enumerate(numbers) if number in called)

@@ -1,4 +1,4 @@
-"""The face of a card as a picture: for the screen, the simulated camera and the reader."""
+"""The picture of a card, for the screen, the simulated camera and the reader."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 
     Picture = NDArray[np.uint8]
 
-CAPITALS = 0.729  # the height of a capital letter in DejaVu Sans Bold, of its size
-FINE = 4  # a picture is drawn so many times larger and then reduced
+CAPITALS = 0.729  # height of a capital letter in DejaVu Sans Bold, relative to the font size
+FINE = 4  # factor of supersampling
 
 
 @cache
 def font_file() -> Path:
-    """Find the typeface of the cards, DejaVu Sans Bold, which comes with matplotlib.
+    """Find the font of the cards, DejaVu Sans Bold, which comes with matplotlib.
 
     Raises:
-        TangyError: it is not there.
+        TangyError: it is missing.
     """
     found = find_spec("matplotlib")
     if found is not None and found.origin is not None:
@@ -37,7 +37,7 @@ def font_file() -> Path:
 
 @cache
 def tag_modules(tag: int) -> tuple[tuple[bool, ...], ...]:
-    """Return the modules of a tag, row by row; true ones are white."""
+    """Return the modules of a tag, row by row; True is white."""
     import cv2
 
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_1000)
@@ -46,7 +46,7 @@ def tag_modules(tag: int) -> tuple[tuple[bool, ...], ...]:
 
 
 def white_modules(card: int) -> list[Box]:
-    """Return the white modules of a card's tags, in mm; the tags are black without them."""
+    """Return the white modules of a card's tags, in mm, to draw on black tags."""
     white: list[Box] = []
     for tag, place in zip(tag_ids(card), TAGS, strict=True):
         side = (place.right - place.left) / 6
@@ -59,7 +59,7 @@ def white_modules(card: int) -> list[Box]:
 
 
 def draw_face(face: CardLayout, card: int, seed: int, title: str, scale: float) -> Picture:
-    """Draw a card in grey, `scale` pixels to the mm."""
+    """Draw a card in grey, with `scale` pixels per mm."""
     from PIL import Image, ImageDraw
 
     size = round(WIDTH * scale), round(HEIGHT * scale)
@@ -76,7 +76,7 @@ def draw_face(face: CardLayout, card: int, seed: int, title: str, scale: float) 
 
 
 def draw_number(face: CardLayout, number: int, side: int) -> Picture:
-    """Draw what stands in a cell, without its lines, as a square of so many pixels."""
+    """Draw the number of a cell, without lines, as a square of `side` pixels in grey."""
     from PIL import Image, ImageDraw
 
     picture = Image.new("L", (FINE * side, FINE * side), 255)

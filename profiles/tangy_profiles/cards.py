@@ -1,8 +1,8 @@
-"""Cards and the deck they are called from: geometry, labels, and how a card is judged.
+"""Cards and their deck: geometry, labels, and how a card is judged.
 
-Cells are bits of an integer, row by row (bit = row x columns + column), so that a line is tested
-with one `and`. Both worlds judge with `Deck.judge`: the simulated one from what people did, the
-real one from what the camera saw.
+Cells are bits of an integer, row by row (bit = row x columns + column), so a line is tested with
+one `and`. Both worlds use `Deck.judge`: the simulated one with what people marked, the real one
+with what the camera saw.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ CHECKERS = ("unread", "complete line", "wrong marks", "missing marks", "otherwis
 
 @dataclass(frozen=True)
 class Column:
-    """One column: its letter and the numbers that may stand in it, both ends included."""
+    """One column: its letter and the inclusive range of its numbers."""
 
     letter: str
     low: int
@@ -45,7 +45,7 @@ class Deck:
     free_centre: bool
     patterns: tuple[str, ...]
     together: int = 1
-    """How many different ones of the patterns a card must have to win."""
+    """How many different patterns a card must have to win."""
 
     @cached_property
     def numbers(self) -> tuple[int, ...]:
@@ -88,7 +88,7 @@ class Deck:
 
     @cached_property
     def lines_through(self) -> tuple[tuple[int, ...], ...]:
-        """For each cell, the winning lines that run through it."""
+        """For each cell, the winning lines through it."""
         cells = range(self.rows * len(self.columns))
         return tuple(tuple(line for line in self.lines if line >> c & 1) for c in cells)
 
@@ -97,14 +97,14 @@ class Deck:
         return {n: c.letter for c in self.columns for n in range(c.low, c.high + 1)}
 
     def label(self, number: int) -> str:
-        """Write a number as a caller writes it: letter and number, "B-5"."""
+        """Format a number as callers do: letter and number, "B-5"."""
         return f"{self._letters[number]}-{number}"
 
     def deal(self, uniform: Callable[[], float]) -> tuple[int, ...]:
         """Deal one card: distinct numbers for each column, listed row by row.
 
-        Only `uniform` (a generator's `random`) is drawn from, because that is the one draw that
-        Python promises to be the same in every version.
+        Only `uniform` (a generator's `random`) is used, because it is the only draw that Python
+        keeps the same in every version.
         """
         width = len(self.columns)
         card = [0] * (self.rows * width)
@@ -118,7 +118,7 @@ class Deck:
         return tuple(card)
 
     def shuffled(self, uniform: Callable[[], float]) -> list[int]:
-        """Shuffle all numbers into a calling order (Fisher and Yates)."""
+        """Shuffle all numbers into a calling order (Fisher-Yates)."""
         order = list(self.numbers)
         for end in range(len(order) - 1, 0, -1):
             pick = int(uniform() * (end + 1))
@@ -126,12 +126,12 @@ class Deck:
         return order
 
     def wins(self, cells: int) -> bool:
-        """Say whether these cells hold a winning line."""
+        """Return whether these cells hold a winning line."""
         return any(cells & line == line for line in self.lines)
 
 
 def _falling(cell: Sequence[Sequence[int]]) -> set[int]:
-    """Return the cells of the diagonal that falls to the left."""
+    """Return the cells of the anti-diagonal."""
     return {cell[row][len(cell) - 1 - row] for row in range(len(cell))}
 
 
@@ -145,7 +145,7 @@ class CardState:
     hint: str
     not_yet: str = ""
     now: str = ""
-    """What a host might do now, in a sentence; {name} is the person."""
+    """A sentence that says what a host might do now; {name} is the person."""
 
 
 def winning_state(states: Sequence[CardState]) -> str:
@@ -154,13 +154,13 @@ def winning_state(states: Sequence[CardState]) -> str:
 
 
 def judge(states: Sequence[CardState], deck: Deck, marked: int, called: int) -> str:
-    """Name the user activity state of a card that was read: the first state whose checker agrees.
+    """Return the user activity state of a read card: the first state whose checker matches.
 
     Args:
         states: the activity's user states in order of precedence.
-        deck: the deck that the card belongs to.
+        deck: the deck of the card.
         marked: the marked cells, as a mask.
-        called: the cells whose number has been called (the free centre among them), as a mask.
+        called: the cells whose number has been called (and the free centre), as a mask.
     """
     for state in states:
         match state.checker:
@@ -172,16 +172,16 @@ def judge(states: Sequence[CardState], deck: Deck, marked: int, called: int) -> 
                 return state.name
             case "otherwise":
                 return state.name
-    raise ValueError("no state without a condition")  # refused when the activity is read
+    raise ValueError("no state without a condition")  # rejected when the activity is read
 
 
 def judge_partly(
     states: Sequence[CardState], deck: Deck, marked: int, unknown: int, called: int
 ) -> str:
-    """Name the user activity state of a card of which some cells could not be told.
+    """Return the user activity state of a card with some unknown cells.
 
-    It is what `judge` would say whatever the unknown cells were, and the unread state where they
-    could change that. Arguments are as of `judge`; `unknown` are the cells nobody knows of.
+    It is the result of `judge` if that does not depend on the unknown cells, else the unread state.
+    Arguments are as of `judge`; `unknown` is the mask of unknown cells.
     """
     least, most = marked & ~unknown, marked | unknown
     for state in states:
@@ -204,12 +204,11 @@ def judge_partly(
 def is_borne_out(checker: str, deck: Deck, marked: int, unmarked: int, called: int) -> bool:
     """Return whether cells read twice confirm a checker's judgement of a card.
 
-    What says that a person has won, or made a mistake, is to be seen more than once; that all is
-    well, or that nothing can be told, needs no second look.
+    A win or a mistake must be seen more than once; other judgements need no second look.
 
     Args:
         checker: one of `CHECKERS`.
-        deck: the deck that the card belongs to.
+        deck: the deck of the card.
         marked: the cells that were seen marked more than once, as a mask.
         unmarked: those that were seen unmarked more than once.
         called: as of `judge`.

@@ -1,12 +1,12 @@
 """Typed records as JSON: one codec, built from the fields of a class.
 
-A dataclass is a table, a plain named tuple a row, a tuple a list; `Annotated` says what else holds
-of a value. What does not fit is refused, and the reason is the tail of a sentence ("has 'step'
-that is not a count"), which staff read in `tangy store check`.
+A dataclass is a table, a plain named tuple a row, a tuple a list; `Annotated` adds constraints.
+Invalid values are rejected with the tail of a sentence ("has 'step' that is not a count"), which
+staff read in `tangy store check`.
 
-Not cattrs, msgspec or pydantic: with each, the sentences, the named tuples that are tables, flat
-keys, and keys that are left out would still be ours, for a dependency that whatever opens a log
-must load (11 ms for msgspec, 25 for cattrs, of CPU).
+cattrs, msgspec and pydantic were rejected: the sentences, named tuples as tables, flat keys and
+omitted keys would still be our code, and every process that opens a log would have to import them
+(11 ms of CPU for msgspec, 25 for cattrs).
 """
 
 from __future__ import annotations
@@ -33,24 +33,24 @@ from tangy_profiles.reading import nearest
 
 T = TypeVar("T")
 Reader = Callable[[Any], Any]
-"""Decodes a JSON value, or refuses it."""
+"""Decodes a JSON value, or raises Unreadable."""
 
 LARGEST = 1e12
-"""No number in a log is larger: s, counts, probabilities, readings of devices."""
+"""The largest number in a log: s, counts, probabilities, readings of devices."""
 
 
 class Unreadable(ValueError):
-    """A value is not valid; the text is the end of a sentence ("is not text")."""
+    """An invalid value; the text is the tail of a sentence ("is not text")."""
 
 
 class By(NamedTuple):
-    """Reads a value instead of its type."""
+    """Decodes a value with this reader instead of by its type."""
 
     reader: Reader
 
 
 class Key(NamedTuple):
-    """Where a field stands: under which key, if not its name, among which, and if always."""
+    """The key of a field: its name if not the field's, and whether flat, sparse, or unlogged."""
 
     name: str = ""
     flat: bool = False
@@ -59,11 +59,11 @@ class Key(NamedTuple):
 
 
 Flat = Annotated[T, Key(flat=True)]
-"""A record whose keys stand among those of the record that has it."""
+"""A record whose keys are merged into those of the containing record."""
 Sparse = Annotated[T, Key(sparse=True)]
-"""A value whose key is left out where it is the default."""
+"""A value whose key is omitted if it is the default."""
 Unlogged = Annotated[T, Key(unlogged=True)]
-"""A value that is known from elsewhere, and has no key."""
+"""A value without a key, known from elsewhere."""
 
 
 class Field(NamedTuple):
@@ -79,7 +79,7 @@ def read(kind: type[T], value: Any) -> T:
     """Decode a value of a JSON document.
 
     Raises:
-        Unreadable: it is not of that kind; says where and why.
+        Unreadable: it is invalid; the message says where and why.
     """
     return cast(T, reader(cast(Any, kind))(value))
 
@@ -112,7 +112,7 @@ def keys_of(kind: Any) -> frozenset[str]:
 
 @cache
 def fields_of(kind: Any) -> tuple[Field, ...]:
-    """Return the fields of a record of its table; a named tuple needs each but sparse keys."""
+    """Return the fields of a record; for a named tuple only sparse ones have defaults."""
     tuples = dict.fromkeys(getattr(kind, "_fields", ()), MISSING)
     usual = getattr(kind, "_field_defaults", {})
     hints, found = get_type_hints(kind, include_extras=True), []
@@ -133,12 +133,12 @@ def _default(field: Any) -> Any:
 
 
 def _derived(kind: Any) -> Mapping[str, str]:
-    """Return the keys of a record that hold its properties: they are written, and never read."""
+    """Return the keys of a record's properties, which are written but not read."""
     return cast(Mapping[str, str], getattr(kind, "DERIVED", {}))
 
 
 def _is_record(kind: Any) -> bool:
-    """Say whether it is encoded as a table: a dataclass, or a named tuple with a `glance`."""
+    """Return whether a type is encoded as a table: a dataclass, or a named tuple with `glance`."""
     return is_dataclass(kind) or hasattr(kind, "glance")
 
 
@@ -182,7 +182,7 @@ def reader(hint: Any) -> Reader:
 
 
 def at_least(least: int) -> Reader:
-    """Let whole numbers pass from `least` on, and lists of at least that length."""
+    """Accept whole numbers of at least `least`, and lists of at least that length."""
 
     def check(value: Any) -> Any:
         whole = isinstance(value, int)
@@ -194,7 +194,7 @@ def at_least(least: int) -> Reader:
 
 
 def between(least: int, most: int) -> Reader:
-    """Let whole numbers of a range pass, both ends among them."""
+    """Accept whole numbers in an inclusive range."""
 
     def check(value: Any) -> Any:
         if not least <= value <= most:
@@ -205,7 +205,7 @@ def between(least: int, most: int) -> Reader:
 
 
 Count = Annotated[int, at_least(0)]
-"""A whole number from 0 on."""
+"""A whole number >= 0."""
 
 
 def measurement(value: Any) -> Any:
@@ -237,7 +237,7 @@ def _typed(kinds: type | UnionType, but: type | tuple[()], wrong: str) -> Reader
 
 
 def _within_measure(value: Any) -> Any:
-    if not abs(value) <= LARGEST:  # NaN fails, too
+    if not abs(value) <= LARGEST:  # also rejects NaN
         raise Unreadable("is beyond all measure")
     return value
 
@@ -263,7 +263,7 @@ _PLAIN: Mapping[Any, Reader] = {
 
 
 def _union(kinds: list[Any], may_be_none: bool) -> Reader:
-    """Return the decoder for an optional value; records differ by their first field."""
+    """Return the decoder for an optional value; records are distinguished by their first field."""
     if len(kinds) == 1:
         inner = reader(kinds[0])
     elif all(map(is_dataclass, kinds)):
@@ -302,7 +302,7 @@ def _table_of(inner: Reader) -> Reader:
 def _record(kind: Any) -> Reader:
     """Return the decoder for a record's table; it also runs the record's own checks."""
     parts = [(*field, reader(field.hint)) for field in fields_of(kind)]
-    only = keys_of(kind) if getattr(kind, "ONLY", False) else None  # other keys may be there
+    only = keys_of(kind) if getattr(kind, "ONLY", False) else None  # None: other keys are allowed
     misfit, glance = getattr(kind, "misfit", None), getattr(kind, "glance", None)
 
     def take(value: Any) -> Any:

@@ -17,10 +17,10 @@ SCHEMES = ("http://", "https://", "mqtt://", "mqtts://")
 
 @dataclass(frozen=True)
 class Contact:
-    """A person who is called: a name, and a telephone number ("": none is given).
+    """A person to call: a name, and a telephone number ("": none).
 
-    `command` is a program with its arguments that sends a message, and `url` an address that takes
-    one: http, https or mqtt. Without either Tangy itself calls nobody.
+    `command` is a program with its arguments that sends a message, and `url` an address that
+    receives one: http, https or mqtt. Without either, Tangy itself cannot call.
     """
 
     name: str
@@ -35,10 +35,10 @@ class Contact:
 
 
 def read_contact(top: Table, key: Role) -> Contact | None:
-    """Read whom the robot's file names for a role, None if it names nobody.
+    """Read the contact of a role from the robot's profile; None if there is none.
 
     Raises:
-        ProfileError: a value of it is none, or there are both a command and a URL.
+        ProfileError: a value is invalid, or there are both a command and a URL.
     """
     if key not in top:
         return None

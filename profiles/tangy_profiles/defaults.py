@@ -8,24 +8,24 @@ from tangy_profiles.shipped import SHIPPED
 _TOP = read_toml(SHIPPED / "defaults.toml")
 
 DEFAULT_ACTIVITY = _TOP.text("activity")
-"""The name of the activity that the command line means where none is named."""
+"""The default activity of the command line."""
 
 PRESSING_STRATEGIES = _TOP.words("pressing_strategies")
-"""The strategies that press people in an activity that does not name its own."""
+"""The strategies that press people in an activity that does not list its own."""
 
 QUESTIONS_ACTIVITY = _TOP.text("questions")
-"""The name of the activity whose file is written anew for questions that are imported."""
+"""The activity that is the template for imported questions."""
 
 ASK_AGAIN = _TOP.words("ask_again")
-"""The texts with which a person is asked again whose answer was not clear."""
+"""The texts that repeat a question after an unclear answer."""
 
 _TOP.close()
 
 USUAL_ROBOT = "tangy"
-"""The robot that the command line means where none is named."""
+"""The default robot of the command line."""
 
 TO_BEGIN_WITH = 4
-"""People of a house that has not said who takes part."""
+"""The number of people if a facility has not registered any."""
 
 REGISTERED = -1
-"""As a count of people: as many as are registered, those of before and those who were added."""
+"""As a count of people: all registered people."""

@@ -9,17 +9,19 @@ from tangy_profiles.codec import Sparse, Unlogged
 from tangy_profiles.state import ActivityState, Situation
 
 Origin = Literal["shown", "again", "asked", "merged", "split"]
-"""Origin of a demonstration: shown in a game, shown again from a step of an earlier one,
-answered when Tangy asked in a game, or made of others."""
+"""Origin of a demonstration.
+
+Shown in a game, shown again from a step of an earlier one, answered when Tangy asked in a game, or
+made from others.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One behaviour-state pair, with the state that followed (from which effects are learnt).
+    """One behaviour-state pair, with the next state (from which effects are learnt).
 
-    `completed` says whether the world could carry the behaviour out. `id` is the step's number in
-    the log, which it keeps in every demonstration that it is copied into (0: not logged), and
-    `teacher` who showed it there.
+    `completed`: the world carried the behaviour out. `id` is the step's number in the log, which
+    copies keep (0: not logged), and `teacher` the person who showed it.
     """
 
     behaviour: str
@@ -31,12 +33,12 @@ class Step:
     teacher: Unlogged[str] = field(default="", compare=False)
 
     def misfit(self) -> str:
-        """Say what does not fit together, as the tail of a sentence ("": nothing)."""
+        """Return an inconsistency as the tail of a sentence; "" if there is none."""
         return not_the_same(self.state, self.after)
 
 
 def not_the_same(before: ActivityState, after: ActivityState | None) -> str:
-    """Say, as the tail of a sentence, if others take part after a step than before it."""
+    """Return the tail of a sentence if a step changes who takes part; else ""."""
     same = after is None or [user.id for user in before.users] == [user.id for user in after.users]
     return "" if same else "has other people in 'after' than in 'state'"
 
@@ -45,18 +47,18 @@ def not_the_same(before: ActivityState, after: ActivityState | None) -> str:
 class Resolution:
     """A teacher's resolution of a conflict: the right answers, and the steps it makes wrong.
 
-    Only the steps that were reviewed are set aside: a different answer shown later is a new
-    conflict. An answer in `right` that nobody demonstrated is learnt all the same.
+    Only the reviewed steps are set aside: a different answer shown later is a new conflict. An
+    answer in `right` is learnt even if it was not demonstrated.
     """
 
     situation: Situation
     right: tuple[str, ...]
     wrong: frozenset[int]
     whatever: Sparse[tuple[str, ...]] = ()
-    """Where it is a rule: the facts that make no difference here, so that nobody need show it."""
+    """For a rule: the facts that make no difference, so that this situation need not be shown."""
 
     def sets_aside(self, step: Step) -> bool:
-        """Say whether a step is not to be learnt from."""
+        """Return whether a step is excluded from learning."""
         return (
             step.state.situation == self.situation
             and step.behaviour not in self.right
@@ -68,8 +70,8 @@ class Resolution:
 class Demonstration:
     """A teacher's demonstration in one game: teacher, activity, world, and the ordered steps.
 
-    `seed`, `people` and `guided` make the simulated world again, so that a demonstration can be
-    resumed; `of` names the demonstrations that it was made from.
+    `seed`, `people` and `guided` recreate the simulated world, so that it can be resumed; `of`
+    names the demonstrations that it was made from.
     """
 
     id: str
@@ -93,5 +95,5 @@ class Demonstration:
         return replace(self, steps=(*self.steps, step))
 
     def without_last(self) -> Demonstration:
-        """Return the demonstration with its last step taken back."""
+        """Return the demonstration without its last step."""
         return replace(self, steps=self.steps[:-1], finished=False)

@@ -19,9 +19,9 @@ CLASSES = (*URGENCY, NOTHING_WRONG)
 class AnsweredRound:
     """One round with its answers.
 
-    `code` is the fault ("": nothing was wrong), `recovery` what had to be done; `named` and
-    `acted` are what was answered to that. `may_clear` and `cleared` are the right answer and the
-    given one where it was asked whether Tangy may be cleared. `seconds` is how long all took.
+    `code` is the fault ("": nothing was wrong) and `recovery` the right action; `named` and `acted`
+    are the answers. `may_clear` and `cleared` are the right and the given answer to whether Tangy
+    may be cleared, if asked. `seconds` is the time of the round.
     """
 
     number: Annotated[Count, Key("round")]
@@ -40,7 +40,7 @@ class AnsweredRound:
 
     @property
     def kind(self) -> str:
-        """The class that it counts for."""
+        """The class of the round."""
         return self.recovery if self.code else NOTHING_WRONG
 
     @property
@@ -50,28 +50,28 @@ class AnsweredRound:
 
     @property
     def acted_right(self) -> bool:
-        """Whether the right thing was done."""
+        """Whether the right action was chosen."""
         return self.acted == self.recovery
 
     @property
     def cleared_right(self) -> bool | None:
-        """Whether it was known if Tangy may be cleared; None if that was not asked."""
+        """Whether the question about clearing was answered correctly; None if it was not asked."""
         return None if self.may_clear is None else self.cleared == self.may_clear
 
     @property
     def points(self) -> int:
-        """One for each right answer."""
+        """One point for each right answer."""
         return self.named_right + self.acted_right + (self.cleared_right is True)
 
     @property
     def most(self) -> int:
-        """The points that could be had."""
+        """The highest possible score."""
         return 2 if self.may_clear is None else 3
 
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The score of one drill: who, which seed, how many rounds there were to be, the answers."""
+    """The score of one drill: trainee, seed, the planned number of rounds, the answers."""
 
     who: str
     activity: str
@@ -90,7 +90,7 @@ class Sheet:
     }
 
     def by(self, who: str) -> bool:
-        """Say whether it belongs to a person, ignoring the case of the name."""
+        """Return whether it belongs to a person, ignoring the case of the name."""
         return self.who.casefold() == who.casefold()
 
     @property
@@ -110,14 +110,14 @@ class Sheet:
 
     @property
     def median(self) -> float | None:
-        """The median time that a round took, in s; None if none was answered."""
-        from statistics import median  # not needed for the first screen, which looks at the points
+        """The median time of a round, in s; None if none was answered."""
+        from statistics import median  # slow, and unused by the first screen
 
         return median(one.seconds for one in self.answered) if self.answered else None
 
     @property
     def by_class(self) -> dict[str, tuple[int, int]]:
-        """By class: points, and how many could be had; those that came up, in order of urgency."""
+        """Points and highest possible score of the classes that occurred, by urgency."""
         found: dict[str, tuple[int, int]] = {}
         for kind in CLASSES:
             mine = [one for one in self.answered if one.kind == kind]
@@ -127,11 +127,11 @@ class Sheet:
 
     @property
     def again(self) -> tuple[AnsweredRound, ...]:
-        """Faults to rehearse again: each with a mistake, once."""
+        """The faults to rehearse again, one round with a mistake for each."""
         wrong = {one.code: one for one in self.answered if one.points < one.most}
         return tuple(wrong.values())
 
     @property
     def codes(self) -> tuple[str, ...]:
-        """The faults to rehearse again."""
+        """The codes of the faults to rehearse again."""
         return tuple(one.code or NOTHING_WRONG for one in self.again)

@@ -1,6 +1,6 @@
-"""Effects of behaviours on the world: a closed set, from which an activity chooses.
+"""Effects of behaviours on the world: a closed set from which activities choose.
 
-Each world matches every one of them, so that mypy names the places where a new one is forgotten.
+Each world matches all of them, so mypy finds the places where a new one is missing.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ Effect = Literal[
 EFFECTS: tuple[Effect, ...] = get_args(Effect)
 
 DRIVES: tuple[Effect, ...] = ("go to user", "go to front")
-"""Those for which the robot drives."""
+"""The effects that make the robot drive."""
 CORRECTS: tuple[Effect, ...] = ("clear wrong marks", "set missing marks")
-"""Those for which the attended person corrects the card."""
+"""The effects by which the attended person corrects the card."""
 ABOUT_CARD: tuple[Effect, ...] = ("bring card closer", *CORRECTS)
-"""Those for which the attended person does something with the card."""
+"""The effects by which the attended person does something with the card."""

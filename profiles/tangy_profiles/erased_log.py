@@ -1,7 +1,7 @@
-"""Erasing a name from the events of a log: the one change that events ever undergo.
+"""Erasure of a name from the events of a log: the only change ever made to events.
 
-Only the free texts of their bodies change. How many events there are, when they were, about whom,
-and what was answered stays, so that beliefs, policies and the count beside the log are as before.
+Only free texts in their bodies change. The number of events, their times, subjects and answers
+stay, so beliefs, policies and the count beside the log are unchanged.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 WINDOW = 4096  # events at a time
 GUARD = "unchanged"
-"""The trigger that keeps events from being changed."""
+"""The trigger that protects events from changes."""
 
 _to_json = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":")).encode
 
 
 def erase_from_log(db: sqlite3.Connection, eraser: NameEraser) -> int:
-    """Erase a name from the bodies of all events, within the transaction that is open.
+    """Erase a name from the bodies of all events, within the current transaction.
 
     Returns:
-        How many events were changed.
+        The number of changed events.
     """
     changed = [
         (after.encode(errors="surrogateescape"), seq)
@@ -49,12 +49,12 @@ def erase_from_log(db: sqlite3.Connection, eraser: NameEraser) -> int:
 
 
 def count_left(db: sqlite3.Connection, eraser: NameEraser) -> int:
-    """Count the events in which the name still stands, as a teacher's or that of staff."""
+    """Count the events that still have the name, as a teacher's or that of staff."""
     return sum(eraser.is_left(body) for _, _, text in _bodies(db, eraser) if (body := _table(text)))
 
 
 def _bodies(db: sqlite3.Connection, eraser: NameEraser) -> Iterator[tuple[int, str, str]]:
-    """Yield seq, kind and body of the events whose body may hold the name."""
+    """Yield seq, kind and body of the events whose body may contain the name."""
     low: int | None = None
     while True:
         after = "TRUE" if low is None else f"seq > {low}"
@@ -72,7 +72,7 @@ def _bodies(db: sqlite3.Connection, eraser: NameEraser) -> Iterator[tuple[int, s
 
 
 def _without(kind: str, text: str, eraser: NameEraser) -> str:
-    """Return the text of a body without the name; one that is no JSON is as running text."""
+    """Return a body without the name; text that is not JSON is treated as typed text."""
     body = _table(text)
     if body is None:
         return eraser.typed(text)
@@ -81,7 +81,7 @@ def _without(kind: str, text: str, eraser: NameEraser) -> str:
 
 
 def _table(text: str) -> dict[str, Any] | None:
-    """Read the text of a body; None if it is no JSON, or no table."""
+    """Parse a body; return None if it is not a JSON object."""
     try:
         body = json.loads(text)
     except (ValueError, RecursionError):

@@ -1,9 +1,9 @@
-"""Erasing a person's name from texts, so that nothing else in them changes.
+"""Erasure of a person's name from texts, without any other change.
 
-A name is found as a whole word, however it is written: by small letters, without its accents, in
-other spaces or hyphens, as HTML, JSON and addresses spell it. What only looks like it stays: other
-people's longer names, phrases of the activity ("mark numbers", where somebody is called Mark), and
-in running text the small word that some names are ("will", "may").
+A name is found as a whole word in all spellings: lower case, without accents, with other spaces or
+hyphens, and as HTML, JSON and URLs encode it. Similar words stay: longer names of other people,
+phrases of the activity ("mark numbers", if a person is called Mark), and in running text the common
+words that some names are ("will", "may").
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ from tangy_profiles.reading import read_toml
 from tangy_profiles.shipped import SHIPPED
 
 FREE_TEXT = frozenset(("heard", "how", "what", "why", "stopped"))
-"""The keys of an event's body that hold words of people."""
+"""The keys of an event's body that hold people's words."""
 SENTENCES = frozenset(("console", "advice", "speech", "image"))
-"""The keys that hold sentences of Tangy, in which a name stands as it is written."""
+"""The keys that hold Tangy's sentences, in which a name is spelt exactly."""
 WHOSE = frozenset(("teacher", "by", "who"))
-"""The keys that say which teacher or member of staff it was; they may be called the same."""
+"""The keys with a teacher's or staff member's name, who may have the same name."""
 OWN_WORDS = frozenset(("demonstrations edited", "speech noted", "taken back"))
-"""The kinds of event whose `what` is a word of Tangy's own."""
+"""The kinds of event whose `what` is one of Tangy's own words."""
 
 MOST_SPELLINGS = 128
-"""Of a name with special letters; of one with more of them fewer mixtures are looked for."""
+"""The most spellings of a name with special letters; beyond that, fewer mixtures are searched."""
 
 _SPELT_OUT = {"ä": ("ae",), "ö": ("oe",), "ü": ("ue",), "å": ("aa",), "ø": ("o", "oe"),
               "æ": ("ae",), "œ": ("oe",), "ß": ("ss",), "ł": ("l",), "đ": ("d",)}  # fmt: skip
-_MARKS = "\u0300-\u036f"  # accents that stand apart
+_MARKS = "\u0300-\u036f"  # combining accents
 _TOKEN = re.compile(rf"(?:[^\W_]|[{_MARKS}])+")
 _BETWEEN = r"(?:&(?:\#x?\w+|nbsp|apos);|%20|[\s+\-_'\u2019.]){1,3}"
 _APOSTROPHES = re.compile("['\u2019\u02bc]")
@@ -52,14 +52,14 @@ _HTML = re.compile(
 _HEARD = (
     rb'("target":"%b"(?:(?!"heard":|\dT\d\d:).){0,4000}"heard":")((?:[^"\\\x00-\x1f]|\\.)*)(?=")'
 )
-"""Words heard for a person, in the bytes of a log, before the time of another event."""
+"""Words heard for a person, in the bytes of a log, before the time of the next event."""
 _SHOWN = re.compile(
     r"""(?i)\b(title|alt|aria-label|content|value|label)(\s*=\s*)("[^"]*"|'[^']*')"""
 )
 
 
 class NameEraser:
-    """Puts a stand-in (the person's id) where a name stands."""
+    """Replaces a person's name by a stand-in (the person's id)."""
 
     def __init__(
         self,
@@ -70,16 +70,16 @@ class NameEraser:
         but: Collection[str] = (),
         commands: Collection[str] = (),
     ) -> None:
-        """Learn what to look for.
+        """Compile the patterns.
 
         Args:
-            names: what the person is called, every name that is to go, as it is written.
+            names: the names to erase, as they are written.
             stand_in: the replacement.
-            said: how the names stand where they were said.
-            but: phrases and other people's names that stay as they are where they hold the name.
-            commands: the words of commands, in small letters. In a command for the person every
-                other word may be the name misspelt or misheard, and goes; none given: only those
-                that are part of the name.
+            said: the spoken forms of the names.
+            but: phrases and other people's names that contain the name and stay.
+            commands: the words of commands, in lower case. In a command for the person every other
+                word may be the name misspelt or misheard, and is erased; if empty, only the parts
+                of the name are erased.
         """
         self.names = tuple(dict.fromkeys(name.strip() for name in names if name.strip()))
         self.stand_in = stand_in
@@ -107,12 +107,12 @@ class NameEraser:
         ]
 
     def may_hold(self, text: str) -> bool:
-        """Say at a glance whether a text may hold the name: most of a log does not."""
+        """Return quickly whether a text may contain the name; most do not."""
         folded = text.casefold()
         return any(anchor in folded for anchor in self._anchors)
 
     def may_change(self, body: str) -> bool:
-        """Say at a glance whether the body of an event, as it is kept, may have to change."""
+        """Return quickly whether a stored body may have to change."""
         return self.may_hold(body) or f'"target":"{self.stand_in}"' in body
 
     def text(self, text: str) -> str:
@@ -124,14 +124,14 @@ class NameEraser:
         return self._put(self._typed, text)
 
     def page(self, page: str) -> str:
-        """Erase the name from what an HTML page or an SVG shows; tags and styles stay."""
+        """Erase the name from the visible text of an HTML page or SVG; tags and styles stay."""
         return _HTML.sub(self._shown, page)
 
     def body(self, kind: str, body: dict[str, Any]) -> dict[str, Any]:
         """Return the body of an event without the name in its free texts.
 
-        From what was typed or said of a command for the person each word of the name goes as well:
-        people say "Rosa" or "Frau Weber".
+        In a typed or spoken command for the person, every part of the name is erased too, as people
+        say "Rosa" or "Frau Weber".
         """
         left = {key: self._value(value, _kept_in(kind, key)) for key, value in body.items()}
         heard = left.get("heard")
@@ -141,15 +141,15 @@ class NameEraser:
         return left
 
     def is_left(self, body: Mapping[str, Any]) -> bool:
-        """Say whether the name stands in a body as that of a teacher or of staff."""
+        """Return whether a body has the name as a teacher's or staff member's."""
         words = (body[key] for key in WHOSE if isinstance(body.get(key), str))
         return any(self.typed(word) != word for word in words)
 
     def overwrite(self, data: bytes) -> bytes:
-        """Overwrite the name in bytes that are no text, so that nothing moves.
+        """Overwrite the name in binary data, without changing its length.
 
-        It is looked for beside the person's id as well, as it stands in a table of names, and in
-        commands for the person every word goes that is none of a command.
+        It is also found directly after the person's id, as in a table of names. In commands for the
+        person, all words that are not command words are overwritten.
         """
         if self._commands:
             data = self._heard.sub(self._heard_bytes, data)
@@ -195,9 +195,9 @@ class NameEraser:
     def _pattern(
         self, forms: Collection[str], written: Collection[str], but: Collection[str]
     ) -> re.Pattern[str] | None:
-        """Compile the pattern of a name: `forms` in any case, those `written` case-sensitive.
+        """Compile the pattern of a name: `forms` in any case, `written` case-sensitive.
 
-        Words to keep come before it, as far as they contain the name among others.
+        Phrases to keep that contain the name come first.
         """
         sought = [_one(form, "i") for form in sorted(forms, key=_longest)]
         sought += [_one(form, "") for form in sorted(written, key=_longest)]
@@ -208,7 +208,7 @@ class NameEraser:
         return re.compile("|".join([*kept, f"(?P<name>{name.pattern})"]))
 
     def _stays(self, sought: Iterable[str | re.Pattern[str]], but: Collection[str]) -> list[str]:
-        """Return the phrases that hold the name among other words, the longest first."""
+        """Return the phrases that contain the name among other words, longest first."""
         own = {_plainest(name) for name in self.names}
         found = [
             text
@@ -225,10 +225,10 @@ class NameEraser:
 
 
 def _kept_in(kind: str, key: str) -> str:
-    """Return the form in which a key of a body may hold a name ("": it holds none).
+    """Return how a key of a body may contain a name ("": not at all).
 
-    "typed" is what was typed or said, "running" what people wrote, or a key that no kind of event
-    of ours has, and "exact" a sentence of Tangy.
+    "typed" is typed or spoken text, "running" is text by people or an unknown key, and "exact" a
+    sentence of Tangy.
     """
     if key == "heard":
         return "typed"
@@ -241,7 +241,7 @@ def _kept_in(kind: str, key: str) -> str:
 
 
 def _is_small(name: str) -> bool:
-    """Say whether a name is a small word as well, or too short to be told from one."""
+    """Return whether a name is also a common word, or too short."""
     return name.casefold() in small_words() or len(_letters(name)) < 2
 
 
@@ -251,7 +251,7 @@ def _letters(name: str) -> str:
 
 @cache
 def small_words() -> frozenset[str]:
-    """Return the small words that are people's names as well."""
+    """Return the common words that are also names."""
     top = read_toml(SHIPPED / "people" / "small_words.toml")
     words = frozenset(top.texts("words"))
     top.close()
@@ -259,7 +259,7 @@ def small_words() -> frozenset[str]:
 
 
 def _forms(name: str) -> tuple[str, ...]:
-    """Return the ways in which a name may be written in a file, in whatever letters."""
+    """Return all encodings of a name in files, in any case."""
     plainly = [name]
     for spelling in _spellings(unicodedata.normalize("NFC", name)):
         plainly += [spelling, unicodedata.normalize("NFD", spelling)]
@@ -271,16 +271,16 @@ def _forms(name: str) -> tuple[str, ...]:
 
 
 def _spellings(name: str) -> list[str]:
-    """Return a name with each of its special letters as it is, without accents, or spelt out."""
+    """Return spellings of a name: each special letter as it is, without accents, or spelt out."""
     letters = [tuple(dict.fromkeys((letter, *_plainer(letter)))) for letter in name]
-    if math.prod(map(len, letters)) > MOST_SPELLINGS:  # then all of them in the same way
+    if math.prod(map(len, letters)) > MOST_SPELLINGS:  # then all letters in the same way
         return ["".join(options[min(way, len(options) - 1)] for options in letters)
                 for way in range(3)]  # fmt: skip
     return ["".join(chosen) for chosen in itertools.product(*letters)]
 
 
 def _plainer(letter: str) -> tuple[str, ...]:
-    """Return what people type for a letter that their keyboard does not have."""
+    """Return what people type if their keyboard lacks a letter."""
     bare = _ACCENTS.sub("", unicodedata.normalize("NFKD", letter))
     return (unicodedata.normalize("NFC", bare), *_SPELT_OUT.get(letter.casefold(), ()))
 
@@ -290,7 +290,7 @@ def _plainest(text: str) -> str:
 
 
 def _anchor(form: str) -> str:
-    """Return the longest plain part of a form, which every text that holds it has as well."""
+    """Return the longest ASCII part of a form, which every text with the form contains."""
     parts = re.findall("[a-z0-9]+", form.casefold())
     return max(parts, key=len) if parts else form.casefold()
 
@@ -300,7 +300,7 @@ def _longest(text: str) -> tuple[int, str]:
 
 
 def _one(text: str, flags: str) -> str:
-    """Return the pattern of one form: its words in any spaces, and no letter before or after."""
+    """Return the pattern of one form: its words with any spaces, as whole words."""
     tokens = _TOKEN.findall(text)
     coded = "&" in text or "\\" in text or "%" in text
     if tokens and not coded:
@@ -318,7 +318,7 @@ def _one(text: str, flags: str) -> str:
 def _bytes_pattern(
     form: str, id: str, stays: Iterable[str], flags: re.RegexFlag
 ) -> re.Pattern[bytes]:
-    """Return what finds a form as a whole word, or at once behind the person's id."""
+    """Return a pattern that finds a form as a whole word, or directly after the person's id."""
     edge, sought = rb"[0-9A-Za-z_\x80-\xff]", re.escape(form.encode())
     kept = b"".join(b"%b|" % re.escape(text.encode()) for text in stays)
     sides = b"(?<!%b)%b(?!%b)|(?<=%b)%b" % (edge, sought, edge, re.escape(id.encode()), sought)

@@ -1,12 +1,12 @@
-"""The errors that a person can cause or mend: one sentence each, shown without a traceback."""
+"""Errors that a person can cause or fix: one sentence each, shown without a traceback."""
 
 
 class TangyError(Exception):
-    """Something a person can put right; its text is the whole message."""
+    """An error that a person can fix; its text is the whole message."""
 
 
 class ProfileError(TangyError):
-    """A profile (TOML) says something Tangy does not understand, and where."""
+    """A profile (TOML) has a mistake; the message says where."""
 
 
 class StoreError(TangyError):
@@ -14,4 +14,4 @@ class StoreError(TangyError):
 
 
 class StoreBusy(StoreError):
-    """Another Tangy writes to this data folder."""
+    """Another process writes to this data folder."""

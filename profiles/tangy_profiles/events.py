@@ -1,7 +1,7 @@
-"""The kinds of event in the log: a closed set, with a record for each.
+"""The kinds of event in the log: a closed set, each with a record.
 
-A body is checked when it is written and when it is read, so that readers get only valid events.
-A body may have keys that its record does not define.
+A body is validated when it is written and when it is read. It may have keys that its record does
+not define.
 """
 
 from __future__ import annotations
@@ -13,4 +13,4 @@ from tangy_profiles.records import Unknown as Unknown
 from tangy_profiles.records import read_record as read_record
 
 MODULES = (people_records, teaching_records, game_records)
-"""Where the records are."""
+"""The modules of the records."""

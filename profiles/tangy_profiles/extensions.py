@@ -1,7 +1,7 @@
 """Extensions by other packages through entry points: drivers, activities, methods of persuasion.
 
-A package is never imported before what it adds is asked for by its name. What has the name of
-something of our own is not used, and `problems` tells it.
+A package is imported only when its extension is used by name. Built-in names cannot be replaced;
+`problems` reports conflicts.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ GROUPS: tuple[Group, ...] = get_args(Group)
 
 @dataclass(frozen=True, slots=True)
 class Extension:
-    """One thing that another package adds.
+    """One extension of another package.
 
-    `value` is where it is in the package, `package` the distribution with its version.
+    `value` is the object reference of its entry point, `package` the distribution with its version.
     """
 
     group: Group
@@ -36,10 +36,10 @@ class Extension:
     point: EntryPoint
 
     def load(self) -> Any:
-        """Import the package, and return what the entry point names.
+        """Import the package, and return the object of the entry point.
 
         Raises:
-            ProfileError: the package cannot be imported, or does not have it.
+            ProfileError: the package cannot be imported, or lacks the object.
         """
         try:
             return self.point.load()
@@ -52,8 +52,8 @@ class Extension:
 
 @cache
 def extensions(group: Group) -> Mapping[str, Extension]:
-    """Return what other packages add to a group, by its name; of two with one name the first."""
-    from importlib.metadata import entry_points  # here, or every start reads how packages are kept
+    """Return the extensions of a group by name; the first one of each name."""
+    from importlib.metadata import entry_points  # slow to import
 
     found: dict[str, Extension] = {}
     for point in sorted(entry_points(group=f"tangy.{group}"), key=lambda point: point.value):
@@ -64,7 +64,7 @@ def extensions(group: Group) -> Mapping[str, Extension]:
 
 
 def activity_files() -> dict[str, Path]:
-    """Return the activities that other packages bring: NAME.toml in the package that is named."""
+    """Return the activities of other packages: the file NAME.toml in the named package."""
     from importlib.resources import files
 
     found: dict[str, Path] = {}
@@ -72,7 +72,7 @@ def activity_files() -> dict[str, Path]:
         try:
             path = Path(str(files(extension.value) / f"{name}.toml"))
         except (ImportError, TypeError):
-            continue  # `problems` says so
+            continue  # `problems` reports it
         if path.is_file():
             found[name] = path
     return found
@@ -81,10 +81,10 @@ def activity_files() -> dict[str, Path]:
 def problems(
     own: Mapping[Group, Iterable[str]], check: Mapping[Group, Callable[[Extension], str]]
 ) -> Iterator[tuple[Extension, str]]:
-    """Yield every extension with why it cannot be used, "" if it can.
+    """Yield every extension with the reason why it cannot be used; "" if it can.
 
     Args:
-        own: the names that are ours, which nobody else can take.
+        own: the built-in names.
         check: returns the problem of an extension of a group; "" if there is none.
     """
     for group in GROUPS:

@@ -1,4 +1,4 @@
-"""The file of fault rules: TOML read and checked, so that every mistake is one line."""
+"""The file of fault rules: reads and checks TOML, and reports each mistake in one line."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ _TESTS = ("is", "not", "above", "below", "at_least")
 
 
 def load_faults(robot: Robot, path: Path | None = None) -> FaultBook:
-    """Load the fault rules that ship, or a file of the same form, for a robot.
+    """Load the built-in fault rules, or a file in the same format, for a robot.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
+        ProfileError: one line with file, key, value and the nearest valid word.
     """
     book, mistakes = check_faults(robot, path)
     if book is None:
@@ -45,8 +45,7 @@ def load_faults(robot: Robot, path: Path | None = None) -> FaultBook:
 def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | None, list[str]]:
     """Read fault rules as `load_faults` does, and return the problems, a line for each entry.
 
-    Without mistakes there is a book, with the rules as they are for this robot; with any there is
-    none.
+    Without mistakes the book has the rules for this robot; with any it is None.
     """
     path = path or SHIPPED / "faults.toml"
     devices = possible_devices(robot)
@@ -83,7 +82,7 @@ def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | No
 
 
 def evidence_keys(devices: Mapping[str, DeviceProfile]) -> dict[str, str]:
-    """Return every key that a rule may look at, with what it is."""
+    """Return every key that a rule may use, with its description."""
     keys = {**CONTEXT, **SYMPTOMS}
     for device in devices.values():
         keys[f"{device.name}.state"] = f"{device.label}: OK, WARN, STALE or ERROR"
@@ -166,7 +165,7 @@ def _alternatives(
 
 
 def _never(condition: Condition, devices: Mapping[str, DeviceProfile]) -> str:
-    """Say why a condition on what a device reports can never be met as meant; "" if it can."""
+    """Return why a condition on a device's report can never hold; "" if it can."""
     head, _, fact = condition.key.partition(".")
     device = devices.get(head)
     if device is None or fact == "age":
@@ -212,10 +211,10 @@ def _check_slots(entry: Table, key: str, text: str) -> None:
 
 
 def _check_order(entry: Table, rule: FaultRule, earlier: Sequence[FaultRule]) -> None:
-    """Refuse a rule that can never be reached.
+    """Reject a rule that can never be reached.
 
     Raises:
-        ProfileError: naming the rule that always matches first.
+        ProfileError: names the rule that always matches first.
     """
     if any(other.code == rule.code for other in earlier):
         raise entry.wrong("code", "was used before: every fault has its own.")

@@ -1,8 +1,7 @@
 """The fault rules (III-C, diagnosis module): faults, their evidence, and their recoveries.
 
-They are data: an ordered list in TOML. Each says by which evidence a fault is recognised, whether
-it is critical, how to recover from it, and what console and robot say. `monitoring.diagnosis`
-reads the evidence by them.
+They are data: an ordered list in TOML. Each rule has the evidence of a fault, its criticality, its
+recoveries, and the texts of screen and robot. `monitoring.diagnosis` applies them.
 """
 
 from __future__ import annotations
@@ -20,22 +19,24 @@ from tangy_profiles.state import VARIABLES
 
 CRITICAL, NON_CRITICAL = "critical", "non-critical"
 RECOVERIES = ("continue", "user", "teacher", "expert")
-"""Whose turn it is: Tangy goes on, asks a user, a teacher, or halts and asks an expert (III-C)."""
+"""Recoveries: Tangy continues, asks a user, asks a teacher, or halts and asks an expert (III-C)."""
 
 URGENCY = ("expert", "user", "teacher", "continue")
-"""Which recovery comes first when several faults are there at once."""
+"""The order of recoveries if several faults are present."""
 
 LEAVE_TO_STAFF = "leave to staff"
 OWN_REMEDIES = (
     *("spin", "restart", "replan", "do without", "other requests", "set aside"),
     LEAVE_TO_STAFF,
 )
-"""What a robot can do by itself: turn on the spot to find where it is; start a device again; plan
-another way; leave a device alone; take requests by voice or key; close a person's request, and
-also judge what they have no more in this game."""
+"""Automatic remedies.
+
+Spin to localise; restart a device; replan a path; do without a device; take requests by voice or
+key; close a person's request, and also stop judging their card in this game.
+"""
 
 SOLVED = ("evidence gone", "card in view", "request closed")
-"""How it is seen that a recovery succeeded, where that is not that the evidence is gone."""
+"""How success of a recovery is observed; by default the evidence is gone."""
 
 CONTEXT: Mapping[str, str] = MappingProxyType(
     {
@@ -45,7 +46,7 @@ CONTEXT: Mapping[str, str] = MappingProxyType(
         "behaviour.response": "what the person did: none, complied, late, not followed",
     }
 )
-"""Evidence about what was done. It narrows a rule down, and is never a symptom."""
+"""Evidence about the executed behaviour. It narrows a rule down, and is never a symptom."""
 
 SYMPTOMS: Mapping[str, str] = MappingProxyType(
     {
@@ -63,15 +64,15 @@ SLOTS = ("name", "object", "why")
 """Slots in the texts of a rule: the person, the object people handle, the evidence."""
 
 Evidence = Mapping[str, Fact]
-"""Everything known at one moment, by dotted key: `laser.age`, `mismatch.card`, ..."""
+"""All evidence at one moment, by dotted key: `laser.age`, `mismatch.card`, ..."""
 
 
 class Remedy(NamedTuple):
     """A remedy for a world to carry out against a fault.
 
-    `kind` is one of OWN_REMEDIES, or: `halt` and `resume` moving, `ask` people for help (say the
-    speech, show the image), `call expert`, or `look again` whether it is gone, when staff say so.
-    `fault` is the code that was diagnosed.
+    `kind` is one of OWN_REMEDIES, or: `halt` and `resume` moving, `ask` people for help (with
+    speech and image), `call expert`, or `look again` whether it is gone. `fault` is the diagnosed
+    code.
     """
 
     kind: str
@@ -83,14 +84,14 @@ class Remedy(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """One comparison of a piece of evidence; evidence that is not there never agrees."""
+    """A comparison of a piece of evidence; false if that evidence is missing."""
 
     key: str
     test: str
     value: Fact
 
     def holds(self, evidence: Evidence) -> bool:
-        """Say whether the evidence agrees."""
+        """Return whether the condition holds for the evidence."""
         found = evidence.get(self.key)
         if found is None:
             return False
@@ -105,7 +106,7 @@ class Condition(NamedTuple):
         return found >= self.value
 
     def implies(self, other: Condition) -> bool:
-        """Say whether whatever agrees with this condition agrees with the other one as well."""
+        """Return whether the other condition holds whenever this one does."""
         if self.key != other.key:
             return False
         if self == other:
@@ -120,7 +121,7 @@ class Condition(NamedTuple):
 
     @property
     def limit(self) -> str:
-        """The limit that a number passed, in words; "" if there is none."""
+        """The numeric limit in words; "" if there is none."""
         if self.test not in ("above", "below", "at_least"):
             return ""
         return f"limit {self.value:g}" if not isinstance(self.value, str) else ""
@@ -132,13 +133,13 @@ class Condition(NamedTuple):
 
 @dataclass(frozen=True)
 class FaultRule:
-    """One fault: recognised when all conditions of one of the alternatives in `when` hold.
+    """One fault: diagnosed if all conditions of one of the alternatives in `when` hold.
 
-    `also` are the symptoms that follow from the fault as well: a rule further down has nothing to
-    say about them. `recovery` is a ladder: what does not help leads to its next rung, and after
-    the last one an expert is asked. `tries` bounds each rung. A `bearable` fault may stay: Tangy
-    goes on without the broken part. `advice` are the staff's steps, in their words. While one of
-    the faults that it `continues` (codes) is there, it is that one, of which more is known now.
+    `also` are further symptoms of the fault, which later rules do not explain. `recovery` is a
+    ladder: after an unsuccessful recovery the next one follows, and after the last one an expert is
+    asked. `tries` limits each. A `bearable` fault may stay: Tangy continues without the broken
+    part. `advice` are steps for staff. If one of the faults that it `continues` (codes) is present,
+    this is the same fault with more evidence.
     """
 
     code: str
@@ -167,12 +168,12 @@ class FaultRule:
 
     @property
     def quiet(self) -> bool:
-        """Whether it is noted and no more: Tangy goes on, and nobody has to do anything."""
+        """Whether it is only logged: Tangy continues, and nobody has to act."""
         return self.recovery == (RECOVERIES[0],) and not self.remedy and not self.device
 
     @property
     def urgency(self) -> int:
-        """Its place among faults that are there at once; the smallest comes first."""
+        """Its rank among simultaneous faults; the lowest comes first."""
         return URGENCY.index(self.recovery[0])
 
     @cached_property
@@ -183,18 +184,18 @@ class FaultRule:
 
     @cached_property
     def devices(self) -> frozenset[str]:
-        """The first parts of the keys that it is recognised by: devices, person, behaviour."""
+        """The first parts of the keys in its conditions: devices, person, behaviour."""
         return frozenset(c.key.partition(".")[0] for conditions in self.when for c in conditions)
 
     def matched(self, evidence: Evidence) -> tuple[Condition, ...] | None:
-        """Return the conditions by which the fault is recognised, or None."""
+        """Return the conditions of a matching alternative, or None."""
         for conditions in self.when:
             if all(condition.holds(evidence) for condition in conditions):
                 return conditions
         return None
 
     def hides(self, conditions: Sequence[Condition]) -> bool:
-        """Say whether this rule explains all symptoms whenever conditions of a later one hold."""
+        """Return whether this rule always explains a later one with these conditions."""
         theirs = {condition.key for condition in conditions if condition.key not in CONTEXT}
         return theirs <= self.symptoms and any(
             all(any(one.implies(mine) for one in conditions) for mine in alternative)
@@ -202,27 +203,27 @@ class FaultRule:
         )
 
     def fill(self, text: str, *, name: str, object: str, why: str = "") -> str:
-        """Put the person's name, the activity's object and the evidence into a text."""
+        """Fill the person's name, the activity's object and the evidence into a text."""
         return text.format(name=name, object=object, why=why)
 
 
 @dataclass(frozen=True)
 class FaultBook:
-    """All fault rules in order, the last one for what no other explains."""
+    """All fault rules in order; the last one is the fallback."""
 
     rules: tuple[FaultRule, ...]
     source: str
 
     @property
     def fallback(self) -> FaultRule:
-        """The diagnosis of what no other rule explains."""
+        """The diagnosis if no other rule matches."""
         return self.rules[-1]
 
     def rule(self, code: str) -> FaultRule:
         """Return a rule by its code.
 
         Raises:
-            ProfileError: there is none; says which is nearest.
+            ProfileError: there is none; the message suggests the nearest code.
         """
         for rule in self.rules:
             if rule.code == code:

@@ -20,12 +20,11 @@ from tangy_profiles.state import ActivityState, Variable
 
 @kind("game begun")
 class GameBeginning(EventRecord):
-    """A game begins, by the policy of that digest. The first logs do not name the `world`.
+    """A game begins with the policy of this digest. The first logs lack `world`.
 
-    `file` is the path of an activity that does not come with Tangy or with a package.
-    `room` is the name or the file of a room that was chosen; "": the number of people decided.
-
-    `asks_in_visit` and `asks_in_game` say how often a person may be asked in vain; 0: not logged.
+    `file` is the path of an activity that comes neither with Tangy nor with a package. `room` is
+    the name or file of the chosen room; "" if chosen by the number of people. `asks_in_visit` and
+    `asks_in_game` are the limits of unsuccessful requests; 0: not logged.
     """
 
     game: str
@@ -46,11 +45,11 @@ class GameBeginning(EventRecord):
     absent: Sparse[tuple[str, ...]] = ()
     pace: Sparse[float] = 0.0
     minutes: Sparse[Count] = 0
-    """Staff's options for it, as in `GamePlan`; empty if they chose none."""
+    """Staff's plan for the game, as in `GamePlan`; empty if they chose none."""
 
     @property
     def plan(self) -> GamePlan:
-        """Staff's options for it."""
+        """Staff's plan for the game."""
         return GamePlan(
             self.patterns,
             self.several,
@@ -64,7 +63,7 @@ class GameBeginning(EventRecord):
 
 @kind("game world set")
 class GameWorldSet(EventRecord):
-    """Staff said in which world a game was played."""
+    """Staff set the world of a game."""
 
     game: str
     world: GameWorld
@@ -72,7 +71,7 @@ class GameWorldSet(EventRecord):
 
 
 def _state_of_a_game(value: Any) -> ActivityState:
-    """Read a state; the first games were logged without who was `closed`."""
+    """Decode a state; the first logs lack `closed`."""
     if isinstance(value, dict) and "closed" not in value:
         value = {**value, "closed": None}
     return read(ActivityState, value)
@@ -83,7 +82,7 @@ GameState: TypeAlias = Annotated[ActivityState, By(_state_of_a_game)]
 
 @kind("game resumed")
 class GameResumed(EventRecord):
-    """A game that was interrupted goes on, after so many steps."""
+    """An interrupted game continues after this many steps."""
 
     game: str
     steps: Count
@@ -111,20 +110,19 @@ ChangeKind = Literal[
     "visits off",
     "pace",
 ]
-"""Kinds of changes in a game beside its behaviours."""
+"""Kinds of changes in a game besides its behaviours."""
 
 
 @kind("game change")
 class GameChange(EventRecord):
-    """Something changed in a game after so many `steps`, beside its behaviours.
+    """A change in a game after this many `steps`, besides its behaviours.
 
-    A call (`number`) was taken back; staff chose the `patterns` that follow; a winner (`person`)
-    waits until others were seen to, the game is played on for the next pattern, or is won;
-    a card was found to win, `person` left the game or came to it, or gets a visit unasked;
-    so many calls (`number`) come before those who ask; all numbers were called, so that each
-    person gets a visit; after these visits nobody has won, or nobody else after `number` patterns;
-    staff let everybody win who has it at the same call, or one; let people be visited, or not; or
-    chose another pace (`seconds` from one call to the next).
+    A call (`number`) was taken back; staff chose the next `patterns`; a winner (`person`) waits for
+    the others, the game continues with the next pattern, or is won; a card was claimed to win;
+    `person` left or came, or gets an unrequested visit; some calls (`number`) come before requests;
+    all numbers were called, so each person gets a visit; after these visits nobody has won, or
+    nobody else after `number` patterns; staff allowed several winners of one call, or one; turned
+    visits on or off; or chose another pace (`seconds` between calls).
     """
 
     game: str
@@ -139,11 +137,11 @@ class GameChange(EventRecord):
 
 @kind("game step")
 class GameStep(EventRecord):
-    """A behaviour was executed: how it was chosen, and what was seen before and `after`.
+    """An executed behaviour: how it was chosen, and the states before and `after` it.
 
-    `seconds` is how long it took, `clock` the time that was played when it was over, with what
-    passed between the steps; each is None in games of before it was logged. `memory` is what the
-    game stands at in a live game of an activity by facts, which the steps alone do not lead to.
+    `seconds` is its duration, and `clock` the time played when it ended, including pauses between
+    steps; old logs lack them. `memory` holds the facts of a live game of an activity by facts,
+    which the steps alone do not determine.
     """
 
     game: str
@@ -162,17 +160,16 @@ class GameStep(EventRecord):
     memory: Sparse[GameMemory | None] = None
 
     def misfit(self) -> str:
-        """Say what does not fit together, as the tail of a sentence ("": nothing)."""
+        """Return an inconsistency as the tail of a sentence; "" if there is none."""
         return not_the_same(self.state, self.after)
 
 
 @kind("game ended")
 class GameEnding(EventRecord):
-    """A game ended; `stopped` says why before its end, if it was.
+    """A game ended; `stopped` is the reason if it was stopped early.
 
     `pauses` is how often the robot waited for late data, and `paused_seconds` for how long. `looks`
-    is how often it looked at what the person beside it has, and `looks_wrong` how many of these
-    looks others overruled.
+    is the number of looks at the attended person's card, and `looks_wrong` how many were outvoted.
     """
 
     game: str
@@ -190,7 +187,7 @@ Measurement: TypeAlias = Annotated[Fact, By(measurement)]
 
 @dataclass(frozen=True, slots=True)
 class Mismatch:
-    """A variable that took a value which no demonstration showed after this behaviour."""
+    """A variable with a value that no demonstration showed after this behaviour."""
 
     ONLY: ClassVar[bool] = True
     behaviour: str
@@ -205,7 +202,7 @@ class Mismatch:
 
 @kind("fault")
 class FaultDiagnosed(EventRecord):
-    """A fault was diagnosed; its texts hold a slot where the name of a person stands."""
+    """A fault was diagnosed; its texts have a slot in place of a person's name."""
 
     game: str
     fault: str
@@ -260,22 +257,22 @@ class RecoveryEvent:
     remedy: Sparse[str] = ""
 
     def called(self, name: str) -> RecoveryEvent:
-        """Return the move with the person's name where the log only has a slot for it."""
+        """Return the event with the person's name in its slots."""
         return replace(self, speech=named(self.speech, name), image=named(self.image, name))
 
 
 NAME = "{name}"
-"""Replaces a person's name in the log, so that names can be forgotten."""
+"""The slot for a person's name in the log, so that names can be forgotten."""
 
 
 def named(text: str, name: str) -> str:
-    """Return a text of a fault with the person's name in its slot."""
+    """Fill a person's name into a text of a fault."""
     return text.replace(NAME, name)
 
 
 @kind("recovery")
 class FaultMove(EventRecord):
-    """Something was done about a fault, or happened to it."""
+    """A recovery event of a fault."""
 
     game: str
     fault: str
@@ -288,9 +285,9 @@ CallStage = Literal["tried", "sent", "answered", "failed", "reached"]
 
 @kind("call")
 class CallMade(EventRecord):
-    """Somebody was called about a fault: in which role, by which way, and what came of it.
+    """A contact was called about a fault: role, channel, and outcome.
 
-    `said` is the answer, why the call failed, or who says that the person was reached.
+    `said` is the answer, the reason for the failure, or who says that the person was reached.
     """
 
     game: str
@@ -303,10 +300,10 @@ class CallMade(EventRecord):
 
 @kind("answer not clear")
 class AnswerNotClear(EventRecord):
-    """A person's answer was not sure enough to be judged.
+    """A person's answer was not certain enough to be judged.
 
-    `certainty` is the probability that it was `said`, `source` what observed it. The person was
-    `asked_again`, or had been often enough.
+    `certainty` is the probability that it was `said`, `source` the device or method. `asked_again`
+    is False if the question had been repeated often enough.
     """
 
     game: str
@@ -319,7 +316,7 @@ class AnswerNotClear(EventRecord):
 
 @kind("effect accepted")
 class EffectAccepted(EventRecord):
-    """A teacher said that what followed a behaviour is all right."""
+    """A teacher accepted an observed effect of a behaviour."""
 
     activity: str
     game: str
@@ -330,7 +327,7 @@ class EffectAccepted(EventRecord):
 
 @kind("acceptance taken back")
 class AcceptanceTakenBack(EventRecord):
-    """The acceptance by the event of that seq is withdrawn."""
+    """The acceptance logged as event `number` is withdrawn."""
 
     number: int
 
@@ -339,7 +336,7 @@ class AcceptanceTakenBack(EventRecord):
 class StaffAction(EventRecord):
     """An action of staff other than behaviours and recoveries: a stop, an injected fault.
 
-    `seconds` is the time in the game, `taken_back` the number of a call that counts no more.
+    `seconds` is the time in the game, `taken_back` the number of a call that was taken back.
     """
 
     game: str
@@ -351,13 +348,13 @@ class StaffAction(EventRecord):
 
 @kind("drill-round")
 class DrillAnswered(EventRecord):
-    """A round of a drill was answered: the sheet so far, so that an interrupted drill goes on."""
+    """A round of a drill was answered: the sheet so far, to resume an interrupted drill."""
 
     sheet: Flat[Sheet]
 
 
 @kind("drill")
 class DrillHeld(EventRecord):
-    """A drill was held, with this score sheet."""
+    """A drill ended, with this score sheet."""
 
     sheet: Flat[Sheet]

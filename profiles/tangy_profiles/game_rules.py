@@ -1,4 +1,4 @@
-"""The rules of one game that staff choose from: what fills a card, claims, visits; data of TOML."""
+"""Game rules that staff can choose from, read from TOML: patterns, claims, visits."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from tangy_profiles.reading import Table, nearest, plain
 
 LONGEST_PACE, SHORTEST_PACE, USUAL_PACE = 60.0, 5.0, 30.0
 PACES = (5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0)
-"""The paces, in s from one call to the next, that faster and slower step through."""
+"""The paces, in s between calls, that staff step through."""
 
 
 def next_pace(pace: float, by: int) -> float:
-    """Return the next shorter (-1) or longer (1) of the paces, in s; the last one stays."""
+    """Return the next shorter (-1) or longer (1) pace in s; the last one stays."""
     if by < 0:
         return max((one for one in PACES if one < pace), default=PACES[0])
     return min((one for one in PACES if one > pace), default=PACES[-1])
@@ -24,7 +24,7 @@ def next_pace(pace: float, by: int) -> float:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Cells that win: any of the `shapes`, or `together` different ones of them at once."""
+    """Winning cells: any of the `shapes`, or `together` different ones of them at once."""
 
     name: str
     label: str
@@ -38,7 +38,7 @@ class Pattern:
 
 @dataclass(frozen=True)
 class Strength:
-    """How strongly people may be spoken to: by which of the strategies."""
+    """A limit on the strategies: how strongly people may be spoken to."""
 
     name: str
     label: str
@@ -47,11 +47,11 @@ class Strength:
 
 @dataclass(frozen=True)
 class CallsFirst:
-    """Leaves time for calls when many people ask: now and then they wait for some calls.
+    """Reserves time for calls while many people ask.
 
     After `visits` in a row an overdue call comes first, and further calls until they have had a
-    `share` of the time since the last call, but no more than `calls`. In a group of up to
-    `small_group` people nobody who asks waits for a call.
+    `share` of the time since the last call, but at most `calls`. In a group of up to `small_group`
+    people, requests never wait for a call.
     """
 
     visits: int
@@ -60,7 +60,7 @@ class CallsFirst:
     small_group: int
 
     def due(self, people: int, visits: int, seconds: float, pace: float) -> int:
-        """Return how many calls come first, so many s after the last one; 0: none does."""
+        """Return how many calls come first, given the s since the last one; 0 for none."""
         if people <= self.small_group or visits < self.visits or seconds < pace:
             return 0
         wanted = round(seconds * self.share / (1.0 - self.share) / pace, 6)
@@ -71,11 +71,10 @@ class CallsFirst:
 class GameRules:
     """Options that an activity offers staff for a game; "" and 0 if it has no such rule.
 
-    `claim` is the word before the number of a card that is said to win; `claim_right`,
-    `claim_wrong`, `taken_back` and `play_on` are said to the group; `all_called` when no number is
-    left, before each person gets a visit, `nobody_won` after these visits. Somebody who was not
-    visited for `unvisited` calls gets a visit, where staff want that. See `CallsFirst` for its
-    rule.
+    `claim` is the word before the number of a card that is claimed to win. `claim_right`,
+    `claim_wrong`, `taken_back` and `play_on` are announcements; so are `all_called` (no number is
+    left, and each person gets a visit) and `nobody_won` (after these visits). A person without a
+    visit for `unvisited` calls gets one, if staff want that. See `CallsFirst`.
     """
 
     patterns: tuple[Pattern, ...] = ()
@@ -94,7 +93,7 @@ class GameRules:
         """Return a pattern by its name or label, in any case.
 
         Raises:
-            TangyError: there is none of that name.
+            TangyError: there is none; the message suggests the nearest name.
         """
         wanted = " ".join(name.split()).casefold()
         for pattern in self.patterns:
@@ -104,7 +103,7 @@ class GameRules:
         raise TangyError(plain(f"There is no pattern {name!r}: {nearest(wanted, known)}"))
 
     def left_out(self, strength: str) -> tuple[str, ...]:
-        """Return the strategies that are not used at a strength; "" leaves out none."""
+        """Return the strategies that a strength excludes; none for ""."""
         chosen = next((one for one in self.strengths if one.name == strength), None)
         known = {name for one in self.strengths for name in one.strategies}
         return () if chosen is None else tuple(sorted(known - set(chosen.strategies)))
@@ -115,45 +114,45 @@ NO_RULES = GameRules()
 
 @dataclass(frozen=True)
 class GamePlan:
-    """Staff's options for a game; the defaults leave the activity's own game unchanged.
+    """Staff's plan for a game; the defaults leave the activity's own game unchanged.
 
-    `patterns` are played for one after another; "" as a strength leaves all strategies.
+    `patterns` are played for one after another; "" as a strength allows all strategies.
     """
 
     patterns: tuple[str, ...] = ()
     several: bool = False
-    """Whether others who have the pattern at the same call win as well."""
+    """Whether others with the pattern at the same call win as well."""
     visits: bool = False
-    """Whether somebody who was not visited for a while gets a visit."""
+    """Whether people without a visit for a while get one."""
     strength: str = ""
     absent: tuple[str, ...] = ()
-    """Who takes part and has not come yet."""
+    """Participants who have not come yet."""
     pace: float = 0.0
-    """From one call to the next, in s; 0: as it is."""
+    """Time between calls, in s; 0: unchanged."""
     minutes: int = 0
-    """How long the session is planned to take; 0: it is left open."""
+    """Planned duration of the session; 0: open."""
 
 
 @dataclass
 class Patterns:
-    """The patterns of one game: the present one, and those that follow."""
+    """The patterns of one game: the current one, and the next ones."""
 
     rules: GameRules
     deck: Deck
     left: list[Pattern] = field(default_factory=list)
     present: Pattern | None = None
     won: int = 0
-    """How many patterns were won before the present one."""
+    """How many patterns were won before the current one."""
 
     @classmethod
     def of(cls, rules: GameRules, deck: Deck, names: Sequence[str]) -> Patterns:
-        """Return those of a plan; without names the deck is as the activity has it."""
+        """Return the patterns of a plan; without names the activity's deck is used."""
         chosen = [rules.pattern(name) for name in names]
         return cls(rules, deck, chosen[1:], chosen[0] if chosen else None)
 
     @property
     def played(self) -> Deck:
-        """The deck whose cards win by the present pattern."""
+        """The deck whose cards win by the current pattern."""
         return self.deck if self.present is None else self.present.on(self.deck)
 
     def follow_with(self, names: Sequence[str]) -> None:
@@ -161,7 +160,7 @@ class Patterns:
         self.left = [self.rules.pattern(name) for name in names]
 
     def advance(self) -> bool:
-        """Go on to the next pattern; say whether there was one."""
+        """Go on to the next pattern; return whether there was one."""
         if not self.left:
             return False
         self.present = self.left.pop(0)
@@ -170,10 +169,10 @@ class Patterns:
 
 
 def read_game_rules(top: Table, deck: Deck, strategies: Sequence[str]) -> GameRules:
-    """Read what an activity offers to choose from; a file may have none of it.
+    """Read the game rules of an activity, all of which are optional.
 
     Raises:
-        ProfileError: it has a mistake.
+        ProfileError: the file has a mistake.
     """
     patterns = tuple(_read_pattern(entry, deck) for entry in top.tables("patterns", optional=True))
     strengths = tuple(
@@ -234,11 +233,11 @@ def _read_strength(entry: Table, strategies: Sequence[str]) -> Strength:
 
 
 def _said(table: Table, key: str, slots: Sequence[str]) -> str:
-    """Read a sentence that is said, in which nothing but the slots is filled."""
+    """Read an announcement, and check its slots."""
     text = table.text(key, "")
     try:
         text.format(**dict.fromkeys(slots, ""))
     except (KeyError, IndexError, ValueError):
-        wanted = " and ".join("{%s}" % slot for slot in slots)  # noqa: UP031 - braces as they are
+        wanted = " and ".join("{%s}" % slot for slot in slots)  # noqa: UP031 - literal braces
         raise ProfileError(str(table.wrong(key, f"can have {wanted} filled in alone."))) from None
     return text

@@ -1,7 +1,7 @@
-"""Where a game is played: in simulation, on the bench of simulated devices, or with a robot.
+"""The world of a game: simulation, the bench of simulated devices, or a robot.
 
-Beliefs about people are kept apart for each world, so that simulated people teach Tangy
-nothing about real ones.
+Beliefs about people are separate for each world, so that simulated people teach Tangy nothing about
+real ones.
 """
 
 from __future__ import annotations
@@ -12,26 +12,26 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 
 GameWorld = Literal["unknown", "simulated", "bench", "live"]
-"""`unknown`: an old log does not tell; it counts for none of the others."""
+"""`unknown`: an old log does not say; such games count for no other world."""
 UNKNOWN: GameWorld = "unknown"
 SIMULATED: GameWorld = "simulated"
 BENCH: GameWorld = "bench"
 LIVE: GameWorld = "live"
 GAME_WORLDS: tuple[GameWorld, ...] = get_args(GameWorld)
 PLAYED_WORLDS: tuple[GameWorld, ...] = tuple(w for w in GAME_WORLDS if w != UNKNOWN)
-"""In which games are played."""
+"""The worlds in which games are played."""
 
 
 def game_world(value: Any) -> GameWorld | None:
-    """Return the world that a log or a file names; None if it names none that there is."""
+    """Return the world named in a log or file; None if it is not valid."""
     return next((world for world in GAME_WORLDS if world == value), None)
 
 
 def read_game_world(word: str) -> GameWorld:
-    """Return the world that a person names.
+    """Return the world that a person named.
 
     Raises:
-        TangyError: there is no such world; it names the nearest one.
+        TangyError: there is no such world; the message suggests the nearest one.
     """
     world = game_world(word.strip().casefold())
     if world is None:

@@ -1,4 +1,4 @@
-"""Worlds whose games people can leave and come to, with cards or by facts."""
+"""Worlds whose games people can join and leave."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Gathering(Protocol):
-    """A world that knows who has left, or has not come yet."""
+    """A world that knows who is absent."""
 
     people: tuple[str, ...]
     away: frozenset[str]
-    """Who is not here in the present game."""
+    """The people absent from the current game."""
     game_plan: GamePlan
-    """What is chosen for the next game."""
+    """The plan of the next game."""
 
     def choose(self, plan: GamePlan) -> None:
-        """Play the next game by a plan."""
+        """Set the plan of the next game."""
         ...
 
     def change(self, change: GameChange) -> None:
-        """Let somebody leave or come in the present game, and in those that follow."""
+        """Record that a person left or came, in this game and the following ones."""
         ...
 
     def observe(self) -> ActivityState:
@@ -35,5 +35,5 @@ class Gathering(Protocol):
 
 
 def as_gathering(world: object) -> Gathering | None:
-    """Return a world whose games people can leave; None if they cannot."""
+    """Return the world if people can leave its games, else None."""
     return world if isinstance(world, Gathering) else None

@@ -1,7 +1,7 @@
-"""Files that people name: regular ones of a size that can be, or one sentence that says why not.
+"""Files named by users: opens only regular files of limited size, or raises one sentence.
 
-A pipe would be waited for without end, and a device be read without end; neither is opened here.
-What may be a pipe (a script, a microphone) is opened where that is promised.
+A pipe would block and a device might never end; neither is opened here. Where pipes are allowed (a
+script, a microphone), they are opened elsewhere.
 """
 
 from __future__ import annotations
@@ -20,23 +20,24 @@ FLAGS = os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NONBLOCK", 0) | getattr(os, 
 def open_given(
     path: Path, most: int, kind: type[TangyError] = TangyError, *, called: str = ""
 ) -> BinaryIO:
-    """Open a regular file to read.
+    """Open a regular file for reading.
 
     Args:
-        path: which one; a link to one is as good.
-        most: the bytes that it may have.
-        kind: of the error.
-        called: how it is called where it is there, but too large; as it was named otherwise.
+        path: the file, or a link to one.
+        most: the largest size in bytes.
+        kind: the class of the error.
+        called: the name in the error of a too large file; by default the path.
 
     Raises:
-        TangyError: of that kind: it is missing, no regular file, too large, or cannot be opened.
+        TangyError: of that class: it is missing, not a regular file, too large, or cannot be
+            opened.
     """
     name = plain(str(path))
     try:
-        _check(os.stat(path), most, name, kind, called)  # noqa: PTH116 - as below, before it is opened
+        _check(os.stat(path), most, name, kind, called)  # noqa: PTH116 - before opening, see below
         file = os.open(path, FLAGS)
         try:
-            _check(os.fstat(file), most, name, kind, called)  # it may have been exchanged meanwhile
+            _check(os.fstat(file), most, name, kind, called)  # it may have been replaced
         except BaseException:
             os.close(file)
             raise
@@ -51,15 +52,15 @@ def open_given(
 def read_given(
     path: Path, most: int, kind: type[TangyError] = TangyError, *, called: str = ""
 ) -> bytes:
-    """Read a regular file as a whole; its arguments are those of `open_given`.
+    """Read a whole regular file; the arguments are those of `open_given`.
 
     Raises:
-        TangyError: of that kind: as for `open_given`, or it cannot be read.
+        TangyError: of that class: as for `open_given`, or it cannot be read.
     """
     name = plain(str(path))
     with open_given(path, most, kind, called=called) as file:
         try:
-            content = file.read(most + 1)  # some say that they have no size, and have one
+            content = file.read(most + 1)  # the reported size may be wrong
         except OSError as error:
             raise kind(f"{name}: cannot be read ({error.strerror}).") from None
     if len(content) > most:
@@ -68,10 +69,10 @@ def read_given(
 
 
 def read_given_text(path: Path, most: int, kind: type[TangyError] = TangyError) -> str:
-    """Read a regular file as UTF-8 text, its lines ended by a line feed each.
+    """Read a regular file as UTF-8 text with normalised line ends.
 
     Raises:
-        TangyError: of that kind: as for `read_given`, or it is no such text.
+        TangyError: of that class: as for `read_given`, or it is not UTF-8.
     """
     try:
         return lines_of(read_given(path, most, kind))
@@ -80,10 +81,10 @@ def read_given_text(path: Path, most: int, kind: type[TangyError] = TangyError) 
 
 
 def lines_of(content: bytes) -> str:
-    """Return UTF-8 text whose lines are ended by a line feed each.
+    """Decode UTF-8 text and normalise its line ends.
 
     Raises:
-        UnicodeDecodeError: it is no such text.
+        UnicodeDecodeError: it is not UTF-8.
     """
     return content.decode().replace("\r\n", "\n").replace("\r", "\n")
 

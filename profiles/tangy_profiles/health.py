@@ -1,6 +1,6 @@
-"""Readings of a robot's devices: one each, newest data only.
+"""Readings of a robot's devices, with the newest data only.
 
-A world hands these out (`World.health`); what they mean is the business of the fault rules.
+A world provides them (`World.health`); the fault rules interpret them.
 """
 
 from __future__ import annotations
@@ -19,19 +19,21 @@ WARN: Final = "WARN"
 ERROR: Final = "ERROR"
 STALE: Final = "STALE"
 STATES: tuple[DeviceState, ...] = (OK, WARN, STALE, ERROR)
-"""The states of a device from best to worst. Stale is not an error: nothing was heard, so nothing
-is known; as ROS's diagnostics have it."""
+"""The states of a device from best to worst.
+
+Stale is not an error: nothing was received, so nothing is known, as in ROS diagnostics.
+"""
 
 Fact = float | bool | str
-"""A device's measurement of itself: a number, yes or no, or a word."""
+"""A device's measurement: a number, a boolean, or a word."""
 
 
 class Reading(NamedTuple):
     """The health of one device.
 
-    `age` is how long ago, in s, its newest data came; `state` is what the device says of itself;
-    `facts` are what it measures (which ones there are, the robot's profile says). `rate` is how
-    often a second data comes; None if nobody counts, or not for long enough.
+    `age` is the age of its newest data in s, `state` its self-reported state, and `facts` are its
+    measurements (listed in the robot's profile). `rate` is its data rate per second; None if it is
+    not measured yet.
     """
 
     device: str
@@ -46,10 +48,10 @@ Health = tuple[Reading, ...]
 
 
 def state_of(device: DeviceProfile | None, reading: Reading) -> DeviceState:
-    """Return the state of a device: what it says of itself, or STALE if its data is too old.
+    """Return the state of a device: the reported one, or STALE if its data is too old.
 
-    A measurement that is no number is an error. An age that is none, or has no end, is too old
-    for any device; of one that no profile knows (None) every other age is young enough.
+    A measurement of NaN is an error. An infinite or NaN age is stale for any device; other ages are
+    never stale for an unknown device (None).
     """
     if reading.state == ERROR or any(fact != fact for fact in reading.facts.values()):
         return ERROR
@@ -58,10 +60,10 @@ def state_of(device: DeviceProfile | None, reading: Reading) -> DeviceState:
 
 
 def lasting_state(device: DeviceProfile | None, reading: Reading) -> DeviceState:
-    """Return the state of a device as `state_of` does, but let late data be late for a while.
+    """Return the state of a device as `state_of` does, but tolerate late data for a while.
 
-    Data that is too old and not lost yet is a pause: the device counts as it was. A device whose
-    data is young and that says itself that it has none is believed.
+    Stale data that is not lost yet is a pause, and the earlier state stays. A device with fresh
+    data that itself reports STALE is believed.
     """
     state = state_of(device, reading)
     if device is None or state != STALE:
@@ -72,5 +74,5 @@ def lasting_state(device: DeviceProfile | None, reading: Reading) -> DeviceState
 
 
 def device_state(told: object) -> DeviceState | None:
-    """Return the state that another process or a file tells; None: there is no such state."""
+    """Return a state read from another process or a file; None if it is not valid."""
     return next((one for one in STATES if one == told), None)

@@ -1,4 +1,4 @@
-"""The devices that a robot can have: those of the robots that ship, and those that one lacks."""
+"""The devices that a robot can have, and those that a robot lacks."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from types import MappingProxyType
 from tangy_profiles.robot import LINK, DeviceProfile, Robot, load_robot, shipped_robots
 
 NEEDED = (LINK, "base", "laser", "localisation", "navigator")
-"""The devices that no robot is without: it must be reached, drive, and know where it is."""
+"""Devices that every robot has: it must be reachable, drive, and know where it is."""
 
 CARDS = "cards"
 TOLD_MISSING = ("stop_button", "camera", "requests", "voice", "screen", "arms")
-"""The devices of which staff are told if a robot has none, in this order."""
+"""Devices whose absence is reported to staff, in this order."""
 
 
 @cache
 def known_devices() -> Mapping[str, DeviceProfile]:
-    """Return the devices of all robots that ship, by name, each with all facts it may have."""
+    """Return the devices of all built-in robots by name, each with the union of its facts."""
     found: dict[str, DeviceProfile] = {}
     for name in shipped_robots():
         for device in load_robot(name).devices.values():
@@ -30,9 +30,9 @@ def known_devices() -> Mapping[str, DeviceProfile]:
 
 
 def possible_devices(robot: Robot) -> Mapping[str, DeviceProfile]:
-    """Return the devices that fault rules may name: the robot's own, and all that are known.
+    """Return the devices that fault rules may name: the robot's own, and all known ones.
 
-    A fact that the robot's own device does not have is taken from the known one.
+    Facts that the robot's own device lacks are taken from the known device.
     """
     known = known_devices()
     own = {
@@ -51,8 +51,8 @@ def driven(robot: Robot, also: Collection[str] = ()) -> Robot:
     """Return a robot without the listed devices that have no driver.
 
     Args:
-        robot: whose devices they are.
-        also: names of devices that are driven although the file does not say by what.
+        robot: the robot.
+        also: devices that have a driver although the file does not name it.
 
     Returns:
         The robot; its `undriven` are the devices that were left out.
@@ -66,7 +66,7 @@ def driven(robot: Robot, also: Collection[str] = ()) -> Robot:
 
 
 def missing_devices(robot: Robot) -> tuple[str, ...]:
-    """Return the names of the devices that a robot has not, of which staff are told."""
+    """Return the names of the devices that a robot lacks and that staff are told about."""
     known = tuple(name for name in TOLD_MISSING if name not in robot.devices)
     return (*known, *(one.name for one in robot.undriven if one.name not in TOLD_MISSING))
 

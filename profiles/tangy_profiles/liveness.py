@@ -12,17 +12,17 @@ SELDOM: Final = "seldom"
 OFTEN: Final = "often"
 TOO_OFTEN: Final = "too often"
 PAUSING: tuple[Pausing, ...] = (SELDOM, OFTEN, TOO_OFTEN)
-"""How much time a robot loses because it stands for late data."""
+"""How much time a robot loses to pauses for late data."""
 
 
 @dataclass(frozen=True)
 class Liveness:
     """Limits for a robot's reaction to late data: s, m/s, and shares of time.
 
-    Data older than a device's `stale_after` makes the robot stand: a pause. It goes on by itself
-    after `fresh_readings` new ones, no faster than `slow_speed` for `slow_seconds`. Data that is
-    older than `fault_after` is a fault. Staff are told where more than `warn_share` of the last
-    `window_seconds` was lost to pauses; more than `fault_share` is a fault.
+    Data older than a device's `stale_after` makes the robot pause. It continues after
+    `fresh_readings` new ones, at most at `slow_speed` for `slow_seconds`. Data older than
+    `fault_after` is a fault. Staff are told if pauses took more than `warn_share` of the last
+    `window_seconds`; more than `fault_share` is a fault.
     """
 
     fault_after: float = 1.5
@@ -43,14 +43,14 @@ RANGES = {
     "warn_share": (0.005, 1.0),
     "fault_share": (0.01, 1.0),
 }
-"""From which to which value each setting may be."""
+"""The range of each setting."""
 
 
 def read_liveness(top: Table) -> Liveness:
-    """Read what a robot's file says about late data; what it leaves out is as is usual.
+    """Read the limits on late data from a robot's profile; missing ones get the defaults.
 
     Raises:
-        ProfileError: a value that is out of its range.
+        ProfileError: a value is out of range.
     """
     table = top.table("liveness", optional=True)
     usual = Liveness()

@@ -1,4 +1,4 @@
-"""The file that a data folder's log is kept in: its one writer, its soundness, its versions."""
+"""The database file of a data folder's log: its single writer, integrity, and migrations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FILE = "tangy.db"
 ALWAYS_CHECKED = 16_000_000  # bytes: 13 ms of quick_check
 
 _SPEECH = "TABLE speech (person TEXT PRIMARY KEY, pronunciation TEXT, rate INTEGER, voice TEXT);"
-# No index on uuid: it costs a third of the appending speed for what only a merge asks.
+# No index on uuid: it costs a third of the append speed, and only a merge needs it.
 MIGRATIONS: tuple[str, ...] = (
     """
     CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -40,37 +40,37 @@ MIGRATIONS: tuple[str, ...] = (
 )
 """MIGRATIONS[n] takes a log from version n to n + 1; version 0 is an empty file."""
 INSTEAD = {1: f"CREATE TEMP {_SPEECH}"}
-"""Empty steps in place of those that a reader may not take."""
+"""Temporary substitutes for migrations that a reader cannot run."""
 NAMING = ("name", "speech")
-"""The tables that tell of people by name."""
+"""The tables with people's names."""
 
 
 class LogFile:
     """The file of one log and the connection to it: `begin` to write it, `reading` to read it.
 
-    What SQLite or the file system refuse comes as it is; `in_words` makes one sentence of it.
-    It knows nothing of threads: its `Store` lets one in at a time.
+    Errors of SQLite and the file system are raised as they are; `in_words` turns them into one
+    sentence. It is not thread-safe: its `Store` serialises access.
     """
 
     def __init__(self, folder: Path, writable: bool, now: Callable[[], datetime]) -> None:
-        """Name the file; nothing is touched yet."""
+        """Set the paths; nothing is opened yet."""
         self.folder = folder
         self.path = folder / FILE
         self.writable = writable
         self.notices: list[str] = []
         self.db: sqlite3.Connection | None = None
-        self.damaged = False  # a damaged log is not vouched for when it is closed
+        self.damaged = False  # closing a damaged log leaves no mark
         self.lost: list[EventsLost] = []
-        """The events of a damaged log that could not be taken over into this one."""
-        self._behind = False  # a reader's log is of an older version
+        """The events of a damaged log that could not be recovered."""
+        self._behind = False  # a reader's log has an older version
         self._held: FileIO | None = None
         self._now = now
 
     def begin(self) -> sqlite3.Connection:
-        """Become the writer of the folder: make it, hold it, check it, bring it up to date."""
+        """Become the writer of the folder: create, lock, check, and migrate it."""
         if not self.folder.exists():
             self.folder.mkdir(parents=True)
-            self.folder.chmod(0o700)  # whatever the umask
+            self.folder.chmod(0o700)  # independent of the umask
         self._held, left = hold(self.folder / "tangy.lock")
         if self._sound(left):
             return self._take_up()
@@ -81,10 +81,10 @@ class LogFile:
         return db
 
     def _take_up(self) -> sqlite3.Connection:
-        """Open the log for its writer, and bring it up to date."""
+        """Open the log for its writer, and migrate it."""
         self.path.touch(0o600)
-        # By path: closing a descriptor of ours would drop SQLite's own locks on the file. SQLite
-        # gives -wal and -shm the mode of the log.
+        # By path: closing a descriptor would drop SQLite's own locks on the file. SQLite gives -wal
+        # and -shm the mode of the log.
         self.path.chmod(0o600)
         db = self.db = self._connect()
         # secure_delete: a name that was replaced or forgotten must not stay on a free page.
@@ -97,18 +97,18 @@ class LogFile:
     def reading(self) -> sqlite3.Connection | None:
         """Return the reader's connection, made as soon as there is a log to read.
 
-        A log of an older version is first brought up to date, as its writer would; where another
-        process writes to it, or nobody can, it is read as it is.
+        A log of an older version is migrated first, as its writer would do. If another process
+        writes to it, or it is read-only, it is read as it is.
         """
         if self.db is not None and self._behind and self._version(self.db) == len(MIGRATIONS):
-            self.db.close()  # its writer has brought it up to date meanwhile
+            self.db.close()  # its writer has migrated it meanwhile
             self.db = None
         if self.db is None and self._size():
             with closing(self._connect()) as db:
                 version = self._version(db)
             if 0 < version < len(MIGRATIONS):
                 version = self._bring_up_to_date() or version
-            if version:  # 0: its writer is just making it
+            if version:  # 0: its writer is just creating it
                 db = self._connect()
                 self._behind = version < len(MIGRATIONS)
                 if self._behind:
@@ -124,10 +124,10 @@ class LogFile:
         return self.db
 
     def _settle(self, db: sqlite3.Connection, setting: str, wanted: str, granted: object) -> None:
-        """Set a setting, and ask SQLite whether it stands: it grants or ignores without a word.
+        """Set a pragma and verify it, because SQLite ignores unsupported values silently.
 
         Raises:
-            StoreError: it does not, so that the log would not be kept as is promised.
+            StoreError: it was not set, so the log would not be safe.
         """
         db.execute(f"PRAGMA {setting}={wanted}").fetchall()
         found = db.execute(f"PRAGMA {setting}").fetchone()
@@ -137,9 +137,9 @@ class LogFile:
             raise self.wrong(f"{problem} {wanted}; choose a folder on another disk with --data")
 
     def _bring_up_to_date(self) -> int:
-        """Bring an older log that is sound up to date; return its version then, 0 if not done."""
+        """Migrate an intact older log; return its version then, 0 if not done."""
         writer = LogFile(self.folder, True, self._now)
-        writer.damaged = True  # until it is known better
+        writer.damaged = True  # until it has been checked
         try:
             writer._held, left = hold(self.folder / "tangy.lock")
             if not writer._sound(left):
@@ -153,7 +153,7 @@ class LogFile:
             writer.close()
 
     def close(self) -> None:
-        """Close the connection and let another writer in; may be repeated."""
+        """Close the connection and release the lock; idempotent."""
         db, held, self.db, self._held = self.db, self._held, None, None
         if db is not None:
             with suppress(sqlite3.Error):
@@ -172,7 +172,7 @@ class LogFile:
         """Rewrite the log, so that no deleted text is left in its bytes.
 
         Raises:
-            StoreError: another process reads it, so that its tail has to stay for now.
+            StoreError: another process reads it, so the write-ahead log has to stay for now.
         """
         db = self.db
         if db is None:
@@ -182,7 +182,7 @@ class LogFile:
         self._fold(db)
 
     def _fold(self, db: sqlite3.Connection) -> None:
-        """Fold the tail into the log and empty it."""
+        """Checkpoint the write-ahead log and truncate it."""
         busy, *_ = db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
         if busy:
             raise self.wrong(
@@ -210,36 +210,36 @@ class LogFile:
             raise StoreError(f"{plain(str(self.folder))}: {reason}.") from None
 
     def wrong(self, problem: str) -> StoreError:
-        """Build an error that names this log and its problem, in one sentence."""
+        """Return an error that names this log and its problem, in one sentence."""
         return StoreError(plain(f"{self.path}: {problem}."))
 
     def _connect(self) -> sqlite3.Connection:
-        # mode=rw never creates a file; a URI holds whatever characters a folder may have.
+        # mode=rw never creates a file; a URI works for any characters in the path.
         uri = self.path.as_uri() + "?mode=rw"
         if not self.writable and not self._size("-wal") and is_read_only(self.folder):
-            uri += "&immutable=1"  # else SQLite wants to make -shm, even to read
+            uri += "&immutable=1"  # else SQLite creates -shm, even to read
         return sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
 
     def _size(self, end: str = "") -> int:
-        """Return the size of the log, or of its tail ("-wal"), in bytes; 0 if it does not exist."""
+        """Return the size in bytes of the log, or of its "-wal"; 0 if it does not exist."""
         with suppress(FileNotFoundError):
             return (self.folder / (FILE + end)).stat().st_size
         return 0
 
     def _mark(self) -> str:
-        """Describe the log as it lies on the disk, to know it again."""
+        """Return a fingerprint of the log file, to detect changes after closing."""
         return f"closed {self._size()} {self.path.stat().st_mtime_ns}"
 
     def _sound(self, left: str) -> bool:
-        """Say whether the log is whole, and refuse that of a newer Tangy before touching it.
+        """Return whether the log is intact; reject a log of a newer version first.
 
-        quick_check reads the whole file: 115 ms for 500,000 small events (113 MB), 325 ms where
-        their bodies have 600 bytes (421 MB), and that with the file in memory. A large log is
-        therefore believed when it is, to the nanosecond, the file that the last clean close
-        left; after a crash, a power cut, a copy or a restore it is not, and is read through.
+        quick_check reads the whole file: 115 ms for 500,000 small events (113 MB), 325 ms for
+        bodies of 600 bytes (421 MB), with the file in memory. So a large log is trusted if its
+        fingerprint is the one of the last clean close; after a crash, a power cut, a copy or a
+        restore it is not, and is read completely.
         """
         if not self._size():
-            return not self._size("-wal")  # SQLite would delete a tail without a log
+            return not self._size("-wal")  # SQLite would delete a -wal without a log
         same = not self._size("-wal") and left == self._mark()
         with closing(self._connect()) as db:
             try:
@@ -261,25 +261,25 @@ class LogFile:
         if sealed:
             db.execute("INSERT OR IGNORE INTO meta VALUES ('robot', ?)", sealed[:1])
         if kept:
-            db.execute("DELETE FROM meta WHERE key = 'sealed'")  # the count went aside, too
+            db.execute("DELETE FROM meta WHERE key = 'sealed'")  # the seal was set aside too
             notice = f"{notice[:-1]} with the {kept} events that could be read."
         self.notices.append(plain(notice))
 
     def _set_aside(self) -> Path:
-        """Rename a damaged log, its tail first: SQLite would replay a tail into a new log."""
+        """Rename a damaged log, its -wal first: SQLite would replay that into a new log."""
         aside = self._unused("damaged")
         for end in ("-wal", "-shm", ""):
             with suppress(FileNotFoundError):
                 (self.folder / (FILE + end)).rename(self.folder / (aside.name + end))
-        with suppress(OSError):  # its count does not hold for the new log
+        with suppress(OSError):  # its count does not apply to the new log
             (self.folder / seal.FILE).rename(self.folder / aside.name.replace(FILE, seal.FILE, 1))
         return aside
 
     def _migrate(self, db: sqlite3.Connection) -> None:
-        """Bring the log to this version, all steps or none, after copying it as it was.
+        """Migrate the log to the current version, in one transaction, after copying it.
 
-        The copy stays, so nobody is named in it: anyone who goes back to it has every event, and
-        gives the people their names again.
+        The copy stays, so it has no names: anyone who goes back to it has every event, and names
+        the people again.
         """
         old, new = self._version(db), len(MIGRATIONS)
         if old == new:
@@ -292,14 +292,14 @@ class LogFile:
             db.executescript(f"BEGIN IMMEDIATE; {steps} PRAGMA user_version = {new}; COMMIT;")
         except sqlite3.Error as error:
             db.rollback()
-            copy.unlink(missing_ok=True)  # of a log that is still as it was
+            copy.unlink(missing_ok=True)  # the log is unchanged, so it is not needed
             problem = f"is unchanged: it cannot be brought from version {old} to {new}"
             raise self.wrong(f"{problem} ({error})") from None
 
     def _copy(self, db: sqlite3.Connection, copy: Path) -> None:
-        """Copy the log without the names in it; before that is done, it is not called a copy."""
+        """Copy the log without names; the copy gets its final name only when complete."""
         begun = self.folder / f"{FILE}.copying"
-        begun.unlink(missing_ok=True)  # of one that was cut off, maybe with names
+        begun.unlink(missing_ok=True)  # of an interrupted copy, perhaps with names
         begun.touch(0o600)
         try:
             with closing(sqlite3.connect(begun, isolation_level=None)) as target:
@@ -314,7 +314,7 @@ class LogFile:
             begun.unlink(missing_ok=True)
 
     def _version(self, db: sqlite3.Connection) -> int:
-        """Return the version of the log, if it is one that can be used."""
+        """Return the version of the log, if it is supported."""
         version: int = db.execute("PRAGMA user_version").fetchone()[0]
         known = len(MIGRATIONS)
         if version > known:
@@ -323,16 +323,17 @@ class LogFile:
         return version
 
     def _unused(self, what: str) -> Path:
-        """Name a file beside the log that does not exist yet, after the time."""
+        """Return the path of a new file beside the log, with a timestamp."""
         at = self._now().astimezone(UTC).strftime("%Y%m%dT%H%M%SZ")
         paths = (self.folder / f"{FILE}.{what}-{at}{f'.{n}' if n else ''}" for n in count())
         return next(path for path in paths if not path.exists())
 
 
 def hold(path: Path) -> tuple[FileIO, str]:
-    """Become the folder's only writer; return the lock file and the last writer's text in it.
+    """Lock the folder for writing; return the lock file and the text of the last writer in it.
 
-    The kernel drops the lock with the process. Removing the file would race with the next one.
+    The kernel releases the lock when the process ends. Removing the file would race with the next
+    writer.
     """
     file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT, 0o600), "r+")
     left = file.read(200).decode(errors="replace")
@@ -350,7 +351,7 @@ def hold(path: Path) -> tuple[FileIO, str]:
 
 
 def is_read_only(folder: Path) -> bool:
-    """Say whether a folder lies on a disk that nobody can write to."""
+    """Return whether a folder is on a read-only file system."""
     return bool(os.statvfs(folder).f_flag & os.ST_RDONLY)
 
 

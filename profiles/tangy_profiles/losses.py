@@ -1,7 +1,8 @@
 """Events missing from a log: detected when it is opened, and reported until accepted.
 
-The newest are missed by the count beside the log (`seal`), others after damage (`salvage`). What is
-noticed becomes an event, so that it is reported at each opening until staff accept it.
+The count beside the log (`seal`) reveals that the newest are missing, salvage after damage
+(`salvage`) the others. A detected loss is logged as an event, and reported whenever the log is
+opened until staff accept it.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ SEALED = "INSERT OR IGNORE INTO meta VALUES ('sealed', '1')"
 
 
 def newest(rows: Rows) -> int:
-    """Return the number of the newest event; 0 if there is none."""
+    """Return the seq of the newest event; 0 if there is none."""
     found = rows("SELECT coalesce(max(seq), 0) FROM event")
     return int(found[0][0]) if found else 0
 
@@ -28,12 +29,12 @@ def newest(rows: Rows) -> int:
 def unnoticed(
     rows: Rows, sealed: tuple[str, int] | None, noted: Sequence[EventsLost]
 ) -> list[EventsLost]:
-    """Return which newest events are missed by the count, if that is not noted yet.
+    """Return a loss of the newest events, according to the count, that was not logged yet.
 
     Args:
         rows: queries the log.
-        sealed: whose log the count is of, and its newest event; None if it cannot be read.
-        noted: the losses that are.
+        sealed: the robot and newest seq of the count; None if it cannot be read.
+        noted: the losses that were logged.
     """
     meta = dict(rows("SELECT key, value FROM meta WHERE key IN ('robot', 'sealed')"))
     last = newest(rows)
@@ -41,13 +42,13 @@ def unnoticed(
         missed = "sealed" in meta and last and not any(loss.unknown for loss in noted)
         return [EventsLost(first=last + 1, last=last)] if missed else []
     if meta.get("robot", sealed[0]) != sealed[0] or last >= sealed[1]:
-        return []  # it is the count of another log, or nothing is gone
+        return []  # the count of another log, or no loss
     loss = EventsLost(first=last + 1, last=sealed[1])
     return [] if loss in noted else [loss]
 
 
 def count_mismatches(rows: Rows, losses: Iterable[EventsLost]) -> Iterator[str]:
-    """Yield a sentence for each count of the log that does not fit the others."""
+    """Yield a sentence for each inconsistent count of the log."""
     for events, last, different, answers, indexed, guards in rows(COUNTS):
         if not events == different == last - _missing(rows, losses):
             yield f"tangy.db: {last} events were logged, {events} stand, {different} different."
@@ -58,7 +59,7 @@ def count_mismatches(rows: Rows, losses: Iterable[EventsLost]) -> Iterator[str]:
 
 
 def _missing(rows: Rows, losses: Iterable[EventsLost]) -> int:
-    """Count the events whose loss was noticed, and whose numbers no others have."""
+    """Count the events whose loss was logged and whose numbers were not reused."""
     sql = "SELECT count(*) FROM event WHERE seq BETWEEN ? AND ?"
     until = newest(rows)
     ranges = ((loss.first, min(loss.last, until)) for loss in losses)
@@ -67,7 +68,7 @@ def _missing(rows: Rows, losses: Iterable[EventsLost]) -> int:
 
 
 def loss_words(loss: EventsLost) -> str:
-    """Say in a sentence which events are gone."""
+    """Describe in a sentence which events are gone."""
     first, last = loss.first, loss.last
     if loss.unknown and loss.damaged:
         return "tangy.db: the log was damaged: nobody can tell how many events are gone."

@@ -1,7 +1,7 @@
-"""A game that was interrupted: what the log has of it, so that it can go on.
+"""An interrupted game, as read from the log, so that it can be continued.
 
-The log keeps every behaviour with the state after it. From the seed, these behaviours and those of
-the games before it in the same run, a world comes to where the game was.
+The log has every behaviour with the state after it. From the seed, these behaviours and those of
+the earlier games in the same run, a world can restore the state.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from tangy_profiles.tracker import Tracker
 
 
 class NotResumable(TangyError):
-    """A game cannot go on where it was interrupted; says why."""
+    """An interrupted game cannot be continued; the message says why."""
 
     def __init__(self, why: str) -> None:
         super().__init__(f"{CANNOT_GO_ON}: {why}.")
@@ -42,7 +42,7 @@ OTHERWISE = "its steps do not come out as they did"
 
 
 class Replayed(Protocol):
-    """A simulated world, in which the same actions lead to the same states."""
+    """A deterministic simulated world."""
 
     activity: Activity
     people: tuple[str, ...]
@@ -52,7 +52,7 @@ class Replayed(Protocol):
         ...
 
     def observe(self) -> ActivityState:
-        """Return the state now."""
+        """Return the current state."""
         ...
 
     def execute(self, action: Action) -> Outcome:
@@ -60,11 +60,11 @@ class Replayed(Protocol):
         ...
 
     def choose(self, plan: GamePlan) -> None:
-        """Play the next game by a plan."""
+        """Set the plan of the next game."""
         ...
 
     def change(self, change: GameChange) -> None:
-        """Let something change in the game."""
+        """Apply a change of the game."""
         ...
 
 
@@ -77,25 +77,25 @@ class PastGame:
     """When its last event was logged (UTC)."""
     steps: tuple[GameStep, ...] = ()
     earlier: tuple[tuple[GameStep, ...], ...] = ()
-    """The games before it in the same run, the first one first."""
+    """The earlier games in the same run, oldest first."""
     taken_back: tuple[int, ...] = ()
-    """The numbers that staff took back, in the order in which they did."""
+    """The numbers that staff took back, in order."""
     run: tuple[GameBeginning, ...] = ()
-    """How the earlier games began."""
+    """The beginnings of the earlier games."""
     changes: tuple[GameChange, ...] = ()
-    """Changes in this game and the earlier ones beside their steps."""
+    """Changes in this game and the earlier ones, besides their steps."""
 
     acted: float = 0.0
-    """The time that was played when staff last did something that the log has, in s."""
+    """The time played at staff's last logged action, in s."""
 
     @property
     def world(self) -> GameWorld:
-        """Where it was played."""
+        """The world in which it was played."""
         return self.beginning.world or SIMULATED
 
     @property
     def clock(self) -> tuple[float, ...]:
-        """The time that was played when each step was over, in s: of old logs their sum."""
+        """The time played at the end of each step, in s; in old logs the sum of their durations."""
         times, played = list[float](), 0.0
         for step in self.steps:
             played = played + (step.seconds or 0.0) if step.clock is None else step.clock
@@ -104,15 +104,15 @@ class PastGame:
 
     @property
     def seconds(self) -> float:
-        """The time that was played until the last step was over or staff last acted, in s."""
+        """The time played until the last step or action of staff, in s."""
         return max(self.acted, self.clock[-1] if self.steps else 0.0)
 
     def replay(self, world: Replayed) -> ActivityState:
         """Replay the logged games of the run; return the last state.
 
         Raises:
-            NotResumable: they do not come out as they did: other people take part, faults were
-                brought about, or the simulator has changed since.
+            NotResumable: the states differ: other people take part, faults were injected, or the
+                simulator has changed since.
         """
         if self.beginning.people != world.people:
             raise NotResumable(OTHER_PEOPLE)
@@ -133,18 +133,18 @@ class PastGame:
 
     @property
     def since_step(self) -> list[GameChange]:
-        """The changes after the last step, in their order."""
+        """The changes after the last step, in order."""
         last = self.beginning.game, len(self.steps)
         return [one for one in self.changes if (one.game, one.steps) == last]
 
     def _change(self, change: Callable[[GameChange], object], game: str, steps: int) -> None:
-        """Let change what did in a game after so many steps."""
+        """Apply the logged changes of a game after this many steps."""
         for one in self.changes:
             if (one.game, one.steps) == (game, steps):
                 change(one)
 
     def follow(self, tracker: Tracker, change: Callable[[GameChange], object]) -> None:
-        """Bring the tracker of a game that has just begun to where the game was.
+        """Bring the tracker of a new game to the state of this game.
 
         Raises:
             NotResumable: the log does not lead there.
@@ -158,7 +158,7 @@ class PastGame:
             self._change(change, self.beginning.game, number)
 
     def visited(self, activity: Activity) -> dict[str, int]:
-        """Return after how many calls each person was visited last; see `PlannedGame`."""
+        """Return the number of calls before each person's last visit; see `PlannedGame`."""
         draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
         visited, calls = dict[str, int](), 0
         mine = [one for one in self.changes if one.game == self.beginning.game]
@@ -176,7 +176,7 @@ class PastGame:
         return visited
 
     def since_call(self, activity: Activity) -> float:
-        """Return how long the steps after the last call took, in s."""
+        """Return the duration of the steps after the last call, in s."""
         draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
         seconds = 0.0
         for step in reversed(self.steps):
@@ -186,18 +186,18 @@ class PastGame:
         return seconds
 
     def called(self, activity: Activity) -> list[int]:
-        """Return the numbers that were called and count, in their order."""
+        """Return the called numbers that count, in order."""
         draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
         called = [n for step in self.steps if step.behaviour in draws for n in step.numbers]
-        for number in self.taken_back:  # one that came again later stands there again
+        for number in self.taken_back:  # a number that was called again stays
             if number in called:
                 called.remove(number)
         return called
 
     def order(self, shuffled: Sequence[int], called: Sequence[int]) -> list[int]:
-        """Return the order of all numbers from that of the game's beginning.
+        """Return the calling order of all numbers, given the shuffled order.
 
-        Those that were called come first, those that were taken back last.
+        Called numbers come first, numbers that were taken back last.
         """
         last = [number for number in dict.fromkeys(self.taken_back) if number not in called]
         rest = [number for number in shuffled if number not in {*called, *last}]
@@ -205,10 +205,10 @@ class PastGame:
 
 
 def interrupted_game(store: Store, activity: str) -> PastGame | None:
-    """Return the newest game of an activity, if it has no end in the log and was begun by a step.
+    """Return the newest game of an activity, if it has a step but no ending in the log.
 
-    Later games of other activities do not matter; an older interrupted game does not count any
-    more once another game of the activity was begun after it.
+    Later games of other activities do not matter. An older interrupted game no longer counts once a
+    newer game of the activity was begun.
     """
     games: list[Event[GameBeginning]] = [
         event for event in store.events(GameBeginning) if event.record.activity == activity
@@ -248,7 +248,7 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
 
 
 def _run(games: list[Event[GameBeginning]]) -> list[Event[GameBeginning]]:
-    """Return the newest game with those before it that were begun in the same run."""
+    """Return the newest game with the games before it in the same run."""
     run = [games[-1]]
     for event in reversed(games[:-1]):
         first, before = run[0].record, event.record

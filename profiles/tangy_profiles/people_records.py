@@ -1,4 +1,4 @@
-"""The events about the people of the group, teachers and their microphones, and the log itself."""
+"""The events about people, teachers, their microphones, and the log itself."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from tangy_profiles.records import EventRecord, kind
 
 @kind("events lost")
 class EventsLost(EventRecord):
-    """Events were gone when the log was opened: the first and the last of them.
+    """Events were missing when the log was opened: the first and the last one.
 
-    Where the last comes before the first, nobody can tell whether later ones were kept.
+    If `last` is before `first`, it is unknown whether later ones existed.
     """
 
     first: Count
@@ -23,44 +23,44 @@ class EventsLost(EventRecord):
 
     @property
     def unknown(self) -> bool:
-        """Whether nobody can tell how many are gone, or whether any are."""
+        """Whether it is unknown how many events are missing, if any."""
         return self.last < self.first
 
 
 @kind("loss accepted")
 class LossAccepted(EventRecord):
-    """Staff have seen which events are gone, and need not be told again."""
+    """Staff accepted the losses, which are not reported again."""
 
 
 @kind("renamed", about="person")
 class Renamed(EventRecord):
-    """A person has another name, which the log does not hold."""
+    """A person got another name, which the log does not hold."""
 
 
 @kind("person added", about="person")
 class PersonAdded(EventRecord):
-    """A person takes part from now on; a guest only in the session of that day."""
+    """A person takes part from now on; a guest only on that day."""
 
     guest: Sparse[bool] = False
 
 
 @kind("person archived", about="person")
 class PersonArchived(EventRecord):
-    """A person is archived (`on`), or brought back; their data stays."""
+    """A person was archived (`on`), or restored; their data stays."""
 
     on: bool = True
 
 
 @kind("forgotten", about="person")
 class PersonForgotten(EventRecord):
-    """A person's name was forgotten; it was erased from so many events."""
+    """A person's name was forgotten; it was erased from this many events."""
 
     texts: Sparse[Any] = 0
 
 
 @kind("speech noted", about="person")
 class SpeechNoted(EventRecord):
-    """How to speak of or to a person was noted: what of it, but not how."""
+    """A voice or pronunciation setting of a person changed; the value is not logged."""
 
     what: Sparse[Any] = ""
 
@@ -76,14 +76,14 @@ class ResponseGiven(EventRecord):
 
 @kind("response awaited", about="strategy")
 class ResponseAwaited(EventRecord):
-    """A request was put to a person, and it is not known yet what they did."""
+    """A request was made, and the person's response is not known yet."""
 
     game: str | None = None
 
 
 @kind("feedback", about="strategy")
 class FeedbackGiven(EventRecord):
-    """Staff said what a person did: `of` the request with this uuid, or in no game."""
+    """Staff reported a response: to the request `of` (uuid), or outside any game."""
 
     of: str | None = None
     game: str | None = None
@@ -92,7 +92,7 @@ class FeedbackGiven(EventRecord):
 
 @kind("void", about="strategy")
 class ResponseVoided(EventRecord):
-    """The event `of` (by uuid), of this person and strategy, counts no more."""
+    """The response `of` (uuid), of this person and strategy, no longer counts."""
 
     of: str
     why: str = ""
@@ -100,7 +100,7 @@ class ResponseVoided(EventRecord):
 
 @kind("taken back", about="person")
 class ChangeTakenBack(EventRecord):
-    """The event `of` (by uuid), of this person, does not hold; a void counts again."""
+    """The event `of` (uuid), of this person, was undone; an undone void counts again."""
 
     of: str
     what: str = ""
@@ -122,7 +122,7 @@ class MethodChosen(EventRecord):
 
 @kind("consent to face", about="person")
 class FaceConsent(EventRecord):
-    """A person agreed that features of their face are kept, or did not, and how they said so."""
+    """A person agreed or refused to have face features stored, and how they said so."""
 
     yes: bool
     how: str = ""
@@ -135,7 +135,7 @@ class FaceForgotten(EventRecord):
 
 @kind("consent to recordings")
 class RecordingConsent(EventRecord):
-    """A teacher agreed to be recorded, or did not."""
+    """A teacher agreed or refused to be recorded."""
 
     who: str
     yes: bool
@@ -143,12 +143,12 @@ class RecordingConsent(EventRecord):
 
 @kind("recordings forgotten")
 class RecordingsForgotten(EventRecord):
-    """All recordings were deleted, and all consent taken back."""
+    """All recordings were deleted, and all consent withdrawn."""
 
 
 @kind("microphone checked")
 class MicrophoneChecked(EventRecord):
-    """The result of a microphone check; odd settings count as none."""
+    """The result of a microphone check; invalid settings count as none."""
 
     source: str
     settings: Any = None
@@ -157,6 +157,6 @@ class MicrophoneChecked(EventRecord):
 
 @kind("microphone check forgotten")
 class MicrophoneForgotten(EventRecord):
-    """A microphone is listened with as usual again."""
+    """The settings of a microphone were reset to the defaults."""
 
     source: str

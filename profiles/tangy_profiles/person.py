@@ -1,4 +1,4 @@
-"""The people who take part: an id that never changes, and what may: a name, how it is said."""
+"""The people who take part: a permanent id, and a name and pronunciation that may change."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from tangy_profiles.voice import VoicePreference
 MOST_PEOPLE = 24
 LONGEST_NAME = 40  # characters
 GUEST = "guest"
-"""Begins the ids of guests, who take part on one day; a number follows."""
+"""Prefix of the ids of guests, who take part on one day; a number follows."""
 AS_EVERYBODY = VoicePreference()
 
 
 def is_guest(id: str) -> bool:
-    """Say whether an id is that of a guest."""
+    """Return whether an id is that of a guest."""
     return id.startswith(GUEST) and id.removeprefix(GUEST).isdigit()
 
 
 def folded(name: str) -> str:
-    """Return a name as names are compared: by small letters, an accent however it is written."""
+    """Normalise a name for comparison: case and accent encoding."""
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name.strip()).casefold())
 
 
 def unaccented(name: str) -> str:
-    """Return a name as people type it who have no accents on their keyboard, in small letters."""
+    """Return a name in lower case without accents, as people may type it."""
     apart = unicodedata.normalize("NFKD", folded(name))
     return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
 def read_name(name: str, of: str = "A name") -> str:
-    """Return a name that may be kept, without spaces around it; `of` says whose it is.
+    """Return a valid name, stripped; `of` is the subject of the error sentence.
 
     Raises:
         TangyError: it is empty, longer than 40 characters, or not all printable.
@@ -55,11 +55,11 @@ def read_name(name: str, of: str = "A name") -> str:
 
 @dataclass(frozen=True)
 class Person:
-    """One participant. The log knows only the id; the rest is kept apart and can be forgotten.
+    """One participant. The log has only the id; the rest is stored apart and can be forgotten.
 
-    `pronunciation` is that of the name, in ARPAbet, a comma between words; None: as the name is
-    mostly said. `voice` is how the person likes to be spoken to. `seats` are the ways to call the
-    seat, as the room has them ("seat 2", "window seat").
+    `pronunciation` is that of the name in ARPAbet, with commas between words; None: the usual one.
+    `voice` is how the person likes to be spoken to. `seats` are the names of the seat in the room
+    ("seat 2", "window seat").
     """
 
     id: str
@@ -70,7 +70,7 @@ class Person:
 
 
 def load_people(count: int, path: Path | None = None) -> tuple[Person, ...]:
-    """Load the first `count` sample people; beyond the listed ones they are numbered on.
+    """Load the first `count` sample people; beyond the listed ones they are numbered.
 
     Raises:
         ProfileError: the count is not from 1 to 24, or the file has a mistake.

@@ -17,22 +17,22 @@ METHODS: tuple[MethodName, ...] = get_args(MethodName)
 
 
 def known_methods() -> tuple[str, ...]:
-    """Return the names of our methods, and of those that other packages add."""
+    """Return the names of the built-in methods, and of those of other packages."""
     return tuple(dict.fromkeys((*METHODS, *extensions("methods"))))
 
 
 def is_method(name: str) -> bool:
-    """Say whether there is a method of that name, ours or of another package."""
+    """Return whether there is a method of that name."""
     return name in METHODS or name in extensions("methods")
 
 
 PRIORS = ("uniform", "people")
 PERIODS = ("interaction", "day")
 DEFAULT = "default"
-"""The word for the activity's own choice."""
+"""The word for the activity's own method."""
 
 LEAST_KEPT = 0.5
-"""What keeps less than half of itself each time learns nothing."""
+"""The lowest share to keep; below a half nothing would be learnt."""
 
 
 def _method(name: str) -> str:
@@ -47,11 +47,11 @@ def _share(value: float) -> float:
 
 @dataclass(frozen=True)
 class PersuasionConfig:
-    """A choice of method; the default is the paper's, exactly.
+    """A choice of method; the defaults are the paper's.
 
-    `method` chooses among the beliefs, `prior` is where they begin ("people": from what worked
-    with earlier people), and `forgetting` is the share of what was learnt that is kept from one
-    interaction, or from one day, to the next (1: everything).
+    `method` chooses by the beliefs, `prior` is their start ("people": fitted to earlier people),
+    and `forgetting` is the share of the evidence that is kept from one interaction, or one day, to
+    the next (1: everything).
     """
 
     method: Annotated[str, _method] = "thompson"
@@ -67,11 +67,11 @@ def read_persuading(table: Table) -> PersuasionConfig:
     """Read an activity's [persuasion]; the defaults are the paper's.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
+        ProfileError: one line with file, key, value and the nearest valid word.
     """
     method = table.text("method", PAPER.method)
     if not is_method(method):
-        table.choice("method", known_methods())  # refuses it
+        table.choice("method", known_methods())  # raises the error
     chosen = PersuasionConfig(
         method,
         table.choice("prior", PRIORS, PAPER.prior),
@@ -83,10 +83,10 @@ def read_persuading(table: Table) -> PersuasionConfig:
 
 
 def spoken_persuading(words: Iterable[str]) -> PersuasionConfig:
-    """Read a choice from words in any order: "bayes-ucb people 0.98 day".
+    """Parse a choice from words in any order: "bayes-ucb people 0.98 day".
 
     Raises:
-        ProfileError: a word is none of these, or says again what another has said.
+        ProfileError: a word is unknown, or repeats a setting.
     """
     chosen, said = PAPER, set[str]()
     for word in words:
@@ -103,7 +103,7 @@ def spoken_persuading(words: Iterable[str]) -> PersuasionConfig:
 
 
 def _meant(word: str) -> tuple[str, Any]:
-    """Return the key that a word is for, and its value."""
+    """Return the setting that a word is for, and its value."""
     for key, known in (("method", known_methods()), ("prior", PRIORS), ("forgetting_per", PERIODS)):
         if word.casefold() in known:
             return key, word.casefold()

@@ -1,4 +1,4 @@
-"""How a word is pronounced, written in the 39 phones of ARPAbet: `B IH NG G OW`."""
+"""Pronunciations, written in the 39 phones of ARPAbet: `B IH NG G OW`."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ MEANT = {
     **{"OI": "OY", "UR": "ER", "AR": "AA R", "OR": "AO R", "UU": "UW", "II": "IY", "EW": "Y UW"},
     **{"AXR": "ER", "UX": "UW", "DX": "D", "C": "K", "H": "HH", "J": "JH", "Q": "K", "X": "K S"},
 }
-"""The most likely phones for letters and phones that are none of the 39."""
+"""The most likely phones for letters and phones outside the 39."""
 
 
 def read_phones(text: str) -> str:
-    """Return a word's phones in capitals with one space between them, stress marks dropped.
+    """Return a word's phones in capitals, separated by single spaces, without stress marks.
 
     Raises:
-        ProfileError: there are none, or more than 40, or one is no phone; it is named, with the
-            nearest one that is.
+        ProfileError: there are none, or more than 40, or one is invalid; the message names it and
+            the nearest valid one.
     """
     phones = [re.sub("[0-2]$", "", phone) for phone in text.upper().split()]
     for phone in phones:
@@ -56,7 +56,7 @@ def read_pronunciations(table: Table) -> dict[str, tuple[str, ...]]:
     """Read a table of words, each with its pronunciation or a list of them.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid phone.
+        ProfileError: one line with file, key, value and the nearest valid phone.
     """
     found: dict[str, tuple[str, ...]] = {}
     for word in table:

@@ -1,4 +1,4 @@
-"""Text of unknown origin, made fit to be shown: nothing in it steers a terminal or hides."""
+"""Text of unknown origin, made safe to display in a terminal."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ _UNPRINTABLE = re.compile(
 
 
 def plain(text: str) -> str:
-    """Replace what would act on a terminal instead of being read on it (controls, bidi marks).
+    """Replace control characters, bidirectional marks and other invisible characters.
 
-    Bytes that were no text come from the command line as lone surrogates, which no file and no
-    terminal takes: they are replaced as well.
+    Lone surrogates, which represent invalid bytes of the command line, are replaced too, because
+    they cannot be encoded.
     """
     return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)

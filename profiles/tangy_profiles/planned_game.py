@@ -1,7 +1,7 @@
-"""Changes by staff in a game beside its behaviours: pattern, calls, claims, who is here.
+"""Changes by staff in a game besides its behaviours: pattern, calls, claims, attendance.
 
-Both worlds have this part in common. Each change is a `GameChange`, so that the log has it, and a
-game that was interrupted comes to where it was.
+Both worlds share this part. Each change is logged as a `GameChange`, so that an interrupted game
+can be restored.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Due:
-    """A change that is due, for whom, and how many calls it is about."""
+    """A change that is due, its person, and its number of calls."""
 
     what: ChangeKind
     person: str = ""
@@ -30,37 +30,37 @@ class Due:
 
 
 class PlannedGame:
-    """A world's game by the plan that staff made; `choose` one before it begins."""
+    """A world's game with staff's plan; call `choose` before it begins."""
 
     activity: Activity
     """The activity, with the deck of the current pattern."""
     own_deck: Deck
-    """The deck as the activity has it."""
+    """The activity's own deck."""
     people: tuple[str, ...]
     tracker: Tracker
     pace: float
-    """From one call to the next, in s."""
+    """The time between calls, in s."""
     game_plan = GamePlan()
     patterns: Patterns
     winner = ""
-    """Who has won, where others are seen to before the game goes on or ends."""
+    """The winner, while others are visited before the game continues or ends."""
     vouched: frozenset[str] = frozenset()
-    """Whose card wins, whatever is seen of it."""
+    """The people whose cards win, whatever is observed."""
     away: frozenset[str] = frozenset()
-    """Who has left, or has not come yet."""
+    """The people who have left, or have not come yet."""
     all_called = False
-    """Whether no number is left: each person gets a visit before the game is over."""
+    """Whether no number is left: each person gets a visit before the game ends."""
     visiting = ""
-    """Who gets a visit without having asked, "" if nobody does."""
+    """The person who gets a visit without a request; "" for none."""
     _visited: dict[str, int]
     _row_began: float
     """When the visits since the last call began, in s of `seconds`."""
 
     def choose(self, plan: GamePlan) -> None:
-        """Play the next game by a plan.
+        """Set the plan of the next game.
 
         Raises:
-            TangyError: it names a pattern that the activity has not.
+            TangyError: it names an unknown pattern.
         """
         Patterns.of(self.activity.rules, self.activity.deck, plan.patterns)
         self.game_plan = plan
@@ -68,7 +68,7 @@ class PlannedGame:
             self.set_pace(plan.pace)
 
     def _begin_plan(self) -> None:
-        """Begin a game by the plan."""
+        """Apply the plan at the beginning of a game."""
         self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
         self.winner, self.visiting, self.all_called = "", "", False
         self.vouched, self.away = frozenset(), frozenset(self.game_plan.absent)
@@ -76,30 +76,30 @@ class PlannedGame:
         self._play_pattern()
 
     def _play_pattern(self) -> None:
-        """Play for the present pattern."""
+        """Use the deck of the current pattern."""
         if self.activity.deck != self.patterns.played:
             self.activity = replace(self.activity, deck=self.patterns.played)
 
     @property
     def plan_away(self) -> frozenset[str]:
-        """Who is not here when the next game begins."""
+        """The people who are absent when the next game begins."""
         return frozenset(self.game_plan.absent)
 
     def set_pace(self, seconds: float) -> None:
-        """Let so many s pass from one call to the next."""
+        """Set the time between calls, in s."""
         self.pace = seconds
         self.game_plan = replace(self.game_plan, pace=seconds)
 
-    # ---------------------------------------------------------------- what a game shows of it
+    # ---------------------------------------------------------------- observation of the game
 
     @property
     def arrived(self) -> bool:
-        """Whether the robot stands at its place in the game; a simulated one always does."""
+        """Whether the robot has arrived at its place; always True in simulation."""
         return True
 
     @property
     def bound_for(self) -> str:
-        """The place that the robot drives to, "" if it stands."""
+        """The place that the robot is driving to; "" if it stands."""
         return ""
 
     @property
@@ -113,15 +113,15 @@ class PlannedGame:
         raise NotImplementedError
 
     def numbers_on(self, card: int) -> tuple[int, ...] | None:
-        """Return the numbers of a card row by row, None if there is no such card."""
+        """Return the numbers of a card row by row; None if there is no such card."""
         raise NotImplementedError
 
     def holder(self, card: int) -> str:
-        """Return who has a card, "" if nobody is known to."""
+        """Return the person who has a card; "" if unknown."""
         raise NotImplementedError
 
     def wins(self, card: int) -> bool | None:
-        """Say whether a card wins by the numbers that were called; None: there is none."""
+        """Return whether a card wins by the called numbers; None if there is no such card."""
         numbers = self.numbers_on(card)
         if numbers is None:
             return None
@@ -129,12 +129,12 @@ class PlannedGame:
         return deck.wins(called_cells(deck, numbers, set(self.called_now)))
 
     def judged(self, place: str, state: str | None) -> str | None:
-        """Return how the person at a place is doing: a claim that was right counts as a win."""
+        """Return the user state at a place; a verified claim counts as a win."""
         return winning_state(self.activity.user_states) if place in self.vouched else state
 
     @property
     def due(self) -> Due | None:
-        """Return the next change before a behaviour, and its person; None if there is none."""
+        """Return the change that is due before the next behaviour, or None."""
         tracker = self.tracker
         if tracker.place in tracker.queue or (tracker.place != FRONT and not self.all_called):
             self._visited[tracker.place] = len(self.called_now)
@@ -166,7 +166,7 @@ class PlannedGame:
 
     @property
     def _unseen(self) -> str:
-        """Whose card was not looked at since the last number, "" for nobody's."""
+        """The first person whose card was not checked since the last number; "" for none."""
         if not self.all_called:
             return ""
         here = (person for person in self.people if person not in self.away)
@@ -175,7 +175,7 @@ class PlannedGame:
     def _visit_due(self) -> Due | None:
         """Return the visit that is due or put off; a visit delays no request.
 
-        When all numbers were called, each person gets one, and then the game is over.
+        When all numbers have been called, each person gets one, and then the game is over.
         """
         queue, place, calls = self.tracker.queue, self.tracker.place, len(self.called_now)
         if self.visiting:
@@ -196,10 +196,10 @@ class PlannedGame:
             return None
         return Due("visit", longest)
 
-    # ---------------------------------------------------------------------- what changes in it
+    # ---------------------------------------------------------------------- changes
 
     def change(self, change: GameChange) -> None:
-        """Let something change in the game."""
+        """Apply a change."""
         person = change.person
         match change.what:
             case "patterns chosen":
@@ -254,33 +254,33 @@ class PlannedGame:
                 self.set_pace(change.seconds)
 
     def _plan_without(self, away: frozenset[str]) -> None:
-        """Plan the next game without absent people."""
+        """Set the people absent from the next game."""
         self.game_plan = replace(self.game_plan, absent=tuple(sorted(away)))
 
     def _wins_by_word(self, person: str) -> None:
-        """Let a person win whatever is seen of their card; the robot goes there to celebrate."""
+        """Let a person win whatever is observed; the robot goes there to celebrate."""
         self.vouched |= {person}
         self.tracker.calls_first = 0
         self._asks(person)
         self.tracker.first(person)
 
     def _asks(self, person: str) -> None:
-        """Let a person ask for help who did not do so."""
+        """Open a request for a person who did not ask."""
         self.tracker.ask(person)
 
     def _asks_no_more(self, person: str) -> None:
-        """Let a person's request be over."""
+        """Remove a person's request."""
         if person in self.tracker.queue:
             self.tracker.queue.remove(person)
 
     def _take_back(self, number: int) -> None:
-        """Let a number count as not called."""
+        """Make a number count as not called."""
         raise NotImplementedError
 
     def announce(self, text: str) -> None:
-        """Say something to the group, where there is something that speaks."""
+        """Announce something to the group, if the world can speak."""
 
 
 def as_planned(world: object) -> PlannedGame | None:
-    """Return a world as staff plan its games, None if it has no cards to plan by."""
+    """Return the world if staff can plan its games, which need cards; else None."""
     return world if isinstance(world, PlannedGame) and world.activity.deck.columns else None

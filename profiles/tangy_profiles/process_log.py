@@ -1,8 +1,8 @@
-"""The log of each process: a line for each decision, with the command it serves.
+"""The log of each process: a line for each decision, with the id of its command.
 
 The program writes `program.log` in the data folder; the robot process, its cameras, the speech
-worker and the device simulator write to the files beside it (see `worker_log`). A command has one
-id from the key to the driver and back: it goes along in the lines between the processes.
+worker and the device simulator write to files beside it (see `worker_log`). A command has one id
+from the key press to the driver and back; messages between processes include it.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ LOGS = {
     "speech.log": "the speech worker",
     "bench.log": "the device simulator (--bench)",
 }
-"""The files of a data folder, and whose they are."""
+"""The log files of a data folder, and their processes."""
 LEVEL = "TANGY_LOG"
-"""The variable that says how much is written: debug, info (if nothing is said), warning, error."""
+"""The environment variable of the log level: debug, info (default), warning, error."""
 NO_COMMAND = "-"
 LONGEST_ID = 32
 
@@ -43,11 +43,11 @@ def command_id() -> str:
 
 @contextmanager
 def serving(command: object = None) -> Iterator[str]:
-    """Carry out a command within this: its id stands in every line that is logged.
+    """Carry out a command in this context: all log lines have its id.
 
     Args:
-        command: its id, as another process has told it; what can be none is taken for none. None:
-            that of the command within which this one is given, or else a new one.
+        command: its id, as received from another process; an invalid one counts as none. None: the
+            id of the current command, or else a new one.
     """
     if isinstance(command, str) and 0 < len(command) <= LONGEST_ID and command.isalnum():
         chosen = command
@@ -63,7 +63,7 @@ def serving(command: object = None) -> Iterator[str]:
 
 
 class _Lines(logging.StreamHandler[TextIO]):
-    """Writes lines to a stream, each with the id of its command; failing to is no matter."""
+    """Writes lines to a stream, each with the id of its command; ignores errors."""
 
     def __init__(self, stream: TextIO) -> None:
         super().__init__(stream)
@@ -75,11 +75,11 @@ class _Lines(logging.StreamHandler[TextIO]):
         return record.name.startswith("tangy_")
 
     def handleError(self, record: logging.LogRecord) -> None:
-        """Go on: nothing stops because its log cannot be written."""
+        """Ignore the error: a log that cannot be written must stop nothing."""
 
 
 class _File(_Lines):
-    """Writes lines to the end of a file, which is opened by the first, and cut when it is long."""
+    """Appends lines to a file, which is opened by the first line, and shortened when too long."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(sys.stderr)
@@ -108,13 +108,13 @@ class _File(_Lines):
 
 
 def log_to_stderr() -> None:
-    """Have this process, a child of ours, write its lines to its standard error."""
+    """Log to standard error, in a child process."""
     _begin(_Lines(sys.stderr))
 
 
 @contextmanager
 def logging_to(folder: Path) -> Iterator[None]:
-    """Have the program write its lines to a data folder within this."""
+    """Log to a data folder within this context."""
     handler = _begin(_File(folder / PROGRAM_LOG))
     try:
         yield

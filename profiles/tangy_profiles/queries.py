@@ -1,4 +1,4 @@
-"""The queries of the log, and how their rows are fetched."""
+"""The SQL queries of the log."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Any
 READ = "SELECT seq, uuid, robot, at, kind, person, strategy, complied, body FROM event"
 ADD = """INSERT INTO event (uuid, robot, at, kind, person, strategy, complied, body)
     VALUES (?, ?, ?, ?, ?, ?, ?, ?)"""
-# The responses that do not hold are few: they are looked up and subtracted, so that the index
-# alone still counts what may be half a million (an `answer` that was materialized would not).
-# One query with the counts, as below.
-# Invalid answers (neither 0 nor 1, without a person) and invalid JSON are left out, as in `rows`.
+# The few responses that were voided are looked up and subtracted, so that the index alone counts up
+# to half a million responses (a materialized `answer` would not). It is one query with the counts,
+# as below. Invalid answers (neither 0 nor 1, without a person) and invalid JSON are skipped, as in
+# `rows`.
 OF = "CASE WHEN json_valid(body) THEN json_extract(body, '$.of') END"
 _RESPONSES = f"""WITH
     back AS (SELECT {OF} AS uuid, person, strategy FROM event
@@ -34,7 +34,7 @@ _RESPONSES = f"""WITH
 _BELONGS = """CASE WHEN json_valid(body) THEN
     coalesce(json_extract(body, '$.game'), json_extract(body, '$.world'), '') ELSE '' END"""
 _LISTED = "(SELECT value FROM json_each(?))"
-# One query, so that what a writer appends meanwhile is in all of the counts or in none.
+# One query, so that concurrent appends are in all of the counts or in none.
 COUNTS = """SELECT count(*), coalesce(max(seq), 0), count(DISTINCT uuid), count(complied),
     (SELECT count(*) FROM event INDEXED BY event_response WHERE complied IS NOT NULL),
     (SELECT count(*) FROM sqlite_master WHERE type = 'trigger') FROM event"""
@@ -43,7 +43,7 @@ LARGEST_SEQ = 2**63 - 1
 
 
 def responses_among(of: Collection[str] | None, but: Collection[str]) -> tuple[str, ...]:
-    """Return the query that counts the responses that hold, and its values.
+    """Return the query that counts valid responses, and its values.
 
     Args:
         of: the games and worlds whose responses count; None: all of them.
@@ -57,7 +57,7 @@ def responses_among(of: Collection[str] | None, but: Collection[str]) -> tuple[s
 
 
 def fetch(db: sqlite3.Connection, sql: str, values: tuple[object, ...]) -> list[Any]:
-    """Return all rows of a query, also where a text in them holds bytes that are no text."""
+    """Return all rows of a query, even if a text has invalid bytes."""
     try:
         return db.execute(sql, values).fetchall()
     except sqlite3.OperationalError as error:

@@ -1,4 +1,4 @@
-"""TOML read key by key: every mistake is told in a line, with file, key, value and nearest word."""
+"""TOML, read key by key: every mistake is one line with file, key, value and nearest word."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from typing import Any
 
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.given_file import lines_of, read_given
-from tangy_profiles.plain_text import plain as plain  # it is taken from here
+from tangy_profiles.plain_text import plain as plain  # re-exported
 from tangy_profiles.toml_lines import KeyPath, line_of
 
-LARGEST_PROFILE = 1_000_000  # bytes; ours have some 20 kB
+LARGEST_PROFILE = 1_000_000  # bytes; the largest of ours is 20 kB
 
 _SHORT = reprlib.Repr()
 _SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxlong, _SHORT.maxother = 2, 100, 40, 40
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
-    """Say which of `words` was probably meant, or list them: the tail of an error sentence."""
+    """Return the tail of an error sentence: the word probably meant, or all valid words."""
     known = sorted(words)
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.5)
-    if close:  # among equals, the same letters in another order are a slip of the fingers
+    if close:  # among equals, prefer transposed letters
         ratios = [difflib.SequenceMatcher(None, one, word).ratio() for one in close]
         equal = [one for one, ratio in zip(close, ratios, strict=True) if ratio == ratios[0]]
         meant = max(equal, key=lambda one: sorted(one) == sorted(word))
@@ -37,14 +37,14 @@ def nearest(word: str, words: Iterable[str]) -> str:
 
 
 def _short(text: str, most: int = 60) -> str:
-    """Cut the middle out of what somebody made too long for one line."""
+    """Shorten a text in the middle to fit one line."""
     if len(text) <= most:
         return text
     return f"{text[: most // 2]}\N{HORIZONTAL ELLIPSIS}{text[-(most // 2) :]}"
 
 
 class Table:
-    """One TOML table. Taking a key checks it; `close` refuses the keys that nobody took."""
+    """One TOML table. Reading a key checks it; `close` rejects keys that were not read."""
 
     def __init__(
         self,
@@ -55,14 +55,14 @@ class Table:
         text: str = "",
         at: KeyPath = (),
     ) -> None:
-        """Take the values of a table.
+        """Wrap the values of a table.
 
         Args:
-            values: by key.
+            values: the values by key.
             file: the name of the file.
-            path: where the table stands in it, as sentences name it.
-            text: of the file, for the lines that mistakes are on.
-            at: where the table stands in the text.
+            path: the path of the table for error sentences.
+            text: the text of the file, to find the lines of mistakes.
+            at: the path of the table in the text.
         """
         self._values = values
         self._file = file
@@ -72,11 +72,11 @@ class Table:
         self._taken: set[str] = set()
 
     def where(self, key: str) -> str:
-        """Name a key as a person finds it: file and dotted path."""
+        """Return the location of a key: file and dotted path."""
         return f"{self._file}: {self._path}{_short(key)}"
 
     def wrong(self, key: str, problem: str) -> ProfileError:
-        """Make the error for a key, with its value and line."""
+        """Return the error for a key, with its value and line."""
         shown = f" = {_short(_SHORT.repr(self._values[key]), 120)}" if key in self._values else ""
         if (line := line_of(self._text, (*self._at, key))) is not None:
             shown += f" (line {line})"
@@ -102,7 +102,7 @@ class Table:
         return value
 
     def _misspelt(self, key: str) -> str:
-        """Name the key that stands where another one is missing, "" if none is like it."""
+        """Return a similar key that was not read, quoted and with its line; "" if there is none."""
         others = [other for other in self._values if other not in self._taken]
         close = difflib.get_close_matches(key, others, n=1)
         if not close:
@@ -111,7 +111,7 @@ class Table:
         return f"{close[0]!r}" + ("" if line is None else f" (line {line})")
 
     def text(self, key: str, default: str | None = None) -> str:
-        """Take a line of text (not empty unless that is the default)."""
+        """Read a line of text (not empty unless that is the default)."""
         value: str = self._take(key, str, "text in quotes", default)
         if not value.strip() and value != default:
             raise self.wrong(key, "must not be empty.")
@@ -120,7 +120,7 @@ class Table:
         return value
 
     def flag(self, key: str, default: bool | None = None) -> bool:
-        """Take true or false."""
+        """Read true or false."""
         value: bool = self._take(key, bool, "true or false", default)
         return value
 
@@ -131,14 +131,14 @@ class Table:
         high: float = math.inf,
         default: float | None = None,
     ) -> float:
-        """Take a finite number within [low, high]."""
+        """Read a finite number within [low, high]."""
         value = self._take(key, (int, float), "a number", default)
-        if not low <= value <= high or value in (math.inf, -math.inf):  # NaN is in no range
+        if not low <= value <= high or value in (math.inf, -math.inf):  # also rejects NaN
             raise self.wrong(key, f"must be a number from {low:g} to {high:g}.")
         return float(value)
 
     def word_or_number(self, key: str) -> str | float | bool:
-        """Take a text, a finite number, or true or false."""
+        """Read a text, a finite number, or true or false."""
         value = self._take(key, (str, int, float, bool), "a text, a number, true or false", None)
         if isinstance(value, str):
             return self.text(key)
@@ -147,14 +147,14 @@ class Table:
         return self.number(key)
 
     def whole(self, key: str, low: int, high: int, default: int | None = None) -> int:
-        """Take a whole number within [low, high]."""
+        """Read a whole number within [low, high]."""
         value: int = self._take(key, int, "a whole number", default)
         if not low <= value <= high:
             raise self.wrong(key, f"must be a whole number from {low} to {high}.")
         return value
 
     def numbers(self, key: str, count: int, low: float, high: float) -> tuple[float, ...]:
-        """Take exactly `count` finite numbers within [low, high]."""
+        """Read exactly `count` finite numbers within [low, high]."""
         values = self._take(key, list, f"a list of {count} numbers", None)
         right = len(values) == count and all(
             isinstance(v, int | float) and not isinstance(v, bool) and low <= v <= high
@@ -165,14 +165,14 @@ class Table:
         return tuple(float(v) for v in values)
 
     def length(self, key: str) -> int:
-        """Return how long the list under a key is, which is still to be taken."""
+        """Return the length of the list under a key, before reading it."""
         values: list[Any] = self._take(key, list, "a list", None)
         return len(values)
 
     def words(
         self, key: str, known: Iterable[str] | None = None, default: tuple[str, ...] | None = None
     ) -> tuple[str, ...]:
-        """Take a list of texts, each one of `known` where that is given."""
+        """Read a list of texts, each one of `known` if that is given."""
         values = self._take(key, list, "a list of texts", default)
         allowed = None if known is None else set(known)
         for value in values:
@@ -183,13 +183,13 @@ class Table:
         return tuple(values)
 
     def texts(self, key: str) -> tuple[str, ...]:
-        """Take one text, or a list of them."""
+        """Read one text, or a list of them."""
         if isinstance(self._values.get(key), str):
             return (self.text(key),)
         return self.words(key)
 
     def choice(self, key: str, known: Iterable[str], default: str | None = None) -> str:
-        """Take one word out of `known`."""
+        """Read one word out of `known`."""
         value = self.text(key, default)
         allowed = set(known)
         if value not in allowed and value != default:
@@ -197,12 +197,12 @@ class Table:
         return value
 
     def table(self, key: str, *, optional: bool = False) -> Table:
-        """Take a table; an absent optional one reads as empty."""
+        """Read a table; a missing optional one reads as empty."""
         value = self._take(key, dict, "a table", {} if optional else None)
         return self._inner(value, f"{_short(key)}.", key)
 
     def tables(self, key: str, *, optional: bool = False) -> Iterator[Table]:
-        """Take an array of tables, in order."""
+        """Read an array of tables, in order."""
         values = self._take(key, list, "a list of tables ([[...]])", [] if optional else None)
         for place, value in enumerate(values, 1):
             if not isinstance(value, dict):
@@ -212,12 +212,12 @@ class Table:
             yield self._inner(value, f"{key}[{label}].", key, place - 1)
 
     def _inner(self, values: Mapping[str, Any], path: str, *at: str | int) -> Table:
-        """Make a table within this one."""
+        """Wrap a table within this one."""
         where = (*self._at, *at)
         return Table(values, self._file, f"{self._path}{path}", text=self._text, at=where)
 
     def items(self) -> Iterator[tuple[str, Table]]:
-        """Take every key as a table of its own, in order."""
+        """Read every key as a table, in order."""
         for key in self._values:
             yield key, self.table(key)
 
@@ -225,13 +225,13 @@ class Table:
         return iter(self._values)
 
     def close(self, also: Iterable[str] = ()) -> None:
-        """Refuse keys that nobody asked for: mostly spelling mistakes.
+        """Reject keys that were not read: mostly spelling mistakes.
 
         Args:
-            also: further keys that could have stood here.
+            also: further valid keys.
 
         Raises:
-            ProfileError: naming the key and the nearest one that would be read.
+            ProfileError: names the key and the nearest valid one.
         """
         for key in self._values:
             if key not in self._taken:
@@ -245,7 +245,7 @@ def read_toml(path: Path) -> Table:
         ProfileError: the file is missing, a folder, unreadable, empty, too large or not TOML.
     """
     name = plain(path.name)
-    if os.path.isdir(path):  # noqa: PTH112 - of a name that cannot be it says no
+    if os.path.isdir(path):  # noqa: PTH112 - False for an invalid name
         raise ProfileError(plain(f"{path}: is a folder; name the TOML file in it."))
     content = read_given(path, LARGEST_PROFILE, ProfileError, called=name)
     try:
@@ -255,7 +255,7 @@ def read_toml(path: Path) -> Table:
         raise ProfileError(f"{name}: is not UTF-8 text.") from None
     except tomllib.TOMLDecodeError as error:
         raise ProfileError(plain(f"{name}: is not TOML: {error}.")) from None
-    except ValueError:  # what Python itself refuses to read as a whole number
+    except ValueError:  # an integer with too many digits
         raise ProfileError(f"{name}: holds a number of thousands of digits.") from None
     except RecursionError:
         raise ProfileError(f"{name}: is nested too deeply.") from None

@@ -1,4 +1,4 @@
-"""A robot as TOML describes it: joints with their limits, postures theta, speed, devices."""
+"""A robot, read from TOML: joints with their limits, postures theta, speed, devices."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ LOOKS_AT = ("cards",)
 
 
 LINK = "link"
-"""The device by which a robot is reached: all that is between the program and its wheels."""
+"""The device that stands for the connection between the program and the robot."""
 
 FROZEN = "frozen"
-"""What the link tells of the robot's own program: for how many s it stood still."""
+"""The fact of the link for how many s the robot's program was frozen."""
 
 PAUSES, LOST = "pauses", "lost"
-"""What the link tells of pauses: how often they come, and the share of time lost to them."""
+"""The facts of the link about pauses: how often they occur, and the share of time lost."""
 
 LINK_STALE_SECONDS = 0.25
 LONGEST_SECONDS = 1e6
@@ -52,9 +52,9 @@ class Limb:
 
 @dataclass(frozen=True)
 class Measure:
-    """A quantity that a device measures: in words of staff, and its values.
+    """A quantity that a device measures: its description for staff, and its values.
 
-    They are words, or a range of numbers, or else yes and no.
+    They are words, a range of numbers, or else true and false.
     """
 
     says: str
@@ -63,7 +63,7 @@ class Measure:
     high: float | None = None
 
     def wrong(self, value: str | float | bool) -> str:
-        """Say why something is no value of this; "" if it is one."""
+        """Return why a value is invalid; "" if it is valid."""
         if self.words:
             return (
                 ""
@@ -79,14 +79,13 @@ class Measure:
 
 @dataclass(frozen=True)
 class DeviceProfile:
-    """A device of the robot: its data is stale after so many s; `facts` are what it measures.
+    """A device of the robot: its data is stale after this many s; `facts` are its measurements.
 
-    Data older than `fault_after` s is a fault; younger data makes the robot wait.
-
-    Of each fact the profile says in words of the staff what it is, and which values it can have.
-    `source` is where the pictures of a camera come from, "" if that is said elsewhere or it is
-    no camera: 0 or /dev/video0, http://..., rtsp://..., or a file or folder, which may be relative
-    to the robot's file. `looks_at` is the subject of the pictures, one of `LOOKS_AT` or "".
+    Data older than `fault_after` s is a fault; younger stale data makes the robot pause. Each fact
+    has a description for staff and its possible values. `source` is the source of a camera's
+    pictures: 0 or /dev/video0, http://..., rtsp://..., or a file or folder, which may be relative
+    to the robot's file; "" if it is given elsewhere or this is no camera. `looks_at` is the subject
+    of the pictures, one of `LOOKS_AT` or "".
     """
 
     name: str
@@ -99,7 +98,7 @@ class DeviceProfile:
 
     @property
     def lost_after(self) -> float:
-        """The age in s from which its data is taken to be lost."""
+        """The age in s from which its data counts as lost."""
         return max(self.stale_after, self.fault_after)
 
 
@@ -113,7 +112,7 @@ class Driver:
 
 @dataclass(frozen=True)
 class FaceModels:
-    """The two ONNX files by which faces are found and told apart, where a facility has them."""
+    """The two ONNX files that detect and recognise faces, if a facility has its own."""
 
     finder: Path
     recogniser: Path
@@ -123,13 +122,12 @@ class FaceModels:
 class Robot:
     """A robot's body: limbs, postures (joint angles in degrees by limb), speed in m/s, devices.
 
-    `faces` are its files for faces; without them it uses what comes with OpenCV. `drivers` drive
-    it when it is there in earnest, by the name of the device. `gaze` says which limb does what
-    (angles in degrees) to look at a `card` and at a `face`. `file` is where all this was read.
-    `expert` is whom the facility has named for what staff cannot mend, and `staff` who is called
-    where it stands still. `liveness` is how late its data may be, `body` how large it is, how it
-    drives, and where its devices sit. `undriven` are the devices of its file that
-    nothing drives.
+    `faces` are its face models; without them it uses those of OpenCV. `drivers` are the drivers of
+    the real robot, by device name. `gaze` is the pose (angles in degrees by limb) to look at a
+    `card` and at a `face`. `file` is the path of the profile. `expert` and `staff` are the contacts
+    for faults that staff cannot fix, and for a halted robot. `liveness` limits late data, and
+    `body` has size, dynamics and mountings. `undriven` are the devices of its file without a
+    driver.
     """
 
     name: str
@@ -149,10 +147,10 @@ class Robot:
     undriven: tuple[DeviceProfile, ...] = ()
 
     def check(self, activity: Activity) -> None:
-        """Check that the body knows every posture of an activity.
+        """Check that the robot has every posture of an activity.
 
         Raises:
-            ProfileError: naming the behaviour and the nearest posture.
+            ProfileError: names the behaviour and the nearest posture.
         """
         for behaviour in activity.behaviours.values():
             if behaviour.posture not in self.postures:
@@ -164,7 +162,7 @@ class Robot:
 
 
 def shipped_robots() -> dict[str, Path]:
-    """Return the files of the robots that ship, by name."""
+    """Return the files of the built-in robots, by name."""
     folder = SHIPPED / "robots"
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
@@ -173,7 +171,7 @@ def load_robot(name: str = USUAL_ROBOT) -> Robot:
     """Load a robot by name, or by the path of its TOML file.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
+        ProfileError: one line with file, key, value and the nearest valid word.
     """
     shipped = shipped_robots()
     if name not in shipped and not name.endswith(".toml"):
@@ -185,10 +183,10 @@ def load_robot(name: str = USUAL_ROBOT) -> Robot:
 
 
 def read_robot(top: Table, path: Path) -> Robot:
-    """Read a robot's profile, to which what it names relatively is relative.
+    """Read a robot's profile; relative paths in it are relative to its file.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
+        ProfileError: one line with file, key, value and the nearest valid word.
     """
     limbs: dict[str, Limb] = {}
     for entry in top.tables("limbs", optional=True):
@@ -237,7 +235,7 @@ def read_robot(top: Table, path: Path) -> Robot:
 
 
 def _face_models(top: Table, folder: Path) -> FaceModels | None:
-    """Read the names of the files for faces, which may be relative to the robot's file."""
+    """Read the paths of the face models, which may be relative to the robot's file."""
     if "faces" not in top:
         return None
     entry = top.table("faces")
@@ -271,7 +269,7 @@ def _devices(top: Table, liveness: Liveness) -> dict[str, DeviceProfile]:
 def _with_link(
     devices: Mapping[str, DeviceProfile], liveness: Liveness
 ) -> dict[str, DeviceProfile]:
-    """Return devices with the link, which every robot has, whether its file tells of it or not."""
+    """Return the devices with the link, which every robot has even if its file omits it."""
     link = devices.get(LINK) or DeviceProfile(
         LINK, "link to the robot", LINK_STALE_SECONDS, {}, fault_after=liveness.fault_after
     )
@@ -288,7 +286,7 @@ def _with_link(
 
 
 def _drivers(top: Table, devices: Mapping[str, DeviceProfile]) -> dict[str, Driver]:
-    """Read what drives the devices; which kinds and settings there are, the drivers know."""
+    """Read the drivers; their kinds and settings are checked by the drivers."""
     drivers: dict[str, Driver] = {}
     table = top.table("drivers", optional=True)
     for name, entry in table.items():
@@ -300,7 +298,7 @@ def _drivers(top: Table, devices: Mapping[str, DeviceProfile]) -> dict[str, Driv
 
 
 def _gaze(top: Table, limbs: Mapping[str, Limb]) -> dict[str, Mapping[str, tuple[float, ...]]]:
-    """Read what limbs do to look at a card and at a face, if the robot has to do anything."""
+    """Read the poses for looking at a card and at a face, if there are any."""
     gaze: dict[str, Mapping[str, tuple[float, ...]]] = {}
     table = top.table("gaze", optional=True)
     for name in GAZES:

@@ -19,13 +19,13 @@ from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import FRONT
 
 ELBOW_ROOM = 0.9
-"""The width at a table that a person needs, in m: closer cards get into one picture."""
+"""The width in m that a person needs at a table; closer cards would share a picture."""
 
 USUAL, HALL = "common-room", "hall"
-"""The rooms that are taken when nobody names one."""
+"""The default rooms."""
 
 SEAT = "seat"
-"""What a seat is called in a room whose file has no word for it."""
+"""The word for a seat in a room whose file has none."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +46,10 @@ class Point:
 
 @dataclass(frozen=True)
 class Room:
-    """A room; `table` is left, near, right, far; `reach` is how far off it cards are read.
+    """A room; `table` is left, near, right, far; `reach` is the reading distance of cards.
 
-    `seat_word` is what a seat is called here, before its number ("seat 2") and after its name
-    ("window seat"); `seat_names` has the name of each seat, "" for one without.
+    `seat_word` is the word for a seat, before its number ("seat 2") and after its name ("window
+    seat"); `seat_names` has the name of each seat, "" for none.
     """
 
     name: str
@@ -63,25 +63,25 @@ class Room:
     seat_word: str = ""
     seat_names: tuple[str, ...] = ()
     tables: tuple[tuple[float, float, float, float], ...] = ()
-    """Each of several tables in a row; `table` is what they take together."""
+    """Each of several tables in a row; `table` is their bounding box."""
     file: Path = Path()
 
     @property
     def source(self) -> str:
-        """What `load_room` loads it by: the name of a shipped room, the path of any other."""
+        """The argument of `load_room`: the name of a built-in room, else the path."""
         return self.file.stem if self.file.parent == _SHIPPED_ROOMS else str(self.file)
 
     @property
     def places(self) -> int:
-        """How many people can sit here."""
+        """The number of people who can sit here."""
         left, _, right, _ = self.table
         at_one = 0 if self.tables else int((right - left) / ELBOW_ROOM + 1e-9)
         return max(len(self.seats), at_one)
 
     def seated(self, count: int) -> tuple[Point, ...]:
-        """Return a seat for each of `count` people: the room's own, or as many spread evenly.
+        """Return a seat for each of `count` people: the room's own, or evenly spaced ones.
 
-        At several tables so many sit at each, from the left, as `at_tables` has it.
+        With several tables, people are distributed from the left as in `at_tables`.
         """
         if count == len(self.seats):
             return self.seats
@@ -96,7 +96,7 @@ class Room:
         return tuple(Point(left + (right - left) * (i + 0.5) / count, y) for i in range(count))
 
     def at_tables(self, count: int) -> tuple[range, ...]:
-        """Return which of `count` people (from 0 on) sit at each table: about as many at each."""
+        """Return which of `count` people (from 0) sit at each table, distributed evenly."""
         if not self.tables:
             return (range(count),)
         free = [len(own) for own in self._seats_at_tables]
@@ -118,9 +118,9 @@ class Room:
         )
 
     def placed(self, people: Sequence[Person]) -> tuple[Person, ...]:
-        """Return the people with the ways to call their seats, which they take in this order.
+        """Return the people with the names of their seats, assigned in this order.
 
-        A seat has its name only while each person sits in one of the room's own seats.
+        A seat has its name only if each person sits in one of the room's own seats.
         """
         own = len(people) == len(self.seat_names)
         return tuple(
@@ -156,10 +156,10 @@ def load_room(name: str = USUAL, own: Mapping[str, Path] | None = None) -> Room:
 
     Args:
         name: the name or path.
-        own: the files of other rooms that have a name.
+        own: the files of the facility's own rooms, by name.
 
     Raises:
-        ProfileError: one line that says file, line, key, value and the nearest valid word.
+        ProfileError: one line with file, line, key, value and the nearest valid word.
     """
     known = {**(own or {}), **shipped_rooms()}
     if name not in known and not name.endswith(".toml"):
@@ -218,7 +218,7 @@ def load_room(name: str = USUAL, own: Mapping[str, Path] | None = None) -> Room:
 
 
 def _tables(top: Table, most: float) -> tuple[tuple[float, float, float, float], ...]:
-    """Take the table of a room, or its tables in a row."""
+    """Read the table of a room, or its tables in a row."""
     if "tables" not in top:
         left, near, right, far = top.numbers("table", 4, 0, most)
         return ((left, near, right, far),)
@@ -233,13 +233,13 @@ def _tables(top: Table, most: float) -> tuple[tuple[float, float, float, float],
 
 
 def room_for(people: int) -> Room:
-    """Return the first of the rooms that come with Tangy in which so many people fit."""
+    """Return the first built-in room that has room for this many people."""
     room = load_room()
     return room if people <= room.places else load_room(HALL)
 
 
 def _words(table: Table, key: str) -> str:
-    """Take lower-case words, as they are spoken; "" if there are none."""
+    """Read lower-case words, as they are spoken; "" if there are none."""
     words = table.text(key, "")
     if words and not re.fullmatch(r"[a-z']+( [a-z']+)*", words):
         raise table.wrong(key, "must be lower-case words, as they are spoken.")

@@ -1,7 +1,7 @@
-"""Reading rows of the log as events: separates rows as Tangy writes them from invalid ones.
+"""Reads rows of the log as events, and detects invalid rows.
 
-What SQLite's check of a file does not see (a changed byte in a text, a row that another program
-wrote) is met here, row by row, so that it costs that row and no other.
+Errors that SQLite's own check misses (a changed byte in a text, a row of another program) are found
+row by row, so that only that row is lost.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from tangy_profiles.events import KINDS, EventRecord, Unknown, read_record
 from tangy_profiles.reading import plain
 
 LARGEST_BODY = 8_000_000
-"""Characters of a body; the largest of a game or a policy have some thousands."""
+"""The most characters of a body; the largest of a game or a policy have some thousands."""
 
 R = TypeVar("R", bound=EventRecord, covariant=True)
 
 
 class Event(NamedTuple, Generic[R]):
-    """One thing that happened, at a UTC time in ISO 8601; `complied` answers `strategy`.
+    """An event, at a UTC time in ISO 8601; `complied` is the response to `strategy`.
 
-    `record` is what the program reads of it, and `body` the JSON that it was read from.
+    `record` is the typed content, and `body` the JSON that it was read from.
     """
 
     seq: int
@@ -41,10 +41,9 @@ class Event(NamedTuple, Generic[R]):
 
 
 class BadRow(Exception):
-    """A row that is not as Tangy writes it; the text says why.
+    """An invalid row; the text says why.
 
-    `event` is the event with an empty body where all but the body can be read, and None if
-    the row says nothing that can be relied on.
+    `event` is the event with an empty body if only the body is invalid, else None.
     """
 
     def __init__(self, why: str, event: Event[EventRecord] | None = None) -> None:
@@ -56,7 +55,7 @@ def read_row(row: Sequence[Any]) -> Event[EventRecord]:
     """Return the event of a row: seq, uuid, robot, at, kind, person, strategy, complied, body.
 
     Raises:
-        BadRow: it is not as Tangy writes it.
+        BadRow: it is invalid.
     """
     _, uuid, robot, at, kind, person, strategy, complied, text = row
     words = (uuid, robot, at, kind, text)
@@ -87,36 +86,36 @@ def read_row(row: Sequence[Any]) -> Event[EventRecord]:
 
 @cache
 def _empty(kind: str) -> EventRecord:
-    """Return the record of an event of which only the row is known."""
+    """Return an empty record for an event whose body is invalid."""
     try:
         return KINDS.get(kind, Unknown)()
-    except TypeError:  # it has fields that must be there
+    except TypeError:  # it has required fields
         return Unknown()
 
 
 def left_out(seq: int, kind: object, why: str, rest: str = "") -> str:
-    """Say in a sentence which row is left out (but for the `rest`), and why."""
+    """Return a sentence that says which row is left out (except the `rest`), and why."""
     return wrong_row(seq, kind, f" is damaged and left out{rest}: {why}")
 
 
 def wrong_row(seq: int, kind: object, wrong: str) -> str:
-    """Say in a sentence of which row something is wrong; `wrong` follows its number and kind."""
+    """Return a sentence about an invalid row; `wrong` follows its number and kind."""
     of = f" ({kind[:40]})" if isinstance(kind, str) else ""
     said = f"tangy.db: event {seq}{of}{wrong}."
     return plain(said.encode(errors="replace").decode())
 
 
 def are_text(*words: object) -> bool:
-    """Say whether all of these are texts that can be shown."""
+    """Return whether all of these are printable texts."""
     return all(isinstance(word, str) and word.isprintable() for word in words)
 
 
 def _read_body(text: str) -> tuple[dict[str, Any], str]:
-    if len(text) > LARGEST_BODY:  # before it takes the memory of many times that
+    if len(text) > LARGEST_BODY:  # before parsing, which takes much more memory
         return {}, "its body is too long"
     try:
         body = _from_json(text)
-        if "\\u" in text:  # half of a character can be written so
+        if "\\u" in text:  # it may be a lone surrogate
             json.dumps(body, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
         return {}, "its body is not JSON"

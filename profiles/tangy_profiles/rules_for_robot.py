@@ -1,4 +1,4 @@
-"""Fault rules as they are for one robot, which need not have every device that they name."""
+"""Fault rules adapted to a robot that lacks some of their devices."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from tangy_profiles.health import OK
 
 
 def for_devices(rules: Sequence[FaultRule], devices: Container[str]) -> tuple[FaultRule, ...]:
-    """Return the rules that can be met by a robot with these devices, in their order.
+    """Return the rules that can match for a robot with these devices, in order.
 
-    What a device reports that is not there never holds, and no rule explains it. One condition
-    holds: that the device is not OK. So a robot without a voice is mute as soon as its screen
-    fails. A rule is left out if nothing of it is left, or if an earlier one now explains it.
+    A condition on a missing device never holds, except that its state is not OK, which always
+    holds. So a robot without a voice is mute as soon as its screen fails. A rule is left out if no
+    condition is left, or if an earlier one now always matches first.
 
     Args:
-        rules: in the order of their file; the last one is for what no other explains.
-        devices: the names of the devices that the robot has.
+        rules: in the order of their file; the last one is the fallback.
+        devices: the names of the robot's devices.
     """
     found: list[FaultRule] = []
     for rule in rules:
@@ -45,7 +45,7 @@ def _rule(
 
 
 def _left(conditions: Sequence[Condition], devices: Container[str]) -> tuple[Condition, ...]:
-    """Return the conditions that remain to be met; none: they never hold."""
+    """Return the conditions that remain; none if they can never hold together."""
     there = tuple(one for one in conditions if _is_there(one.key, devices))
     gone = [one for one in conditions if one not in there]
     never = any(not (one.key.endswith(".state") and _is_met_by_none(one)) for one in gone)

@@ -1,9 +1,8 @@
-"""Salvage of a damaged log: readable rows are copied into a new one.
+"""Salvage of a damaged log: copies the readable rows into a new one.
 
-SQLite refuses a query as soon as it meets a page that it can tell is damaged; where it cannot, a
-wrong number among the rows makes it pass over those behind it. The events lie in the order of their
-numbers, so that a range of them can be read wherever no damaged page lies within it: ranges that
-are refused, or not complete, are halved until what cannot be read is known to the event.
+SQLite aborts a query at a page that is detectably damaged; otherwise a wrong number among the rows
+can make it skip rows after it. Events are stored in order of their numbers, so a range can be read
+if no page in it is damaged. Ranges that fail or are incomplete are bisected down to single events.
 """
 
 from __future__ import annotations
@@ -18,11 +17,11 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 SALVAGE = "salvage-"
-"""How the name of the folder begins that a damaged log is copied to meanwhile."""
-WINDOW = 4096  # events that are tried at once
-MOST_HALVED = 50_000  # some seconds; after that the rest is read as far as it is in order
+"""Prefix of the temporary folder for the copy of a damaged log."""
+WINDOW = 4096  # events tried at once
+MOST_HALVED = 50_000  # takes some seconds; then the rest is read only up to the first error
 LEAST_BYTES = 60  # of an event
-MOST_RANGES = 50  # that are distinguished; more are told as one
+MOST_RANGES = 50  # that are reported; more are merged into one
 
 Range = tuple[int, int]
 """The first and the last of some events."""
@@ -38,20 +37,20 @@ _NEWEST = (
     "SELECT max(rowid) FROM event INDEXED BY event_kind WHERE kind > ''",
 )
 _SMALL = {"meta": 2, "name": 2, "speech": 4}
-"""The other tables, and how many columns they have."""
+"""The other tables, and their numbers of columns."""
 
 
 def salvage(damaged: Path, db: sqlite3.Connection, sealed: int) -> tuple[int, list[Range]]:
     """Copy the readable rows of a damaged log, which stays unchanged.
 
     Args:
-        damaged: the log, with its tail beside it.
-        db: the new log, which is empty and has its tables.
-        sealed: the number of the newest event that was kept, as far as that is known.
+        damaged: the log, with its -wal beside it.
+        db: the new log, with empty tables.
+        sealed: the number of the newest event, as far as known.
 
     Returns:
-        How many events were taken over, and which are lost: one range whose last is before its
-        first where nobody can tell.
+        The number of copied events, and the lost ranges; one range whose last is before its first
+        if the loss is unknown.
     """
     with TemporaryDirectory(prefix=SALVAGE, dir=damaged.parent) as folder:
         copy = Path(folder) / "log"
@@ -67,7 +66,7 @@ def salvage(damaged: Path, db: sqlite3.Connection, sealed: int) -> tuple[int, li
                     _take_table(old, db, table, columns)
                 kept = 0
                 for row in _events(old, newest):
-                    with suppress(sqlite3.Error):  # what stands there twice, or is no row of ours
+                    with suppress(sqlite3.Error):  # duplicates, or invalid rows
                         kept += db.execute(_ADD, row).rowcount
                 lost = _gaps(db, newest) if newest else [(1, 0)]
             except BaseException:
@@ -78,7 +77,7 @@ def salvage(damaged: Path, db: sqlite3.Connection, sealed: int) -> tuple[int, li
 
 
 def _newest(old: sqlite3.Connection) -> int:
-    """Return the greatest number of an event that can be found, in the table or in its index."""
+    """Return the greatest event number in the table or its index."""
     found = [0]
     for sql in _NEWEST:
         with suppress(sqlite3.Error):
@@ -96,7 +95,7 @@ def _take_table(old: sqlite3.Connection, db: sqlite3.Connection, table: str, col
 
 
 def _events(old: sqlite3.Connection, newest: int) -> Iterator[tuple[Any, ...]]:
-    """Yield the rows of all events that can be read."""
+    """Yield the rows of all readable events."""
     halved = 0
     waiting = [(low, min(low + WINDOW, newest)) for low in range(0, newest, WINDOW)][::-1]
     while waiting:
@@ -111,7 +110,7 @@ def _events(old: sqlite3.Connection, newest: int) -> Iterator[tuple[Any, ...]]:
 
 
 def _rows_in_order(old: sqlite3.Connection, low: int, high: int) -> list[tuple[Any, ...]]:
-    """Return the rows of a range, up to one that is out of order; none if it is refused."""
+    """Return the rows of a range up to the first out of order; none if the query fails."""
     try:
         rows = old.execute(_EVENTS, (low, high)).fetchall()
     except sqlite3.Error:
@@ -121,7 +120,7 @@ def _rows_in_order(old: sqlite3.Connection, low: int, high: int) -> list[tuple[A
 
 
 def _gaps(db: sqlite3.Connection, newest: int) -> list[Range]:
-    """Return which events up to the newest are not there."""
+    """Return the ranges of missing events, up to the newest."""
     ends = db.execute(
         "SELECT seq, before FROM (SELECT seq, lag(seq, 1, 0) OVER (ORDER BY seq) AS before"
         " FROM event) WHERE seq > before + 1"

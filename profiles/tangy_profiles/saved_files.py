@@ -1,8 +1,8 @@
-"""Files in a data folder beside the log, and how to erase a name from them.
+"""Files in a data folder beside the log, and the erasure of a name from them.
 
-Only what Tangy wrote is changed: its pages and the logs of its processes are text; copies of the
-log, and damaged ones, are overwritten byte for byte. Files of others, also lists that were put
-there by a shell, stay as they are, and those that hold the name are named.
+Only files written by Tangy are changed: pages and process logs are text; copies of the log, and
+damaged ones, are overwritten byte by byte. Other files are not changed, including lists redirected
+by a shell, but those that hold the name are reported.
 """
 
 from __future__ import annotations
@@ -23,32 +23,32 @@ from tangy_profiles.process_log import LOGS
 from tangy_profiles.reading import plain
 from tangy_profiles.salvage import SALVAGE
 
-LARGEST = 64_000_000  # bytes of a file that is looked through
+LARGEST = 64_000_000  # bytes of a file to search
 OURS = (FILE, f"{FILE}-wal", f"{FILE}-shm", "tangy.lock", "tangy.seal")
 """Files that the writer of the log handles."""
 PAGE_MARK = '<meta name="generator" content="Tangy"/>'
 """Marks a page that Tangy wrote."""
 
 _MARKS = (PAGE_MARK.encode(), b"<style>\n:root { color-scheme: light dark; --font: system-ui")
-"""The second: pages up to 0.6 had no mark."""
-_HEAD = 2000  # bytes of a page, in which its mark stands
+"""The second marks pages up to version 0.6."""
+_HEAD = 2000  # bytes of a page to search for its mark
 _COPY = re.compile(rf"{re.escape(FILE)}\.(?:damaged-|version-\d|copying)")
 
 
 class Erased(NamedTuple):
-    """The files that were changed, and those that may still hold the name."""
+    """The changed files, and those that may still have the name."""
 
     changed: tuple[Path, ...]
     left: tuple[Path, ...]
 
 
 def erase_from_files(folder: Path, eraser: NameEraser) -> Erased:
-    """Erase a name from every file of a data folder but the log itself.
+    """Erase a name from every file of a data folder except the log itself.
 
-    A file is replaced as a whole or not at all; a link is not followed to change anything.
+    A file is replaced atomically; files behind links are not changed.
 
     Raises:
-        TangyError: a file that holds the name cannot be written.
+        TangyError: a file with the name cannot be written.
     """
     changed, left = [], []
     for path in _files(folder):
@@ -85,7 +85,7 @@ def _files(folder: Path) -> Iterator[Path]:
 def _erasing(
     folder: Path, path: Path, content: bytes, eraser: NameEraser
 ) -> Callable[[bytes], bytes] | None:
-    """Return what erases the name from a file that Tangy wrote; None if others wrote it."""
+    """Return the function that erases the name from a file by Tangy; None for other files."""
     is_copy = path.parent == folder and _COPY.match(path.name)
     if is_copy or (path.parent.parent == folder and path.parent.name.startswith(SALVAGE)):
         return eraser.overwrite
@@ -99,7 +99,7 @@ def _erasing(
 
 
 def _holds(content: bytes, eraser: NameEraser) -> bool:
-    """Say whether the name stands in a file of others."""
+    """Return whether a file that is not Tangy's has the name."""
     if _is_binary(content):
         return eraser.overwrite(content) != content
     text = content.decode()

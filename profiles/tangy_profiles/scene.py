@@ -1,4 +1,4 @@
-"""The scene of the room at one moment: worlds provide it, and screens draw it."""
+"""The scene of the room at one moment, provided by worlds and drawn by screens."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class CardView:
 
 @dataclass(frozen=True, slots=True)
 class Arranged:
-    """The coming situation of a guided game: a person, and the state of their card when they ask.
+    """The next situation of a guided game: a person, and the state of their card when they ask.
 
     `hidden`: the card is out of view when the robot arrives.
     """
@@ -34,7 +34,7 @@ class Arranged:
 class ArrangedSituation:
     """The situation that a guided game is about to bring about.
 
-    `goes_back`: the game goes on from an earlier moment for it.
+    `goes_back`: the game returns to an earlier moment for it.
     """
 
     situation: Situation
@@ -45,9 +45,9 @@ class ArrangedSituation:
 class Scene:
     """Robot, people and game at one moment.
 
-    `place` is where the robot is (or is driving to), `requests` who asks for help, first come
-    first, `doing` what each person is seen to do in a word or two, `called` the numbers so far
-    in order, `card` the card that the robot can read, if any, `away` who has not come, or has left.
+    `place` is the robot's place or destination, `requests` those who ask, first come first, `doing`
+    each person's observed activity in a word or two, `called` the called numbers in order, `card`
+    the readable card, if any, and `away` the absent people.
     """
 
     place: str

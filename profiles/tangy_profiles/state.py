@@ -1,7 +1,7 @@
-"""The vocabulary of the activity state s_a: who is where, who asks for help, how each is doing.
+"""The activity state s_a: where everybody is, who asks for help, and each person's activity.
 
-Named tuples rather than dataclasses: a simulated game makes one of these at every step, and the
-simulator is measured in steps per second.
+Named tuples instead of dataclasses, because a simulated game makes one at every step, and the
+simulator's speed is measured in steps per second.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ Request = Literal["ANR", "AR"]
 """The assistance request state s_h: assistance not required, or required."""
 
 FACTS = "; "
-"""Between the facts of a situation, where an activity is declared by facts."""
+"""Separates the facts of a situation, in an activity declared by facts."""
 EVERYBODY = "everybody"
 """The target of a command for the whole group."""
 
 FRONT = "front"
-"""The place in front of the group; every other place is the id of the person the robot is with."""
+"""The place in front of the group; other places are the id of the person the robot is with."""
 
 
 Variable = Literal[
@@ -37,7 +37,7 @@ VARIABLES: tuple[Variable, ...] = get_args(Variable)
 
 
 LARGEST_STEP = 10**12
-"""No game has so many steps."""
+"""An upper bound of the steps of a game."""
 
 
 class UserState(NamedTuple):
@@ -49,7 +49,7 @@ class UserState(NamedTuple):
 
 
 class Situation(NamedTuple):
-    """The attended-user triple: all that the policy looks at (a row of Table II)."""
+    """The attended-user triple: the input of the policy (a row of Table II)."""
 
     stage: str
     request: Request
@@ -59,10 +59,10 @@ class Situation(NamedTuple):
 class ActivityState(NamedTuple):
     """The whole joint state s_a^p at step k.
 
-    `attended` is the person at the head of the first-come queue of requests (or none); the queue
-    is kept by rule and never learnt. `situation` is the part of the state that the policy sees.
+    `attended` is the person at the head of the first-come queue of requests (or none); the queue is
+    kept by rule and never learnt. `situation` is the part of the state that the policy sees.
     `closed` is the person whose request the last behaviour closed: without it, a request that
-    stayed open and one that was closed and made anew at once would look alike.
+    stayed open would look like one that was closed and immediately reopened.
     """
 
     step: Count
@@ -72,20 +72,20 @@ class ActivityState(NamedTuple):
     users: tuple[UserState, ...]
     closed: str | None = None
     facts: Sparse[tuple[tuple[str, str], ...]] = ()
-    """Of an activity declared by facts: each fact with its value."""
+    """In an activity declared by facts: each fact with its value."""
     whom: Sparse[tuple[tuple[str, str], ...]] = ()
-    """Of such an activity: each selector that names a person now, with the person."""
+    """In such an activity: each selector that names a person now, with the person."""
 
     @property
     def stage(self) -> str:
-        """The activity stage, as the tracker's rules have it."""
+        """The activity stage, by the tracker's rules."""
         return self.situation.stage
 
     def user(self, id: str) -> UserState:
         """Return one person's state.
 
         Raises:
-            KeyError: nobody of that id takes part.
+            KeyError: nobody with that id takes part.
         """
         for user in self.users:
             if user.id == id:
@@ -93,7 +93,7 @@ class ActivityState(NamedTuple):
         raise KeyError(id)
 
     def misfit(self) -> str:
-        """Say what does not fit together, as the tail of a sentence ("": nothing)."""
+        """Return an inconsistency as the tail of a sentence; "" if there is none."""
         ids = [user.id for user in self.users]
         if len(set(ids)) < len(ids):
             return "has somebody twice"
@@ -102,10 +102,10 @@ class ActivityState(NamedTuple):
 
     @classmethod
     def glance(cls, value: Any) -> ActivityState | None:
-        """Read a state that is plainly as it should be: most of a log are states.
+        """Decode a valid state quickly, as most of a log consists of states.
 
         Returns:
-            The state, or None if the codec must look closely.
+            The state, or None if the codec must check it in detail.
         """
         try:
             if "facts" in value or "whom" in value:
@@ -140,9 +140,9 @@ class ActivityState(NamedTuple):
 class Response(NamedTuple):
     """A person's response to a request made with a persuasive strategy.
 
-    `followed`: what was asked for was seen done before the next behaviour.
-    `complied`: it was done within the activity's patience window; this is the Bernoulli outcome
-    of Eq. 2. `seconds` is how long it took.
+    `followed`: the requested action was observed before the next behaviour. `complied`: it was done
+    within the activity's patience window; this is the Bernoulli outcome of Eq. 2. `seconds` is how
+    long it took.
     """
 
     person: str
@@ -153,7 +153,7 @@ class Response(NamedTuple):
 
 
 class UnclearAnswer(NamedTuple):
-    """An answer that was not sure enough to be judged: `asked_again` says if Tangy asked again."""
+    """An answer that was too uncertain to be judged; `asked_again`: the question was repeated."""
 
     person: str
     fact: str
@@ -166,9 +166,9 @@ class UnclearAnswer(NamedTuple):
 class Outcome(NamedTuple):
     """The outcome of an executed action.
 
-    `numbers` are the numbers it was about: the one that was called, or those a person was asked
-    to mark or to clear. `seconds` is how long it took in the world's own time. `speech` and `image`
-    are the words that a world chose itself ("": those of the action), with people by their ids.
+    `numbers` are the numbers involved: the called one, or those a person was asked to mark or to
+    clear. `seconds` is its duration in the world's own time. `speech` and `image` are texts that
+    the world chose itself ("": those of the action), with people by their ids.
     """
 
     completed: bool
@@ -178,4 +178,4 @@ class Outcome(NamedTuple):
     speech: str = ""
     image: str = ""
     unclear: tuple[UnclearAnswer, ...] = ()
-    """The answers that were not judged, in their order."""
+    """The answers that were not judged, in order."""

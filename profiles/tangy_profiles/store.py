@@ -1,9 +1,9 @@
 """The append-only event log of one data folder, and the counts derived from it.
 
-One process writes a folder at a time; any number may read beside it (see `log_file`). Names of
-people stand in a table of their own, and how they are pronounced and spoken to in another, so that
-they can be forgotten while the counts that beliefs are made of stay; a name that stands in what was
-typed or said is erased from there then (`erased_log`), which is the one change to events.
+One process writes a folder at a time; any number may read it (see `log_file`). People's names are
+in a table of their own, and their pronunciations and voices in another, so that they can be
+forgotten while the counts behind beliefs stay. A name in typed or spoken text is then erased from
+there (`erased_log`), the only change ever made to events.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ _to_json = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(","
 class Store:
     """The log of one data folder; threads may share it (see `transaction`).
 
-    Every method raises StoreError, one sentence, where the log cannot be read or written.
+    Every method raises StoreError, one sentence, if the log cannot be read or written.
     """
 
     def __init__(self, folder: Path, writable: bool, now: Callable[[], datetime]) -> None:
-        """Prepare a store that is not open yet; use `Store.open`."""
+        """Create a store that is not open yet; use `Store.open`."""
         self.folder = folder
         self.writable = writable
         self._now = now
@@ -63,33 +63,33 @@ class Store:
         self.notices = self.file.notices
         self.aside: dict[int, str] = {}
         """Events left out of the log: a sentence for each, by seq."""
-        self.robot = ""  # the id of the robot whose log it is; a reader does not ask
+        self.robot = ""  # the id of the robot of the log; "" in a reader
         self._seal = Seal(folder)
-        self._newest = 0  # the newest event of the transaction that is going on
+        self._newest = 0  # the newest event of the current transaction
         self._closed = self._within = self._spoilt = False
 
     @classmethod
     def open(
         cls, folder: Path, *, write: bool = True, now: Callable[[], datetime] | None = None
     ) -> Store:
-        """Open the log of a data folder; a writer makes folder and log where there are none.
+        """Open the log of a data folder; a writer creates missing folders and logs.
 
-        A damaged log is renamed aside and a new one begun, and `notices` says so. With
-        `write=False` nothing is made: a folder without a log reads as empty until there is one.
-        An older log is brought up to date, by a reader only where it can be.
+        A damaged log is renamed and a new one begun, as `notices` says. With `write=False` nothing
+        is created: a folder without a log reads as empty until there is one. An older log is
+        migrated, by a reader only if possible.
 
         Raises:
             StoreBusy: another process writes to this folder.
-            StoreError: the folder cannot be made, read or written, or a newer Tangy wrote it.
+            StoreError: the folder cannot be created, read or written, or a newer version wrote it.
         """
         store = cls(folder.absolute(), write, now or (lambda: datetime.now(UTC)))
         try:
             with store.file.in_words():
                 store._begin() if write else store.file.reading()
-            with nullcontext() if write else suppress(StoreError):  # a reader's queries will say it
+            with nullcontext() if write else suppress(StoreError):  # queries report it
                 store.notices.extend(map(loss_words, store._unaccepted()))
         except BaseException:
-            store.file.damaged = True  # so that closing does not vouch for it
+            store.file.damaged = True  # so that closing leaves no mark
             store.close()
             raise
         return store
@@ -102,12 +102,12 @@ class Store:
         strategy: str | None = None,
         complied: bool | None = None,
     ) -> int:
-        """Log one event and return its seq; outside a `transaction` it is then on the disk.
+        """Log one event and return its seq; outside a `transaction` it is on the disk then.
 
         Raises:
-            ValueError, TypeError: the caller's mistake: a body that is not JSON (NaN, too deep) or
-                too long, or not of its kind, no kind, or `complied` without person and strategy.
-            StoreError: it could not be kept, and nothing of it was.
+            ValueError, TypeError: a bug of the caller: a body that is not JSON (NaN, too deep), too
+                long, or invalid for its kind; no kind; or `complied` without person and strategy.
+            StoreError: it could not be stored, and nothing was.
         """
         kind, of_nobody = record.KIND, person is None or strategy is None
         if not kind or (complied is not None and of_nobody):
@@ -130,12 +130,12 @@ class Store:
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
-        """Keep all that is appended inside or, after an exception, nothing of it.
+        """Commit all events appended inside, or, after an exception, none of them.
 
-        A nested transaction joins the outer one, which is kept or lost as a whole: an inner
-        failure loses it even where it was caught, and the outer end then raises StoreError.
-        Other threads wait meanwhile, so do not `await` inside: another task of the same thread
-        would append into it.
+        A nested transaction joins the outer one, which is committed or rolled back as a whole: an
+        inner failure rolls it back even if it was caught, and the end of the outer one then raises
+        StoreError. Other threads wait meanwhile, so do not `await` inside: another task of the same
+        thread would append to it.
         """
         with self._lock:
             outermost = not self._within
@@ -157,17 +157,17 @@ class Store:
                     self._newest = 0
                     if self.file.db is not None:
                         with suppress(sqlite3.Error):
-                            self.file.db.rollback()  # after a commit: nothing
+                            self.file.db.rollback()  # no-op after a commit
 
     @overload
     def events(self, *kinds: str, after: int = 0) -> Iterator[Event[EventRecord]]: ...
     @overload
     def events(self, *kinds: type[R], after: int = 0) -> Iterator[Event[R]]: ...
     def events(self, *kinds: type[EventRecord] | str, after: int = 0) -> Iterator[Event[Any]]:
-        """Yield the events of these kinds (of all, if none is named) with seq > `after`, by seq.
+        """Yield the events of these kinds (default: all) with seq > `after`, by seq.
 
-        A kind is named by its record. They are those logged when the iteration begins; appending
-        meanwhile is allowed. One that cannot be read is left out, and `aside` says so.
+        A kind is named by its record. The events are those logged when the iteration begins;
+        appending meanwhile is allowed. Unreadable ones are left out and reported in `aside`.
         """
         newest = self._rows("SELECT coalesce(max(seq), 0) FROM event")
         until = newest[0][0] if newest else 0
@@ -178,7 +178,7 @@ class Store:
             high = min(low + WINDOW, until)
             rows = self._rows(sql, low, high, *map(name_of, kinds))
             yield from self._events(rows)
-            # a damaged seq may lie far beyond all others
+            # a damaged seq may be far beyond all others
             low = high if rows else self._rows(NEXT, high, high)[0][0]
 
     @overload
@@ -186,7 +186,7 @@ class Store:
     @overload
     def last(self, kind: type[R]) -> Event[R] | None: ...
     def last(self, kind: type[EventRecord] | str) -> Event[Any] | None:
-        """Return the newest event of a kind that can be read."""
+        """Return the newest readable event of a kind."""
         sql = f"{READ} WHERE kind = ? AND seq < ? ORDER BY seq DESC LIMIT 1"
         rows = self._rows(sql, name_of(kind), LARGEST_SEQ)
         while rows:
@@ -196,47 +196,47 @@ class Store:
         return None
 
     def kinds(self) -> dict[str, int]:
-        """Return how many events there are of each kind; one that is not text is shown as such."""
+        """Return the number of events of each kind; an invalid kind is shown as its repr."""
         rows = self._rows("SELECT kind, count(*) FROM event GROUP BY kind ORDER BY kind")
         return {kind if isinstance(kind, str) else repr(kind): count for kind, count in rows}
 
     def set_aside(self, event: Event[EventRecord], why: str) -> None:
-        """Say of an event that it makes no sense where it stands, so that it is left out."""
+        """Leave out an event that is inconsistent with earlier ones; `why` is the reason."""
         self.aside.setdefault(event.seq, left_out(event.seq, event.kind, why))
 
     def responses(
         self, of: Collection[str] | None = None, *, but: Collection[str] = ()
     ) -> dict[tuple[str, str], tuple[int, int]]:
-        """Count the responses that hold by (person, strategy): (complied, did not).
+        """Count the valid responses by (person, strategy): (complied, did not).
 
         One more than each is the posterior's alpha and beta (Eq. 2).
 
         Args:
-            of: the ids of the games whose responses count, and the worlds for which those do
-                that belong to no game; None: all of them.
+            of: the ids of the games whose responses count, and the worlds, for responses that
+                belong to no game; None: all of them.
             but: the games and worlds whose responses do not count.
         """
         rows = self._rows(*responses_among(of, but))
         return {(person, strategy): (yes, no) for person, strategy, yes, no in rows}
 
     def answers(self, person: str) -> Iterator[Event[EventRecord]]:
-        """Yield every response of one person, also those that do not hold, by seq."""
+        """Yield every response of one person, also invalid ones, by seq."""
         sql = f"{READ} WHERE complied IS NOT NULL AND person = ? ORDER BY seq"
         return self._events(self._rows(sql, person))
 
     def now(self) -> datetime:
-        """Return the time by the clock that events are stamped with."""
+        """Return the time by the clock of the log."""
         return self._now().astimezone(UTC)
 
     def names(self) -> dict[str, str]:
-        """Return the name of every person who has one, by id."""
+        """Return the names of people, by id."""
         rows = self._rows("SELECT person, name FROM name ORDER BY person")
         return {person: name for person, name in rows if are_text(person, name)}
 
     def rename(self, person: str, name: str) -> None:
         """Give a person a name, and log that ("renamed"), but not the name.
 
-        How another name was pronounced is forgotten.
+        The pronunciation of an earlier name is deleted.
 
         Raises:
             TangyError: the name is empty, longer than 40 characters, or not all printable.
@@ -249,47 +249,47 @@ class Store:
             self.append(Renamed(), person=person)
 
     def pronunciations(self) -> dict[str, str]:
-        """Return the noted pronunciations of people's names, by id."""
+        """Return the stored pronunciations of people's names, by id."""
         rows = self._rows("SELECT person, pronunciation FROM speech ORDER BY person")
         return {person: phones for person, phones in rows if are_text(person, phones)}
 
     def pronounce(self, person: str, phones: str | None) -> None:
-        """Note how a person's name is pronounced (None: no more), and log that, but not how.
+        """Store the pronunciation of a person's name (None: delete); log only that.
 
         Raises:
-            ProfileError: one of the phones is none.
+            ProfileError: a phone is invalid.
         """
         self._note(person, "pronunciation", None if phones is None else read_name_phones(phones))
 
     def voices(self) -> dict[str, VoicePreference]:
-        """Return the noted voice preferences of people, by id."""
+        """Return the stored voice preferences of people, by id."""
         rows = self._rows("SELECT person, rate, voice FROM speech ORDER BY person")
         found = {}
         for person, rate, voice in rows:
-            with suppress(ProfileError):  # impossible choices count as none
+            with suppress(ProfileError):  # skip invalid preferences
                 found[person] = VoicePreference(rate, voice)
         return found
 
     def prefer_voice(self, person: str, preference: VoicePreference) -> None:
-        """Note how a person likes to be spoken to, and log that, but not how."""
+        """Store how a person likes to be spoken to, and log that, but not the value."""
         with self.transaction():
             self._note(person, "rate", preference.rate)
             self._note(person, "voice", preference.voice)
 
     def _note(self, person: str, what: str, value: str | int | None) -> None:
-        """Keep one thing about how to speak of or to a person, where it can be forgotten."""
+        """Store one speech setting of a person, in a table that can be forgotten."""
         with self.transaction():
             self._write("INSERT OR IGNORE INTO speech (person) VALUES (?)", (person,))
             self._write(f"UPDATE speech SET {what} = ? WHERE person = ?", (value, person))  # noqa: S608
             self.append(SpeechNoted(what=what), person=person)
 
     def forget(self, person: str, eraser: NameEraser | None = None) -> tuple[bool, int]:
-        """Delete a person's name, how it is said, and how they like to be spoken to.
+        """Delete a person's name, pronunciation and voice preference.
 
-        What they did stays, under their id. An `eraser` takes the name from the words in the log.
+        Their events stay, under their id. An `eraser` erases the name from texts in the log.
 
         Returns:
-            Whether there was anything to forget, and in how many events.
+            Whether there was anything to delete, and the number of changed events.
         """
         with self.transaction():
             there = any(
@@ -310,12 +310,12 @@ class Store:
         return there, changed
 
     def count_left(self, eraser: NameEraser) -> int:
-        """Count the events in which a name still stands after it was erased from their words."""
+        """Count the events that still have a name after its erasure."""
         with self._lock, self.file.in_words():
             return count_left(self.file.db, eraser) if self.file.db else 0
 
     def check(self) -> list[str]:
-        """Read the whole log and return its problems, a sentence each; [] if there are none."""
+        """Read the whole log and return its problems, a sentence each."""
         wrong = []
         try:
             found = [" ".join(row.split()) for (row,) in self._rows("PRAGMA quick_check")]
@@ -328,7 +328,7 @@ class Store:
         return wrong + [self.aside[seq] for seq in sorted(self.aside)]
 
     def close(self) -> None:
-        """Close the log and let another writer in; may be repeated."""
+        """Close the log and release its lock; idempotent."""
         with self._lock:
             self._closed = True
             self._seal.close()
@@ -341,14 +341,14 @@ class Store:
         self.close()
 
     def accept_losses(self) -> list[EventsLost]:
-        """Record that staff know about the losses, which are not reported again; return them."""
+        """Accept the losses, so that they are not reported again; return them."""
         if losses := self._unaccepted():
             self.append(LossAccepted())
         return losses
 
     def _unaccepted(self) -> list[EventsLost]:
-        """Return the losses of this log that nobody has accepted yet."""
-        sealed = self._seal.read()  # before the events: so it never leads
+        """Return the losses of this log that were not accepted yet."""
+        sealed = self._seal.read()  # before the events, so that it is never ahead
         noted = self._noted()
         return [*noted, *unnoticed(self._rows, sealed, noted)]
 
@@ -357,9 +357,9 @@ class Store:
         return [e.record for e in self.events(EventsLost, after=accepted.seq if accepted else 0)]
 
     def _begin(self) -> None:
-        """Become the writer, read the robot's id, and record the losses."""
+        """Become the writer, read the robot's id, and log the losses."""
         db = self.file.begin()
-        sealed = self._seal.read()  # of a log whose very beginning is gone
+        sealed = self._seal.read()  # of a log that lost even its first events
         robot = sealed[0] if sealed else str(uuid.uuid4())
         db.execute("INSERT OR IGNORE INTO meta VALUES ('robot', ?)", (robot,))
         self.robot = self._rows("SELECT value FROM meta WHERE key = 'robot'")[0][0]
@@ -377,17 +377,17 @@ class Store:
             return [] if db is None else fetch(db, sql, values)
 
     def _write(self, sql: str, values: tuple[object, ...] = ()) -> int:
-        """Run one statement of the writer and return the seq it made."""
+        """Run one writing statement and return the seq of the new row."""
         db = self.file.db
         if db is None or not self.writable:
             raise self.file.wrong("is closed" if self._closed else "is open for reading only")
-        if self._spoilt:  # SQLite may have rolled back already, and would commit this one alone
+        if self._spoilt:  # SQLite may have rolled back, and would commit this alone
             raise self.file.wrong("a part of this could not be kept, so none of it was")
         with self.file.in_words():
             return db.execute(sql, values).lastrowid or 0
 
     def _events(self, rows: Iterable[Sequence[Any]]) -> Iterator[Event[EventRecord]]:
-        """Yield the events of rows; of an answer whose body cannot be read, the answer stays."""
+        """Yield the events of rows; if the body of a response is invalid, the response counts."""
         for row in rows:
             try:
                 yield read_row(row)

@@ -16,7 +16,7 @@ Ids: TypeAlias = Annotated[tuple[str, ...], at_least(1)]
 
 @kind("demonstration begun")
 class DemonstrationBegun(EventRecord):
-    """A demonstration begins; `kept` are the first steps of the one `of` which it shows again."""
+    """A demonstration begins; `kept` is the number of first steps repeated from `of`."""
 
     demonstration: str
     activity: str
@@ -30,20 +30,20 @@ class DemonstrationBegun(EventRecord):
 
     @classmethod
     def from_demonstration(cls, shown: Demonstration, kept: int | None = None) -> Self:
-        """Return what the log keeps of a demonstration that begins, with so many steps `kept`."""
+        """Return the record of a demonstration that begins, with this many steps `kept`."""
         own = ("activity", "teacher", "seed", "people", "guided", "origin", "of")
         about: dict[str, Any] = {name: getattr(shown, name) for name in own}
         return cls(demonstration=shown.id, kept=kept, **about)
 
     def misfit(self) -> str:
-        """Say what does not fit together, as the tail of a sentence ("": nothing)."""
+        """Return an inconsistency as the tail of a sentence; "" if there is none."""
         lacks = self.origin == "again" and (not self.of or self.kept is None)
         return "has no 'of' or 'kept'" if lacks else ""
 
 
 @kind("demonstration step")
 class DemonstrationStep(EventRecord):
-    """A step was shown; `heard` and `confidence` tell how it was understood."""
+    """A step was shown; `heard` and `confidence` say how the command was understood."""
 
     demonstration: str
     step: Flat[Step]
@@ -53,7 +53,7 @@ class DemonstrationStep(EventRecord):
 
 @kind("demonstration step undone")
 class DemonstrationStepUndone(EventRecord):
-    """The last step was taken back; `step` is its number, which the first logs do not tell."""
+    """The last step was undone; `step` is its number, which the first logs lack."""
 
     demonstration: str
     step: Sparse[Count | None] = None
@@ -61,7 +61,7 @@ class DemonstrationStepUndone(EventRecord):
 
 @kind("demonstration step redone")
 class DemonstrationStepRedone(EventRecord):
-    """The step that was taken back last was shown again."""
+    """The step that was undone last was redone."""
 
     demonstration: str
 
@@ -75,7 +75,7 @@ class DemonstrationFinished(EventRecord):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Deletion:
-    """Demonstrations are left out."""
+    """Demonstrations are deleted."""
 
     what: Literal["delete"] = "delete"
     ids: Ids
@@ -83,7 +83,7 @@ class Deletion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Restoration:
-    """Demonstrations are taken in again."""
+    """Deleted demonstrations are restored."""
 
     what: Literal["restore"] = "restore"
     ids: Ids
@@ -99,7 +99,7 @@ class Settlement:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Merger:
-    """Demonstrations are put together to one: `made`."""
+    """Demonstrations are merged into one: `made`."""
 
     what: Literal["merge"] = "merge"
     ids: Ids
@@ -108,7 +108,7 @@ class Merger:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Division:
-    """A demonstration is divided in two, `made`, after `kept` steps."""
+    """A demonstration is split in two, `made`, after `kept` steps."""
 
     what: Literal["split"] = "split"
     ids: tuple[str]
@@ -121,7 +121,7 @@ EditDone: TypeAlias = Deletion | Restoration | Settlement | Merger | Division
 
 @kind("demonstrations edited")
 class DemonstrationsEdited(EventRecord):
-    """Something was done to whole demonstrations of an activity."""
+    """An edit of whole demonstrations of an activity."""
 
     activity: str
     edit: Flat[EditDone]
@@ -129,7 +129,7 @@ class DemonstrationsEdited(EventRecord):
 
 @kind("demonstrations edit undone")
 class DemonstrationsEditUndone(EventRecord):
-    """An edit was taken back, by its seq."""
+    """An edit was undone, by its seq."""
 
     activity: str
     edit: int
@@ -137,7 +137,7 @@ class DemonstrationsEditUndone(EventRecord):
 
 @kind("demonstrations edit redone")
 class DemonstrationsEditRedone(EventRecord):
-    """An edit that was taken back holds again, by its seq."""
+    """An undone edit was redone, by its seq."""
 
     activity: str
     edit: int
@@ -145,7 +145,7 @@ class DemonstrationsEditRedone(EventRecord):
 
 @dataclass(frozen=True, slots=True)
 class ForestSettings:
-    """How the forest is grown: see scikit-learn's RandomForestClassifier.
+    """The parameters of the forest, as in scikit-learn's RandomForestClassifier.
 
     The limits are far beyond any use, so that a damaged row costs neither time nor memory.
     """
@@ -175,7 +175,7 @@ class LearntRow(NamedTuple):
 
 @kind("own phrase")
 class OwnPhraseNoted(EventRecord):
-    """A teacher's own words for a behaviour are kept; or not: turned down, or removed."""
+    """A teacher's own phrase for a behaviour was stored, or (not `kept`) declined or removed."""
 
     activity: str
     teacher: str
@@ -186,7 +186,7 @@ class OwnPhraseNoted(EventRecord):
 
 @kind("policy learnt")
 class PolicyLearnt(EventRecord):
-    """A policy was kept: how to learn it again, and what that must give."""
+    """A policy was stored: its training data, settings, digest and decisions."""
 
     name: str
     activity: str
@@ -197,14 +197,14 @@ class PolicyLearnt(EventRecord):
     resolved: tuple[Resolution, ...] = ()
     rows: tuple[LearntRow, ...]
     asks: Sparse[tuple[Situation, ...] | None] = None
-    """Where it asks, which the first logs do not tell."""
+    """The situations in which it asks; the first logs lack them."""
     at: Unlogged[str] = ""
     """When it was logged (ISO 8601, UTC)."""
 
     def misfit(self) -> str:
-        """Say what does not fit together, as the tail of a sentence ("": nothing).
+        """Return an inconsistency as the tail of a sentence; "" if there is none.
 
-        Each repetition would be learnt from again, and a damaged row may have millions.
+        Repetitions would be learnt again, and a damaged row may have millions.
         """
         if len(set(self.demonstrations)) < len(self.demonstrations):
             return "names a demonstration twice"

@@ -1,4 +1,4 @@
-"""On which line of a TOML file a key stands, so that a mistake in it can be found."""
+"""Line numbers of keys in TOML text, for error messages."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
 MOST_READ = 1_000_000
-"""Characters that are parsed to find a line; a file is not searched beyond that."""
+"""The most characters to parse; a file is not searched beyond that."""
 
 KeyPath: TypeAlias = tuple[str | int, ...]
-"""The keys from the top of a file down; in a list of tables the place (from 0) comes next."""
+"""The keys from the root down; an index (from 0) follows the key of a list of tables."""
 
 
 def line_of(text: str, path: KeyPath) -> int | None:
-    """Return the line (from 1) of a key, or of the table it belongs in; None for neither.
+    """Return the line (from 1) of a key, or else of its table; None if neither is found.
 
     Args:
         text: valid TOML.
-        path: of the key.
+        path: the path of the key.
     """
     lines = _lines(text)
     there = (lines.get(path[:length]) for length in range(len(path), 0, -1))
@@ -27,7 +27,7 @@ def line_of(text: str, path: KeyPath) -> int | None:
 
 def _lines(text: str) -> dict[KeyPath, int]:
     found: dict[KeyPath, int] = {}
-    entries: dict[KeyPath, int] = {}  # of each list of tables
+    entries: dict[KeyPath, int] = {}  # index of the last entry of each list of tables
     here: KeyPath = ()
     for line, is_header, parsed in _statements(text):
         path: KeyPath = () if is_header else here
@@ -46,7 +46,7 @@ def _lines(text: str) -> dict[KeyPath, int]:
 
 
 def _statements(text: str) -> Iterator[tuple[int, bool, dict[str, Any]]]:
-    """Yield the line of each header and each key, whether it is a header, and its content."""
+    """Yield (line, is header, content) of each header and each key."""
     first, statement, read = 1, "", 0
     for number, line in enumerate(text.split("\n"), start=1):
         first = first if statement else number
@@ -57,7 +57,7 @@ def _statements(text: str) -> Iterator[tuple[int, bool, dict[str, Any]]]:
         try:
             parsed = tomllib.loads(statement)
         except tomllib.TOMLDecodeError:
-            continue  # it goes on in the next line
+            continue  # it continues in the next line
         if parsed:
             yield first, statement.lstrip().startswith("["), parsed
         statement = ""

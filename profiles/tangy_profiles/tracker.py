@@ -1,8 +1,8 @@
 """The rule-based tracker of stage, turn, and open requests.
 
-Facts go in (a button was pressed, the robot arrived, a card was read, a behaviour succeeded) and
-the activity state comes out. The stage rules are the activity's own data. Both worlds use this
-room, and nobody learns it.
+Observed events (a button was pressed, the robot arrived, a card was read, a behaviour succeeded) go
+in, and the activity state comes out. The stage rules are the activity's data. Both worlds use this
+tracker, and nothing in it is learnt.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from tangy_profiles.game_records import GameStep
 from tangy_profiles.state import FRONT, ActivityState, Request, Situation, UserState
 
 READS = ("beside requester",)
-"""The conditions of stages in which the card beside the robot is looked at."""
+"""The conditions of stages in which the robot reads the card beside it."""
 
 ATTENDS = ("beside requester", "requested or away", "after")
 """The conditions of stages in which open requests matter."""
 
 
 class Tracker:
-    """The rule-kept part of the activity state of one game."""
+    """The rule-based part of the activity state of one game."""
 
     def __init__(self, activity: Activity, people: Sequence[str]) -> None:
         self._activity = activity
@@ -34,11 +34,11 @@ class Tracker:
         self.seen: str | None = None
         """The user activity state read from the card beside the robot, or None."""
         self.closed: str | None = None
-        """Whose request the last behaviour closed."""
+        """The person whose request the last behaviour closed."""
         self.visits = 0
-        """How many people's places the robot has come to since the last call."""
+        """How many people the robot has visited since the last call."""
         self.calls_first = 0
-        """How many calls come before those who ask; until then they wait."""
+        """How many calls come before requests, which wait meanwhile."""
         self.step = 0
         self._counts = dict.fromkeys(activity.behaviours, 0)
         self._since = {
@@ -76,11 +76,11 @@ class Tracker:
 
     @property
     def finished(self) -> bool:
-        """Whether what the game is played for has occurred: only its `after` stage is left."""
+        """Whether the goal of the game was reached: only its `after` stage is left."""
         return any(self._counts[name] for name in self._closers)
 
     def set_aside(self, person: str) -> None:
-        """Let a game go on that was finished by a person, who asks no more."""
+        """Continue a game that a person finished, and remove their request."""
         for name in self._closers:
             self._counts[name] = 0
         if person in self.queue:
@@ -88,33 +88,33 @@ class Tracker:
         self.seen = self.closed = None
 
     def begun(self) -> bool:
-        """Whether all that must come `before` the activity (a greeting) has been done."""
+        """Return whether all `before` behaviours (a greeting) were done."""
         return all(self._counts[name] for name in self._openers)
 
     def count(self, behaviour: str) -> int:
-        """How often a behaviour has succeeded in this game."""
+        """Return how often a behaviour has succeeded in this game."""
         return self._counts[behaviour]
 
     def ask(self, person: str) -> bool:
-        """A person asks for help. Returns False if that request was open already."""
+        """Add a person's request; return False if it was open already."""
         if person in self.queue:
             return False
         self.queue.append(person)
         return True
 
     def first(self, person: str) -> None:
-        """Let a person who asks be next."""
+        """Move a person's request to the head of the queue."""
         if person in self.queue:
             self.queue.remove(person)
             self.queue.insert(0, person)
 
     def withdraw(self, person: str) -> None:
-        """A person who asked does not ask any more, although nobody has helped."""
+        """Remove the request of a person who no longer asks, without having been helped."""
         if person in self.queue:
             self.queue.remove(person)
 
     def arrive(self, place: str) -> None:
-        """The robot has arrived at a place; whatever card it saw before is out of sight."""
+        """Record that the robot arrived at a place, where no card has been read yet."""
         if place not in (FRONT, self.place):
             self.visits += 1
             self.calls_first = 0
@@ -122,14 +122,14 @@ class Tracker:
         self.seen = None
 
     def allows(self, behaviour: Behaviour) -> bool:
-        """Say whether a behaviour can succeed here: a win is celebrated only beside a winner."""
+        """Return whether a behaviour can succeed here: a win is celebrated only beside a winner."""
         return not behaviour.needs or (self.place in self.queue and self.seen in behaviour.needs)
 
     def executed(self, behaviour: Behaviour, *, succeeded: bool = True) -> None:
-        """Count a behaviour that was carried out, and close the request that it settled.
+        """Count an executed behaviour, and close the request that it settled.
 
-        Tell the place and the card's new state first: a request that closes "when correct" looks
-        at the card as the behaviour left it. What did not succeed counts as a step only.
+        Set the place and the card's new state first: a request that closes "when correct" depends
+        on the card after the behaviour. A failed behaviour only counts as a step.
         """
         self.step += 1
         self.closed = None
@@ -153,9 +153,9 @@ class Tracker:
             self.seen = None
 
     def follow(self, step: GameStep) -> bool:
-        """Take over a step from the log; return whether this leads to the state after it.
+        """Apply a step from the log; return whether the resulting state is the logged one.
 
-        A behaviour that was carried out in vain is not counted: that shows in the state alone.
+        A behaviour without success is not counted, which only the state reveals.
         """
         behaviour, after = self._activity.behaviours.get(step.behaviour), step.after
         if behaviour is None or after is None:
@@ -173,7 +173,7 @@ class Tracker:
         return False
 
     def _see(self, behaviour: Behaviour, after: ActivityState, *, succeeded: bool) -> None:
-        """Count a behaviour, and observe the state after it: who asks, and the card there."""
+        """Count a behaviour, and take requests and card from the state after it."""
         self.arrive(after.place)
         self.executed(behaviour, succeeded=succeeded)
         if self.calls_first:  # requests are hidden meanwhile, but stay open
@@ -187,12 +187,12 @@ class Tracker:
         shown = after.user(first).activity
         if after.place == first:
             self.seen = shown if shown != self._unread else None
-        else:  # whose turn it is comes first
+        else:  # the attended one is at the head
             self.queue.remove(first)
             self.queue.insert(0, first)
 
     def state(self) -> ActivityState:
-        """Return the joint state as the rules have it now."""
+        """Return the current joint state."""
         for holds, stage in self._rules:  # noqa: B007 - the last rule always holds
             if holds():
                 break
@@ -218,5 +218,5 @@ class Tracker:
         return ActivityState(self.step, situation, place, attended, self._users, self.closed)
 
     def _situation(self, stage: str, request: Request, user_state: str) -> Situation:
-        known = self._situations.get((stage, request, user_state))  # hashes as the triple does
+        known = self._situations.get((stage, request, user_state))  # hashes as the tuple
         return known or Situation(stage, request, user_state)

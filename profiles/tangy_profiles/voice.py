@@ -1,4 +1,4 @@
-"""How a person likes to be spoken to: how fast, and in which voice."""
+"""A person's preferred speech rate and voice."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,39}(\+[A-Za-z0-9][A-Za-z0-9_-]{0,39})
 
 @dataclass(frozen=True, slots=True)
 class VoicePreference:
-    """How fast (words a minute, 80 to 260) and in which voice; None: as for everybody else.
+    """A rate (words per minute, 80 to 260) and a voice; None: the default.
 
-    A voice is named as the synthesiser names it: a language and, after a plus, a variant of it
-    (`en-us`, `en-gb+f3`). Whether it is there is known only where it is to speak.
+    A voice is named as in the synthesiser: a language and, after a plus, a variant of it (`en-us`,
+    `en-gb+f3`). Whether it is installed is only known when it speaks.
 
     Raises:
-        ProfileError: the rate is out of range, or the voice cannot be a name.
+        ProfileError: the rate is out of range, or the name of the voice is invalid.
     """
 
     rate: int | None = None
@@ -42,7 +42,7 @@ class VoicePreference:
             )
 
     def over(self, other: VoicePreference) -> VoicePreference:
-        """Return this preference, and where it says nothing, what the other one says."""
+        """Return this preference, with missing values taken from the other one."""
         return VoicePreference(
             other.rate if self.rate is None else self.rate,
             other.voice if self.voice is None else self.voice,

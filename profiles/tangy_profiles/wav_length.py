@@ -1,4 +1,4 @@
-"""How long a WAV file is."""
+"""The duration of a WAV file."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def wav_seconds(path: Path) -> float:
-    """Return how long a WAV file is, in s; 0 if it is none that can be played."""
+    """Return the duration of a WAV file, in s; 0 if it is invalid."""
     try:
         with wave.open(str(path)) as file:
             return float(file.getnframes() / file.getframerate())

@@ -1,4 +1,4 @@
-"""A child's side of its pipes: JSON lines come in and go out, and a bad one ends nothing.
+"""A child process's side of its pipes: JSON lines in both directions; invalid lines are skipped.
 
 The supervisor's side is `tangy_hw.worker_process`.
 """
@@ -22,11 +22,11 @@ Asked = dict[str, Any]
 
 
 class LineError(TangyError):
-    """A line that cannot be heeded; one sentence."""
+    """An invalid line; one sentence."""
 
 
 def read_line(line: bytes) -> Asked:
-    """Read a line as a JSON object.
+    """Parse a line as a JSON object.
 
     Raises:
         LineError: it is none, or nested too deeply.
@@ -44,7 +44,7 @@ def requests(refuse: Callable[[str], object], pipe: BinaryIO | None = None) -> I
     """Read requests until the pipe closes.
 
     Args:
-        refuse: called with a sentence that says why a line is no request.
+        refuse: called with a sentence for each invalid line.
         pipe: the input; by default standard input.
     """
     pipe = sys.stdin.buffer if pipe is None else pipe
@@ -62,7 +62,7 @@ def requests(refuse: Callable[[str], object], pipe: BinaryIO | None = None) -> I
 
 
 async def open_lines() -> tuple[asyncio.StreamReader, asyncio.ReadTransport]:
-    """Return what comes by standard input, and that pipe."""
+    """Return a reader of standard input, and its transport."""
     reader = asyncio.StreamReader(limit=LONGEST_LINE)
     pipe, _ = await asyncio.get_running_loop().connect_read_pipe(
         lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
@@ -71,10 +71,10 @@ async def open_lines() -> tuple[asyncio.StreamReader, asyncio.ReadTransport]:
 
 
 async def next_line(lines: asyncio.StreamReader) -> bytes:
-    """Return the next line, b"" at the end.
+    """Return the next line; b"" at the end.
 
     Raises:
-        LineError: it was too long; it is over, and the line after it comes next.
+        LineError: it was too long; it is skipped.
     """
     long = False
     while True:
@@ -94,7 +94,7 @@ async def next_line(lines: asyncio.StreamReader) -> bytes:
 async def coming(
     refuse: Callable[[str], object], lines: asyncio.StreamReader
 ) -> AsyncIterator[Asked]:
-    """Do as `requests` does, for what `open_lines` opened."""
+    """Yield requests as `requests` does, from the reader of `open_lines`."""
     while True:
         try:
             line = await next_line(lines)
@@ -108,20 +108,20 @@ async def coming(
 
 
 class AnswerWriter:
-    """The output of a child, from any thread; it ends with its reader."""
+    """The output of a child process, for any thread; the process ends when its reader is gone."""
 
     def __init__(self) -> None:
-        """Take standard output: what libraries print there goes to standard error from now on."""
+        """Take over standard output; other output to it goes to standard error from now on."""
         self._pipe = os.fdopen(os.dup(1), "wb")
         self._writing = threading.Lock()
         os.dup2(2, 1)
 
     def fileno(self) -> int:
-        """Return the pipe's number."""
+        """Return the file descriptor of the pipe."""
         return self._pipe.fileno()
 
     def write(self, answer: Asked, after: bytes | memoryview = b"") -> None:
-        """Say something, and the bytes that belong to it (see `worker_process`)."""
+        """Write a message, and the bytes that belong to it (see `worker_process`)."""
         line = json.dumps(answer).encode() + b"\n"
         with self._writing:
             try:
@@ -129,8 +129,8 @@ class AnswerWriter:
                 self._pipe.write(after)
                 self._pipe.flush()
             except (OSError, ValueError):
-                os._exit(0)  # nobody reads any more
+                os._exit(0)  # the reader is gone
 
     def refuse(self, why: str) -> None:
-        """Answer a line that is no request."""
+        """Answer an invalid line."""
         self.write({"failed": why})

@@ -1,4 +1,4 @@
-"""The file that takes what a worker process has to say; it does not grow without end."""
+"""The log file of a worker process, limited in size."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
-MOST = 1 << 20  # bytes: beyond, it is cut when it is opened
-KEPT = 1 << 18  # bytes of its end that are left then
+MOST = 1 << 20  # bytes beyond which it is shortened when opened
+KEPT = 1 << 18  # bytes of its end that are kept
 
 
 def open_log(path: Path) -> BinaryIO:
-    """Open a log to append to; one that has become too long keeps just its last lines.
+    """Open a log for appending, and shorten one that is too long.
 
-    Its owner alone may read it: what goes wrong may name people.
+    Only its owner may read it, because errors may name people.
 
     Raises:
         OSError: it cannot be written.
@@ -26,7 +26,7 @@ def open_log(path: Path) -> BinaryIO:
     try:
         if not stat.S_ISREG(os.fstat(log.fileno()).st_mode):
             raise OSError(errno.EINVAL, "is no file")
-        with suppress(PermissionError):  # it is another user's
+        with suppress(PermissionError):  # it belongs to another user
             os.fchmod(log.fileno(), 0o600)  # despite the umask, also if another program created it
         if os.fstat(log.fileno()).st_size > MOST:
             cut(path)
@@ -37,9 +37,9 @@ def open_log(path: Path) -> BinaryIO:
 
 
 def cut(path: Path) -> None:
-    """Cut a log that has become too long: its last lines move to its beginning.
+    """Shorten a log: its last lines move to its beginning.
 
-    Other processes that append to it go on behind them.
+    Other processes may keep appending to it.
     """
     with path.open("r+b") as file:
         file.seek(-KEPT, os.SEEK_END)
