@@ -1,1 +1,1 @@
-"""The meaning of words, typed or spoken: phrases, commands, stop, and pronunciation."""
+"""Language understanding, typed or spoken: phrases, commands, stop, and pronunciation."""

@@ -1,7 +1,7 @@
-"""How people answer a question with yes or no, and choose one of several things by its number.
+"""Answers to a question: yes, no, or the number of a choice.
 
-A whole sentence has to be an answer: "right" is a yes, "the right shoe" is none. Where a no is in
-it, it is no yes, and where both are in it, it is neither.
+Only a whole sentence is an answer: "right" is a yes, "the right shoe" is none. A sentence with a no
+in it is no yes, and one with both ("yes and no") is neither.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ PLAIN = (
     *("yes", "yes please", "yes do it", "yes that is right"),
     *("no", "no thank you", "no do not", "no that is wrong"),
 )
-"""Answers that can be nothing else: no phrase of an activity, and nobody's name."""
+"""Unambiguous answers: no phrases of an activity, and no names."""
 YES = (
     *("yes", "yes please", "yes do it", "yes that is right", "yes that's right", "yeah", "yep"),
     *("yup", "that's right", "that is right", "correct", "that's correct", "exactly", "sure"),
@@ -73,7 +73,7 @@ def _whole() -> re.Pattern[str]:
 
 
 def yes_or_no(text: str) -> bool | None:
-    """Return the answer that a text is: yes, no, or neither (None)."""
+    """Return whether a text answers yes or no; None for neither."""
     said = _plain(words_of(text))
     if not _whole().fullmatch(said):
         return None
@@ -86,7 +86,7 @@ def yes_or_no(text: str) -> bool | None:
 
 
 def choice_in(text: str, choices: Sequence[str]) -> int | None:
-    """Return which of some choices a text names, by its number or its words, counted from 1."""
+    """Return the choice that a text names, by number or words, counted from 1."""
     words = words_of(text)
     for number, choice in enumerate(choices, 1):
         if bare(words) and bare(words) == bare(words_of(choice)):
@@ -113,5 +113,5 @@ def _plain(words: Iterable[str]) -> str:
 
 
 def _both(said: str) -> bool:
-    """Say whether an answer is yes as well as no ("yes and no"), rather than a polite no."""
+    """Return whether an answer is both yes and no ("yes and no"), and not a polite no."""
     return re.match(r"(?:yes|yeah|yep)\b", said) is not None

@@ -1,7 +1,7 @@
 """Commands that a teacher may say or type, and the behaviours they mean (III-A-1).
 
-The identified words are matched to the phrases and keywords that the activity lists for each
-behaviour. Typed and spoken words come through this one door, so both are understood alike.
+The words are matched to the phrases and keywords that the activity lists for each behaviour. Typed
+and spoken words are understood in the same way.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ from tangy_tui.language.words import (
 
 MOST_ALTERNATIVES = 3
 
-KEYWORDS_AT_BEST = 0.95  # confidence of keywords in a text that is almost a phrase of theirs
-KEYWORDS_AT_LEAST = 0.55  # and in one that is quite unlike
-NEAREST_AT_BEST = 0.79  # confidence of a phrase that is nearly the one that was said
-NEAREST_AT_LEAST = 0.45  # less similar to every phrase: not understood
-NEARLY_A_PHRASE = 0.9  # confidence that counts also where words are likely other talk
-MENDED = 0.9  # factor on the confidence when words were corrected, besides their similarity
-CLEAR_LEAD = 0.2  # a lead over the next behaviour that takes nothing off the confidence
+KEYWORDS_AT_BEST = 0.95  # confidence of keywords in a text that is almost one of their phrases
+KEYWORDS_AT_LEAST = 0.55  # and in one that is very different
+NEAREST_AT_BEST = 0.79  # confidence of a near phrase
+NEAREST_AT_LEAST = 0.45  # lowest similarity to a phrase to be understood
+NEARLY_A_PHRASE = 0.9  # confidence that suffices even for words that are probably other talk
+MENDED = 0.9  # factor of the confidence after corrected words, besides their similarity
+CLEAR_LEAD = 0.2  # lead over the next behaviour from which confidence is not reduced
 ALTERNATIVE_AT_LEAST = 0.25
-UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases weigh up to 1
-SAME_WORD = 0.7  # likeness from which a word is taken for a slip of another
+UNKNOWN_WORD = 0.5  # weight of a word outside all phrases; words of phrases weigh up to 1
+SAME_WORD = 0.7  # similarity from which a word counts as a misspelling
 
 Learnt: TypeAlias = Callable[[Activity], IntentModel]
 
@@ -55,9 +55,9 @@ REFUSALS = frozenset(("don't", "dont", "never", "no", "nobody", "not", "without"
 class Command:
     """A requested behaviour, to be verified before it is executed.
 
-    `arguments` is empty or names the person to go to ({"user": id}); `confidence` runs from 0 to
-    1; `heard` is the text it was understood from; `alternatives` are up to three other
-    behaviours, likeliest first, none if the text is a phrase as it stands.
+    `arguments` is empty or names the person to go to ({"user": id}). `confidence` is from 0 to 1.
+    `heard` is the text. `alternatives` are up to three other behaviours, likeliest first; none for
+    an exact phrase.
     """
 
     behaviour: str
@@ -68,11 +68,11 @@ class Command:
 
 
 class Phrasebook:
-    """Finds the meaning of a text among all phrases and keywords of an activity (see `phrases`).
+    """Matches text to the phrases and keywords of an activity.
 
-    `phrases` has the behaviour of each phrase, with numbers as digits and in words; `people` are
-    the ids of those who can be gone to; `table` has each phrase with all that is known of it;
-    `game` are the words that the activity is called by.
+    `phrases` maps each phrase, with numbers as digits and in words, to its behaviour; `people` are
+    the ids of the participants; `table` has all details of the phrases; `game` are the words of the
+    activity's title.
     """
 
     phrases: Mapping[str, str]
@@ -88,8 +88,8 @@ class Phrasebook:
     ) -> None:
         """Make the phrasebook of an activity and its participants.
 
-        `learnt` returns what was learnt of how people ask in the activity; it is called when the
-        first text that is no phrase comes. Without it only phrases and keywords are understood.
+        `learnt` returns the intent model of the activity; it is called for the first text that is
+        not a phrase. Without it, only phrases and keywords are understood.
         """
         self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
         self.people = tuple(person.id for person in people)
@@ -119,17 +119,17 @@ class Phrasebook:
     def understand(self, text: str) -> Command | None:
         """Find the behaviour that a text asks for.
 
-        An exact phrase counts 1. What was learnt of how people ask counts as likely as it is, if
-        that is sure. Keywords that point to one behaviour count less, by how unlike its phrases
-        the rest of the text is; then comes the nearest phrase, if it is near enough. Words that
-        look like typing slips of known ones are mended, which costs confidence too.
+        An exact phrase has confidence 1. Next comes the intent model, if its probability is high
+        enough. Keywords of a single behaviour have less confidence the more the rest of the text
+        differs from its phrases. Last comes the nearest phrase, if it is near enough. Misspelt
+        words are corrected, which also reduces the confidence.
         """
         heard = clean(text)
         words = words_of(heard)
         if words not in self._phrases and self._breaks_off(words):
             return None
         if (exact := self._exact(words)) is not None:
-            return _command(exact, 1.0, heard)  # it leaves no doubt, and so no alternatives
+            return _command(exact, 1.0, heard)  # exact, so without alternatives
         mended, trust = self._mend(words)
         learnt = () if self._is_mistyped(words, mended) else self.paraphrased(text)
         if learnt and learnt[0].confidence >= SURE:
@@ -141,11 +141,11 @@ class Phrasebook:
 
     @property
     def learns(self) -> bool:
-        """Whether it also uses the learnt intents."""
+        """Whether it also uses the intent model."""
         return self._learnt is not None
 
     def paraphrased(self, text: str) -> tuple[Command, ...]:
-        """Return up to three commands for a text by the learnt intents, the likeliest first."""
+        """Return up to three commands by the intent model, likeliest first."""
         words = words_of(heard := clean(text))
         if self._learnt is None or self._stranger(words) is not None:
             return ()
@@ -156,7 +156,7 @@ class Phrasebook:
         )
 
     def _nearest(self, heard: str, words: Words, mended: Words, trust: float) -> Command | None:
-        """Find the behaviour with the phrases or keywords nearest to a text."""
+        """Return the behaviour with the nearest phrase or keywords."""
         if self._refuses(words) or self._stranger(words) is not None:
             return None
         found, confidence = self._find(words, mended)
@@ -166,7 +166,7 @@ class Phrasebook:
         return _command(found, confidence, heard, self._others(found, mended))
 
     def choices(self, text: str) -> tuple[Command, ...]:
-        """Return up to three commands that a text may mean, the likeliest first."""
+        """Return up to three commands that a text may mean, likeliest first."""
         command = self.understand(text)
         if command is None:
             return ()
@@ -181,44 +181,44 @@ class Phrasebook:
         return (command, *others)[:MOST_ALTERNATIVES]
 
     def known(self, text: str) -> int:
-        """Count the words of a text that are words of the phrases, and mean something."""
+        """Count the words of a text that occur in phrases and are not fillers."""
         told = (word for word in bare(words_of(clean(text))) if word not in LINKS)
         return sum(word in self._weights for word in told)
 
     def stranger(self, text: str) -> str | None:
-        """Return whom a text goes to if that is nobody here: "user 7", or a name alone."""
+        """Return the unknown person that a text names: "user 7", or an unknown name."""
         words = words_of(clean(text))
         if self._exact(words) is not None or self._refuses(words):
             return None
         return self._stranger(words)
 
     def suggestions(self, text: str) -> tuple[str, ...]:
-        """Return up to three phrases that a text comes nearest to, of different behaviours."""
+        """Return up to three phrases nearest to a text, of different behaviours."""
         words, _ = self._mend(words_of(clean(text)))
         near = [phrase.shown for likeness, phrase in self._ranking(words) if likeness > 0]
         return tuple(near[:MOST_ALTERNATIVES])
 
     def complete(self, prefix: str) -> tuple[str, ...]:
-        """Return the phrases that begin with what has been typed, the most usual ones first.
+        """Complete typed text to phrases, most usual first.
 
-        Case and spaces are of no account. Numbers are completed as digits, unless the prefix
-        already has a part of a number in words.
+        Case and spaces are ignored. Numbers are completed as digits, unless the prefix has part of
+        a number in words.
         """
         begun = re.sub(r"\s+", " ", clean(prefix, strip=False).lstrip()).casefold()
         return self.table.complete(begun)
 
     def spoken(self) -> tuple[str, ...]:
-        """Return the phrases as they are said, numbers in words: what a recogniser listens for.
+        """Return the spoken phrases, with numbers in words: the vocabulary of speech recognition.
 
-        The plain name of a behaviour is not among them unless the activity lists it as a phrase.
+        The name of a behaviour is only included if the activity lists it as a phrase.
         """
         return tuple(dict.fromkeys(phrase.said for phrase in self.table.all() if phrase.heard))
 
     def pronunciations(self) -> dict[str, tuple[str, ...]]:
-        """Return how words are said (ARPAbet) in place of what a dictionary says of them.
+        """Return pronunciations (ARPAbet) that replace those of the dictionary.
 
-        They are those of the activity and of the names of people. A name that is a word of the
-        phrases as well keeps beside its own what the activity or the dictionary says of it.
+        They come from the activity and from people's names. A name that is also a word of the
+        phrases keeps the pronunciations of the activity or dictionary too.
         """
         return dict(self.table.pronunciations)
 
@@ -226,7 +226,7 @@ class Phrasebook:
         return self._learnt is not None and self._learnt.talk(words) >= TALK
 
     def _is_mistyped(self, words: Words, mended: Words) -> bool:
-        """Say whether words are a phrase but for slips, or spaces that are missing."""
+        """Return whether words are a misspelt phrase, or one with missing spaces."""
         return self._exact(mended) is not None or run_together(bare(words)) in self._joined
 
     def _exact(self, words: Words) -> Phrase | None:
@@ -236,7 +236,7 @@ class Phrasebook:
         return any(word in REFUSALS and word not in self._weights for word in words)
 
     def _breaks_off(self, words: Words) -> bool:
-        """Whether a person's number stood here, misheard: "go to seat you", "go to user to"."""
+        """Return whether a person's number was misheard: "go to seat you", "go to user to"."""
         said = bare(words)
         if said[-1:] == words[-1:] and said[-1:] not in LINK_ENDS:
             return False
@@ -249,7 +249,7 @@ class Phrasebook:
         return goes and said[-1:] in LINK_ENDS
 
     def _stranger(self, words: Words) -> str | None:
-        """Find a number that belongs to nobody, or one unknown word instead of a person."""
+        """Return the unknown person: a number without a person, or one unknown word."""
         if not self.people:
             return None
         mended, _ = self._mend(words)
@@ -284,7 +284,7 @@ class Phrasebook:
         return self._weights.get(word, UNKNOWN_WORD)
 
     def _mend(self, words: Words) -> tuple[Words, float]:
-        """Put the known word for each typing slip; return the words and how far to trust them."""
+        """Correct misspelt words; return the words and a factor of the confidence."""
         mended: list[str] = []
         trust = 1.0
         for word in words:
@@ -297,7 +297,7 @@ class Phrasebook:
         return tuple(mended), trust
 
     def _find(self, words: Words, mended: Words) -> tuple[Phrase | None, float]:
-        """Return what words mean that are no phrase as they stand, and how sure that is."""
+        """Return the best match for words that are no exact phrase, and its confidence."""
         mistyped = self._exact(mended) or self._joined.get(run_together(bare(words)))
         if mistyped is not None:
             return mistyped, 1.0 if mended != words else MENDED
@@ -315,7 +315,7 @@ class Phrasebook:
         return best, NEAREST_AT_BEST * likeness * (0.7 + 0.3 * min(1.0, lead / CLEAR_LEAD))
 
     def _point(self, words: Words) -> Phrase | None:
-        """Return the keywords that were heard, if they all mean the same."""
+        """Return the matching keywords, if they all mean the same."""
         found = [entry for entry in self._keywords if in_order(entry.words, words)]
         kept = [
             entry
@@ -325,7 +325,7 @@ class Phrasebook:
         return kept[0] if len({(e.behaviour, e.user) for e in kept}) == 1 else None
 
     def _numbers_fit(self, words: Words, found: Phrase) -> bool:
-        """Refuse to go to anybody when a number was said that is not that person's."""
+        """Return whether the numbers in a text are those of the matched person."""
         if found.behaviour not in self._to_people:
             return True
         table = self.table
@@ -337,11 +337,11 @@ class Phrasebook:
         return own.issuperset(word for word in words if word.isdigit())
 
     def _seat_in(self, words: Words) -> Words:
-        """Return what a seat is called, where words name one; its number is then no person's."""
+        """Return the word for a seat in a text, if any; its number is then not a person's."""
         return next((noun for noun in self.table.seat_nouns if in_order(noun, words)), ())
 
     def _others(self, found: Phrase, words: Words) -> tuple[str, ...]:
-        """Return up to three other behaviours that words may mean, the likeliest first."""
+        """Return up to three other behaviours that words may mean, likeliest first."""
         others = [
             phrase.behaviour
             for likeness, phrase in self._ranking(words)
@@ -350,7 +350,7 @@ class Phrasebook:
         return tuple(others[:MOST_ALTERNATIVES])
 
     def _ranking(self, words: Words) -> list[tuple[float, Phrase]]:
-        """Return each behaviour's phrase that is most like the words, the likest first."""
+        """Return the most similar phrase of each behaviour, most similar first."""
         said = bare(words)
         best: dict[str, tuple[float, Phrase]] = {}
         for phrase in self._phrases.values():
@@ -360,7 +360,7 @@ class Phrasebook:
         return sorted(best.values(), key=lambda found: (-found[0], found[1].rank))
 
     def _phrase_likeness(self, said: Words, phrase: Words) -> float:
-        """Compare by an edit distance over words, each weighed by how much it tells."""
+        """Return a similarity by the word edit distance, weighted by how distinctive words are."""
         told = [self._weight(word) for word in phrase]
         spent = [self._weight(word) for word in said]
         wanted = list(enumerate(zip([stem(word) for word in phrase], told, strict=True)))
@@ -389,7 +389,7 @@ def _command(
 
 
 def _of_one_meaning(phrases: Iterable[Phrase], key: Callable[[Phrase], str]) -> dict[str, Phrase]:
-    """Return the phrases by a key, where all phrases with that key mean the same."""
+    """Return the phrases by a key, without keys of phrases with different meanings."""
     found: dict[str, list[Phrase]] = defaultdict(list)
     for phrase in phrases:
         found[key(phrase)].append(phrase)

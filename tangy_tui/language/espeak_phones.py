@@ -1,4 +1,4 @@
-"""ARPAbet and the phones of espeak-ng: what it would say for a word, and how to have it said."""
+"""Conversion between ARPAbet and the phones of espeak-ng."""
 # ruff: noqa: RUF001 - these letters are IPA
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from tangy_profiles.phones import VOWELS
 
 PROGRAM = "espeak-ng"
 VOICE = "en-us"
-SECONDS = 5.0  # for a word: 8 ms when nothing else runs
+SECONDS = 5.0  # timeout; 8 ms on an idle machine
 
 FROM_IPA = {
     **{"ɑ": "AA", "ɒ": "AA", "a": "AA", "æ": "AE", "ʌ": "AH", "ə": "AH", "ɐ": "AH", "ɔ": "AO"},
@@ -25,7 +25,7 @@ FROM_IPA = {
     **{"ʁ": "R", "s": "S", "ʃ": "SH", "t": "T", "ɾ": "T", "θ": "TH", "v": "V", "β": "V", "w": "W"},
     **{"ʍ": "W", "j": "Y", "z": "Z", "ʒ": "ZH", "ʔ": "T"},
 }
-"""The phones of espeak-ng's English voice, and some that foreign words borrow."""
+"""The phones of espeak-ng's English voice, and some of foreign words."""
 
 TO_ESPEAK = {
     **{"AA": "A:", "AE": "a", "AH": "V", "AO": "O:", "AW": "aU", "AY": "aI", "EH": "E"},
@@ -42,7 +42,7 @@ _LONGEST = max(map(len, FROM_IPA))
 
 
 def espeak_phones(word: str, which: Callable[[str], str | None] = shutil.which) -> str:
-    """Return the phones in which espeak-ng would say a word; "" if it is absent or fails."""
+    """Return the ARPAbet phones by espeak-ng for a word; "" if it is absent or fails."""
     program = which(PROGRAM)
     if program is None:
         return ""
@@ -61,7 +61,7 @@ def espeak_phones(word: str, which: Callable[[str], str | None] = shutil.which) 
 
 
 def from_ipa(text: str) -> str:
-    """Return the ARPAbet phones of what espeak-ng wrote in IPA, one underscore between phones."""
+    """Convert IPA of espeak-ng, with underscores between phones, to ARPAbet."""
     phones: list[str] = []
     for part in re.split(r"[_\s]+", _MARKS.sub("", text)):
         while part:
@@ -74,7 +74,7 @@ def from_ipa(text: str) -> str:
 
 
 def _by_convention(phones: list[str]) -> str:
-    """Write phones as the dictionary does, which has one for a vowel with r: "bird" is B ER D."""
+    """Merge a vowel and r into one phone, as the dictionary does: "bird" is B ER D."""
     text = f" {' '.join(phones)} "
     for theirs, ours in ((" AH R ", " ER "), (" ER R ", " ER ")):
         text = text.replace(theirs, ours)
@@ -82,9 +82,9 @@ def _by_convention(phones: list[str]) -> str:
 
 
 def to_espeak(phones: str) -> str:
-    """Return ARPAbet phones (a comma between words) as a text that espeak-ng says just so.
+    """Convert ARPAbet phones (a comma between words) to espeak-ng's phoneme input.
 
-    ARPAbet as it is kept here has no stress: the first vowel that is not AH gets it.
+    The phones have no stress marks: the first vowel other than AH gets the stress.
     """
     return " ".join(f"[[{_word(word.split())}]]" for word in phones.split(","))
 

@@ -1,8 +1,8 @@
-"""Sentences from which the understanding of an activity is learnt, made of that activity's words.
+"""Training sentences for the intent model, made from an activity's own words.
 
-They come from templates of how people ask (`asking.toml`), into which each behaviour's phrases,
-question and name are put, and from talk that asks for nothing, with the same words in it. A person
-or seat stands in them as one token, so the model does not depend on who takes part.
+Templates (`asking.toml`) are filled with each behaviour's phrases, question and name; negative
+examples are talk with the same words. A person or seat is one token, so the model does not depend
+on the participants.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_tui.language.words import Words, words_of
 
 SOMEBODY = "somebody0"
-"""Stands for a person or a seat; no text has this word."""
-ASKS = "ask"  # how the question of a behaviour begins that asks a person to do something
+"""The token for a person or a seat; no text contains it."""
+ASKS = "ask"  # first word of a question that asks a person to do something
 ARTICLES = frozenset(("a", "an", "the", "any", "next", "another"))
-MADE = ARTICLES - {"the"}  # before what a behaviour makes, rather than what it is done to
-EVERY = 3  # each phrase is put into one of so many templates
-WORDED = 10  # each other wording is put into one of so many templates of talk
+MADE = ARTICLES - {"the"}  # before a new thing, not an existing one
+EVERY = 3  # each phrase is used with one in this many templates
+WORDED = 10  # each other wording is used with one in this many templates of talk
 
 
 class Example(NamedTuple):
-    """A sentence, and the behaviour that it asks for; "" asks for nothing."""
+    """A sentence, and the behaviour that it asks for; "" for none."""
 
     words: Words
     behaviour: str
@@ -36,13 +36,13 @@ class Example(NamedTuple):
 
 @cache
 def templates() -> Mapping[str, Any]:
-    """Return the templates of how people ask."""
+    """Return the templates of requests and talk."""
     content = files("tangy_tui.language").joinpath("asking.toml").read_text(encoding="utf-8")
     return tomllib.loads(content)
 
 
 def examples_of(activity: Activity) -> tuple[Example, ...]:
-    """Return the sentences to learn an activity from, each once, in a fixed order."""
+    """Return the training sentences of an activity, without duplicates, in a fixed order."""
     found: dict[Words, str] = {}
     for behaviour in activity.behaviours.values():
         for text in _asking(behaviour, activity):
@@ -77,7 +77,7 @@ def _asking(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
 
 
 def _by_effect(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
-    """Yield sentences that ask for what a behaviour does."""
+    """Yield sentences that ask for the effect of a behaviour."""
     known = templates()
     goes = behaviour.effect == "go to user"
     them, sub = cycle(known["them"]), cycle(known["sub"])
@@ -89,7 +89,7 @@ def _by_effect(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
 
 
 def _through(behaviour: Behaviour, known: Mapping[str, Any]) -> Iterator[str]:
-    """Yield sentences that have a person do what the behaviour asks for."""
+    """Yield sentences that tell a person to do what the behaviour asks for."""
     them, sub = cycle((*known["them"], SOMEBODY)), cycle(known["sub"])
     for phrase in own_phrases(behaviour):
         they = _without_asking(phrase)
@@ -118,7 +118,7 @@ def _talk(activity: Activity) -> Iterator[str]:
 
 
 def own_phrases(behaviour: Behaviour) -> tuple[str, ...]:
-    """Return what the activity itself has for a behaviour: phrases, question, name."""
+    """Return the activity's texts for a behaviour: phrases, question, name."""
     return tuple(dict.fromkeys((*behaviour.phrases, behaviour.question, behaviour.name)))
 
 
@@ -132,7 +132,7 @@ def _without_asking(phrase: str) -> str:
 
 
 def _things(behaviour: Behaviour, after: frozenset[str]) -> tuple[str, ...]:
-    """Return the words that stand after an article in the phrases of a behaviour: "joke"."""
+    """Return the words after an article in the phrases of a behaviour: "joke"."""
     if behaviour.effect.startswith("go to"):
         return ()
     found = (
@@ -145,13 +145,13 @@ def _things(behaviour: Behaviour, after: frozenset[str]) -> tuple[str, ...]:
 
 
 def _people(behaviour: Behaviour) -> tuple[str, ...]:
-    """Return how somebody can be called who is not named: "the player", "her"."""
+    """Return references to an unnamed person: "the player", "her"."""
     nouns = dict.fromkeys(words_of(phrase)[-1] for phrase in behaviour.phrases)
     return (*(f"the {noun}" for noun in nouns), *templates()["them"][:3])
 
 
 def _doing(phrase: str) -> str:
-    """Return a phrase as what somebody does now: "telling a joke"."""
+    """Return the present participle of a phrase: "telling a joke"."""
     verb, _, rest = phrase.partition(" ")
     if verb.endswith("e") and not verb.endswith("ee"):
         verb = verb[:-1]
@@ -165,7 +165,7 @@ def _fill(form: str, **parts: str) -> str:
 
 
 def _words(text: str) -> Words:
-    """Split a made sentence as a said one is split."""
+    """Split a generated sentence into words, keeping the token for a person."""
     told: Sequence[str] = text.split(SOMEBODY)
     words: list[str] = []
     for place, part in enumerate(told):

@@ -1,7 +1,7 @@
-"""Which behaviour a sentence asks for, by a linear model over its words, their parts and meanings.
+"""The intent classifier: a linear model over words, character n-grams and word vectors.
 
-The model is a multinomial logistic regression (`intent_training` fits it). It is kept as plain JSON
-and answers without numpy, in less than a millisecond.
+It is a multinomial logistic regression, fitted by `intent_training`. It is stored as JSON and
+evaluated without numpy, in less than a millisecond.
 """
 
 from __future__ import annotations
@@ -16,19 +16,18 @@ from tangy_tui.language.examples import SOMEBODY
 from tangy_tui.language.word_vectors import sentence_vector
 from tangy_tui.language.words import Words
 
-SHORTEST_PART, LONGEST_PART = 3, 5  # letters of the parts of words, their ends included
+SHORTEST_PART, LONGEST_PART = 3, 5  # characters of an n-gram, including the word's ends
 BEGIN, END = "^", "$"
 
 
 class UnreadableModel(ValueError):
-    """A file is no model."""
+    """A file is not a valid model."""
 
 
 def features(words: Words) -> dict[str, float]:
-    """Return what the model looks at: words and pairs of them, parts of words, and the meaning.
+    """Return the features: words and word pairs, character n-grams, and the sentence vector.
 
-    The values are shares: each of the three has the length 1, so that a long sentence weighs no
-    more than a short one.
+    The values are shares: each of the three groups has length 1, so long sentences weigh no more.
     """
     told = [*words, *(f"{a} {b}" for a, b in zip((BEGIN, *words), (*words, END), strict=True))]
     parts = {
@@ -54,7 +53,7 @@ class IntentModel:
     weights: Mapping[str, tuple[float, ...]]
 
     def probabilities(self, words: Words) -> dict[str, float]:
-        """Return the probability that each behaviour is requested; they sum to 1."""
+        """Return the probability of each behaviour; they sum to 1."""
         scores = list(self.offsets)
         for name, value in features(words).items():
             for place, weight in enumerate(self.weights.get(name, ())):
@@ -65,7 +64,7 @@ class IntentModel:
         return {b: one / total for b, one in zip(self.behaviours, raised, strict=True)}
 
     def to_json(self) -> str:
-        """Write it as JSON."""
+        """Write the model as JSON."""
         return json.dumps(
             {"behaviours": self.behaviours, "offsets": self.offsets, "weights": self.weights},
             separators=(",", ":"),
@@ -76,7 +75,7 @@ def read_model(text: str) -> IntentModel:
     """Read a model from JSON.
 
     Raises:
-        UnreadableModel: it is something else.
+        UnreadableModel: it is invalid.
     """
     try:
         read: Any = json.loads(text)

@@ -1,7 +1,7 @@
-"""Models of intents for each activity, trained once and stored under their examples' digest.
+"""Intent models of activities, trained once and stored under the digest of their examples.
 
-To learn takes seconds, to read what was learnt milliseconds. That of the activities which come with
-Tangy comes with it, too; others are learnt when they are first needed.
+Training takes seconds, loading milliseconds. The models of Tangy's activities are included; others
+are trained when first needed.
 """
 
 from __future__ import annotations
@@ -18,26 +18,26 @@ from tangy_tui.language.examples import examples_of, templates
 from tangy_tui.language.intent_model import IntentModel, UnreadableModel, read_model
 
 VERSION = 2
-"""Counted up when examples, features or the fit change: what was learnt before is learnt anew."""
+"""Incremented when examples, features or the fit change, to invalidate stored models."""
 SHIPPED = Path(__file__).parent / "learnt"
 MOST = 32
-"""Kept at most: those that were learnt last."""
+"""The number of models to keep, the latest ones."""
 LARGEST = 20_000_000
-"""Bytes of a file that is read at most; that of Bingo has 400,000."""
+"""The largest file to read (bytes); the model of Bingo has 400,000."""
 
 _log = logging.getLogger(__name__)
 
 
 class Intents:
-    """Learns the intents of activities, and caches the models in a folder."""
+    """Trains the intent models of activities, and caches them in a folder."""
 
     def __init__(self, folder: Path | None = None) -> None:
-        """Use a folder; else one for what can be made again, in the user's own."""
+        """Use a folder, by default the user's cache folder."""
         self._folder = folder
         self._models: dict[str, IntentModel] = {}
 
     def model(self, activity: Activity) -> IntentModel:
-        """Return the model of an activity, learnt now if it is not cached."""
+        """Return the model of an activity; train it if it is not cached."""
         digest = digest_of(activity)
         model = self._models.get(digest) or self._kept(digest)
         if model is None:
@@ -61,7 +61,7 @@ class Intents:
         return None
 
     def _keep(self, digest: str, model: IntentModel) -> None:
-        """Write a file atomically; ignore a folder that cannot be written to."""
+        """Write a file atomically, and delete the oldest files; ignore write errors."""
         folder = self._where()
         part = folder / f"{digest}.{os.getpid()}.part"
         try:
@@ -85,7 +85,7 @@ class Intents:
 
 
 def digest_of(activity: Activity) -> str:
-    """Return the digest that a model is kept by: of all that its examples are made of."""
+    """Return the digest of everything that a model's examples are made from."""
     own = [
         (b.name, b.phrases, b.wordings, b.question, b.effect, b.persuades)
         for b in activity.behaviours.values()

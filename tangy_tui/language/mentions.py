@@ -1,4 +1,4 @@
-"""Find the people a sentence mentions: by name, number or seat, or in general."""
+"""Detection of the people a sentence mentions: by name, number or seat, or in general."""
 
 from __future__ import annotations
 
@@ -22,8 +22,7 @@ POSSESSIVE = "'s"
 class Mentioned:
     """A sentence with each mention of a person as one token, and these people.
 
-    `users` are the ids of those who take part; `strangers` says whether a number or seat was
-    mentioned that is nobody's.
+    `users` are the ids of participants; `strangers`: an unknown number or seat was mentioned.
     """
 
     words: Words
@@ -35,7 +34,7 @@ class Mentions:
     """Finds the people of a phrasebook in sentences."""
 
     def __init__(self, table: Phrases, nouns: Mapping[str, str]) -> None:
-        """Take the names, numbers and seats of a phrasebook, and what it calls people."""
+        """Use the names, numbers and seats of a phrasebook, and its nouns for people."""
         self._named: dict[Words, str] = {**table.names, **table.seats}
         self._numbers = table.numbers
         self._seats = table.seat_nouns
@@ -44,7 +43,7 @@ class Mentions:
         self._longest = max(map(len, self._named), default=0)
 
     def find(self, words: Words) -> Mentioned:
-        """Find the people in words, numbers as digits."""
+        """Find the people in words (numbers as digits)."""
         plain = tuple(map(_plain, words))
         found: list[str] = []
         users: set[str] = set()
@@ -67,7 +66,7 @@ class Mentions:
         return Mentioned(tuple(found), frozenset(users), strangers)
 
     def _at(self, words: Words, place: int) -> tuple[int, str | None]:
-        """Return how many words at a place mention a person (0: none), and whom."""
+        """Return how many words at a place mention a person (0: none), and the person's id."""
         for size in range(min(self._longest, len(words) - place), 0, -1):
             user = self._named.get(words[place : place + size])
             if user is not None:
@@ -94,7 +93,7 @@ class Mentions:
 
 
 def _plain(word: str) -> str:
-    """Return whose something is: "rosa's" is rosa, "2's" is 2."""
+    """Remove a possessive: "rosa's" becomes rosa, "2's" becomes 2."""
     bare = word.removesuffix(POSSESSIVE)
     return str(NUMBERS.index(bare)) if bare != word and bare in NUMBERS else bare
 

@@ -1,8 +1,8 @@
-"""Understand sentences that are no phrase of an activity, with a model learnt for it.
+"""Understanding of sentences outside the phrases of an activity, by its intent model.
 
-Three tiers come of it: *sure* (one behaviour is asked about), *unsure* (up to three are offered),
-and nothing. The limits were chosen by hand and looked at on the tuned half of
-`tests/bench/sentences.py`, which no figure is quoted for.
+There are three tiers: *sure* (one behaviour is asked about), *unsure* (up to three are offered),
+and nothing. The thresholds were chosen by hand and checked on the tuning half of
+`tests/bench/sentences.py`, for which no figure is quoted.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tangy_tui.language.words import FILLERS, Words, bare
 
 SURE = 0.6
 UNSURE = 0.35
-"""How likely any command has to be for the likeliest to be offered."""
+"""The lowest probability of any command for the likeliest ones to be offered."""
 TALK = 0.9
 """Probability of other talk above which only near phrases count."""
 WORTH_OFFERING = 0.08
@@ -24,13 +24,13 @@ MOST = 3
 
 FORBIDDING = frozenset(("don't", "dont", "not", "never", "no", "nobody", "without"))
 OPENINGS = frozenset(("do", "i", "we", "let's", "lets", "let", "us", "should", "must", "better"))
-"""Words that can stand before the one that forbids."""
+"""Words that may precede a negation at the beginning of a sentence."""
 FORBIDS_WITHIN = 4  # words from the beginning
 
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """A behaviour that a sentence may ask for, for whom (`user`), and how likely that is."""
+    """A behaviour that a sentence may ask for, its person (`user`), and its probability."""
 
     behaviour: str
     user: str | None
@@ -38,26 +38,26 @@ class Meaning:
 
 
 class Paraphrases:
-    """Understands what nobody has written down as a phrase."""
+    """Understands sentences that are not phrases."""
 
     def __init__(
         self, model: Callable[[], IntentModel], mentions: Mentions, to_people: Collection[str]
     ) -> None:
-        """Understand by a model, which is made when it is first needed.
+        """Use an intent model, which is loaded when first needed.
 
-        Behaviours `to_people` are done for the person who is mentioned.
+        Behaviours `to_people` are for the person mentioned.
         """
         self._model = model
         self._mentions = mentions
         self._to_people = to_people
 
     def talk(self, words: Words) -> float:
-        """Return the probability, from 0 to 1, that words request nothing."""
+        """Return the probability, from 0 to 1, that words ask for nothing."""
         mentioned = self._mentions.find(words)
         return 1.0 if forbids(mentioned.words) else self._likely(mentioned.words).get("", 0.0)
 
     def meanings(self, words: Words) -> tuple[Meaning, ...]:
-        """Return up to three meanings, the likeliest first; none if words ask for nothing."""
+        """Return up to three meanings, likeliest first; none if words ask for nothing."""
         mentioned = self._mentions.find(words)
         if not bare(mentioned.words) or forbids(mentioned.words):
             return ()
@@ -72,7 +72,7 @@ class Paraphrases:
                 break
             goes = name in self._to_people
             if goes and (mentioned.strangers or len(users) > 1):
-                continue  # nobody knows whom to go to
+                continue  # unknown whom to go to
             user = next(iter(users)) if goes and users else None
             found.append(Meaning(name, user, likelihood))
         return tuple(found)
@@ -82,7 +82,7 @@ class Paraphrases:
 
 
 def forbids(words: Words) -> bool:
-    """Say whether a sentence begins by asking for something not to be done."""
+    """Return whether a sentence begins with a negation."""
     for word in words[: FORBIDS_WITHIN + 2]:
         if word in FORBIDDING:
             return True

@@ -1,7 +1,7 @@
-"""The phrasebook: every phrase of an activity, also with people and their seats.
+"""The phrasebook: every phrase of an activity, including those with people and seats.
 
-The matcher, the completion, the recogniser and the help page are made from this one table; what
-is meant by a text that is no phrase is found in `commands`.
+Matching, completion, speech recognition and the help page all use this table; `commands`
+understands other text.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ USER = ("user",)
 
 @dataclass(frozen=True, slots=True)
 class Phrase:
-    """One way to ask for a behaviour, or the keywords of one; numbers stand as digits.
+    """A phrase or the keywords of a behaviour, with numbers as digits.
 
     `bare` are the words without fillers; `rank` orders equally good matches; `user` is the person
-    to go to, if one is meant; `heard` says whether speech recognition listens for it.
+    to go to, if any; `heard`: it is in the vocabulary of speech recognition.
     """
 
     words: Words
@@ -53,20 +53,20 @@ class Phrase:
 
 
 class Phrases:
-    """Every phrase and the keywords of an activity, with the people who take part in it.
+    """Every phrase and the keywords of an activity, with its participants.
 
-    Behaviours that go to a person can be asked for with that person's number, name or seat ("go
-    to user 2", "go to user two", "go to rosa", "go to seat two", "go to the window seat"). The
-    number is the one their id ends with, or their place in the list where the ids have none.
+    A behaviour that goes to a person can be combined with the person's number, name or seat ("go to
+    user 2", "go to user two", "go to rosa", "go to seat two", "go to the window seat"). The number
+    is the one at the end of their id, or else their place in the list.
     """
 
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
-        """Enter the phrases, then their forms with people; the first entry keeps its meaning."""
+        """Add the phrases, then their forms with people; the first entry of a phrase wins."""
         self._order = tuple(activity.behaviours)
         self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
-        """The behaviours as they are asked about, as it is said."""
+        """The questions about the behaviours, as they are spoken."""
         self.answers = _answers_in(activity)
-        """What people may answer in a game, by how it is spoken."""
+        """The possible answers of people in a game, by spoken form."""
         self.numbers = _numbers_of(people)
         self.names = _names_of(people)
         self.seats = _seats_of(people)
@@ -91,15 +91,15 @@ class Phrases:
         self.pronunciations = self._read_pronunciations(activity, people)
         self.sources: dict[str, Literal["activity", "person"]]
         self.sources = dict.fromkeys(self.pronunciations, "person")
-        """Who says how a word is pronounced: "activity" or "person"."""
+        """The source of each pronunciation: "activity" or "person"."""
         self.sources |= dict.fromkeys(activity.pronunciations, "activity")
 
     def all(self) -> Iterable[Phrase]:
-        """The phrases in the order in which they were entered."""
+        """Return the phrases in the order in which they were added."""
         return self.by_words.values()
 
     def complete(self, begun: str) -> tuple[str, ...]:
-        """Return the phrases that begin so, the most usual ones first (see `Phrasebook`)."""
+        """Return the phrases with a prefix, most usual first (see `Phrasebook`)."""
         ranked = sorted(self.all(), key=lambda phrase: phrase.rank)
         shown = dict.fromkeys(p.shown for p in ranked if p.shown.startswith(begun))
         if not shown:
@@ -107,7 +107,7 @@ class Phrases:
         return tuple(shown)
 
     def word_weights(self) -> dict[str, float]:
-        """Weigh every word of the phrasebook: the more behaviours share it, the less it tells."""
+        """Return a weight for every word: the more behaviours share it, the lower."""
         users: dict[str, set[str]] = defaultdict(set)
         for phrase in (*self.all(), *self.keywords):
             for word in phrase.words:
@@ -139,11 +139,11 @@ class Phrases:
             for seat, user in self.seats.items():
                 the = () if seat[-1].isdigit() else ("the",)
                 self._add((*verb, *the, *seat), behaviour.name, user, place)
-            for seat_noun in self.seat_nouns:  # else "go to seat" were the first one
+            for seat_noun in self.seat_nouns:  # else "go to seat" would mean the first one
                 self._add((*verb, *seat_noun), behaviour.name, None, place, heard=False)
 
     def _add_addressees(self, behaviour: Behaviour) -> None:
-        """Put people behind each phrase: "give a hint to rosa", "give a hint to everybody"."""
+        """Append people to each phrase: "give a hint to rosa", "give a hint to everybody"."""
         called: list[tuple[Words, str]] = [*self.names.items(), *self.seats.items()]
         called += [((noun, number), user) for number, user in self.numbers.items() for noun in USER]
         if EVERYBODY in behaviour.to:
@@ -168,9 +168,9 @@ class Phrases:
     def _read_pronunciations(
         self, activity: Activity, people: Sequence[Person]
     ) -> dict[str, tuple[str, ...]]:
-        """Gather how words are said: by the activity, else as the names of people.
+        """Collect pronunciations from the activity, and from people's names.
 
-        A word of the phrases that is a name as well keeps the way in which it is mostly said.
+        A word of the phrases that is also a name keeps its usual pronunciation too.
         """
         said: dict[str, list[str]] = defaultdict(list)
         for person in people:
@@ -187,7 +187,7 @@ class Phrases:
 
 
 def name_phones(person: Person) -> dict[str, str]:
-    """Return how the words of a name are said, where the person's pronunciation has them all."""
+    """Return the pronunciation of each word of a name, if the person's has all of them."""
     words = words_of(clean(person.name))
     phones = person.pronunciation.split(", ") if person.pronunciation else []
     if len(words) != len(phones):
@@ -196,7 +196,7 @@ def name_phones(person: Person) -> dict[str, str]:
 
 
 def _numbers_of(people: Sequence[Person]) -> dict[str, str]:
-    """Return ids by number: the number that the ids end with, else the place in the list."""
+    """Return ids by number: the number at the end of the ids, or else the place in the list."""
     ends = [re.search("[0-9]{1,2}$", person.id) for person in people]
     numbers = [str(int(end.group())) for end in ends if end]
     if len(set(numbers)) < len(people):
@@ -205,7 +205,7 @@ def _numbers_of(people: Sequence[Person]) -> dict[str, str]:
 
 
 def _names_of(people: Sequence[Person]) -> dict[Words, str]:
-    """Return ids by name; a name that two people share, or that has no word, is left out."""
+    """Return ids by name, without names that two people share or that have no word."""
     named: dict[Words, list[str]] = defaultdict(list)
     for person in people:
         named[words_of(clean(person.name))].append(person.id)
@@ -213,16 +213,15 @@ def _names_of(people: Sequence[Person]) -> dict[Words, str]:
 
 
 def _seats_of(people: Sequence[Person]) -> dict[Words, str]:
-    """Return ids by the ways to call their seats."""
+    """Return ids by the names of their seats."""
     return {words_of(seat): person.id for person in people for seat in person.seats}
 
 
 def _answers_in(activity: Activity) -> dict[str, str]:
-    """Return all answers people may say: as they are spoken, and as the items have them.
+    """Return all possible answers of people: spoken form -> text of the item.
 
-    They are the options of each item and the right answers.
-
-    Letters alone are left out: B, C and D sound too much alike to be judged.
+    They are the options of each item and the right answers, without single letters: B, C and D
+    sound too similar.
     """
     if not isinstance(activity, DeclaredActivity):
         return {}

@@ -1,4 +1,4 @@
-"""How words and names are pronounced: as the dictionary has it, or as may be guessed."""
+"""Pronunciations of words and names, from the dictionary or guessed."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from tangy_profiles.phones import LONGEST, read_name_phones, read_phones
 from tangy_tui.language import espeak_phones, spelling
 from tangy_tui.language.words import clean, spoken, words_of
 
-DICTIONARY = ("model", "en-us", "cmudict-en-us.dict")  # of pocketsphinx, which listens by it
+DICTIONARY = ("model", "en-us", "cmudict-en-us.dict")  # pocketsphinx's own dictionary
 
 to_espeak = espeak_phones.to_espeak
 
 
 def pronounce(word: str) -> tuple[str, ...]:
-    """Return the pronunciations that the dictionary has of a word, the usual one first.
+    """Return the pronunciations of a word in the dictionary, the usual one first.
 
-    There are none if it does not have the word, or is not installed. The first call reads the
+    There are none if it is unknown, or the dictionary is not installed. The first call reads the
     dictionary, 3 MB, in 20 ms; each takes some 0.1 ms.
     """
     text, key = dictionary(), word.casefold()
-    if not text or not key.strip() or "(" in key:  # which numbers further pronunciations
+    if not text or not key.strip() or "(" in key:  # "(" marks further pronunciations
         return ()
     found: list[str] = []
     start, end = _letter(key[0])
@@ -38,15 +38,15 @@ def pronounce(word: str) -> tuple[str, ...]:
 
 
 def can_look_up() -> bool:
-    """Say whether the dictionary is installed."""
+    """Return whether the dictionary is installed."""
     return bool(dictionary())
 
 
 def suggest(word: str, which: Callable[[str], str | None] = shutil.which) -> str:
-    """Guess how a word is pronounced: as espeak-ng would say it, else from its spelling.
+    """Guess a word's pronunciation with espeak-ng, or else from its spelling.
 
-    "" if neither knows (a word in another script). Some 10 ms with
-    espeak-ng, 50 ms without.
+    Return "" if neither works (a word in another script). It takes some 10 ms with espeak-ng, 50 ms
+    without.
     """
     latin = all(letter == "'" or "LATIN" in unicodedata.name(letter, "") for letter in word)
     guessed = espeak_phones.espeak_phones(word, which) if latin else ""
@@ -56,7 +56,7 @@ def suggest(word: str, which: Callable[[str], str | None] = shutil.which) -> str
 
 
 def suggest_name(name: str, which: Callable[[str], str | None] = shutil.which) -> str:
-    """Return how a name may be pronounced, a comma between its words; "" if nobody knows."""
+    """Return a likely pronunciation of a name, with commas between words; "" if unknown."""
     words = spoken(words_of(clean(name))).split()
     phones = [next(iter(pronounce(word)), "") or suggest(word, which) for word in words]
     return ", ".join(phones) if all(phones) else ""
@@ -68,19 +68,19 @@ def unknown_words(name: str) -> tuple[str, ...]:
 
 
 def check(text: str) -> str:
-    """Return the phones of a word in capitals, with one space between them and without stress.
+    """Return the phones of a word in capitals, with single spaces and without stress.
 
     Raises:
-        ProfileError: one of them is no phone; says which is nearest.
+        ProfileError: a phone is invalid; the message suggests the nearest one.
     """
     return read_phones(text)
 
 
 def check_name(text: str, name: str) -> str:
-    """Return the phones of a name, a comma between its words.
+    """Return the phones of a name, with commas between its words.
 
     Raises:
-        ProfileError: one of them is no phone, or there are not as many words as in the name.
+        ProfileError: a phone is invalid, or the number of words differs from that of the name.
     """
     phones = read_name_phones(text)
     words = words_of(clean(name))
@@ -96,7 +96,7 @@ def check_name(text: str, name: str) -> str:
 
 @cache
 def _letter(letter: str) -> tuple[int, int]:
-    """Return where in the dictionary the words with a first letter stand."""
+    """Return the range of the dictionary with a first letter."""
     text = dictionary()
     start, last = text.find(f"\n{letter}"), text.rfind(f"\n{letter}")
     return (start, text.find("\n", last + 1) + 1) if start >= 0 else (0, 0)
@@ -104,7 +104,7 @@ def _letter(letter: str) -> tuple[int, int]:
 
 @cache
 def dictionary() -> str:
-    """Return the text of the dictionary, a word a line; "" if it is not installed."""
+    """Return the text of the dictionary, one word per line; "" if it is not installed."""
     spec = find_spec("pocketsphinx")
     if spec is None or spec.origin is None:
         return ""

@@ -1,4 +1,4 @@
-"""A guess at how a word is pronounced, from how words that are spelled like it are."""
+"""A guess at a word's pronunciation, from known words with similar spelling."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from collections import Counter
 from collections.abc import Iterator
 from functools import lru_cache
 
-MOST_ALIKE = 40  # words that are looked at for a letter
-ENOUGH_ALIKE = 3  # words of which the most usual pronunciation is believed
+MOST_ALIKE = 40  # words compared for each letter
+ENOUGH_ALIKE = 3  # words that are enough for a majority vote
 WINDOWS = (
     *((4, 4), (3, 4), (4, 3), (3, 3), (2, 3), (3, 2), (2, 2), (1, 2), (2, 1), (1, 1)),
     *((0, 1), (1, 0), (0, 0)),
-)  # letters before and after: the wider, the more alike the words are
+)  # letters before and after: longest context first
 
-# What each letter stands for in English, the most usual first; a letter may also be silent.
+# Phones of each letter in English, the most usual first; a letter may also be silent.
 SOUNDS = {
     "a": "AE EY AH AA AO EH IH AW ER",
     "b": "B",
@@ -44,21 +44,21 @@ SOUNDS = {
     "'": "",
 }
 PAIRS = {"x": "K S|G Z", "u": "Y UW|Y ER|Y UH|Y AH", "l": "AH L", "o": "W AH", "z": "T S"}
-"""The letters that stand for two phones: ("box", "music", "little", "one", "pizza")."""
+"""Letters that can stand for two phones: ("box", "music", "little", "one", "pizza")."""
 
 _SOUNDS = {letter: frozenset(phones.split()) for letter, phones in SOUNDS.items()}
 _PAIRS = {letter: frozenset(phones.split("|")) for letter, phones in PAIRS.items()}
 FIT, MISFIT, SILENT = 2.0, -2.0, -0.4
 
 Parts = tuple[str, ...]
-"""For each letter of a word its phones: none, one or two."""
+"""The phones of each letter of a word: none, one or two."""
 
 
 def guess(word: str, dictionary: str) -> str:
     """Return the likeliest phones of a word (a to z and ').
 
     Args:
-        word: in lower case.
+        word: the word in lower case.
         dictionary: known words, each as a line break, the word, a space, its phones; "" for none.
     """
     padded = f"\n{word} "
@@ -67,7 +67,7 @@ def guess(word: str, dictionary: str) -> str:
 
 
 def _letter(padded: str, place: int, dictionary: str) -> str:
-    """Return the phones of one letter, as most of the words have it that are alike around it."""
+    """Return the phones of one letter, by a vote of words with the same context."""
     tried = set()
     votes: Counter[str] = Counter()
     for before, after in WINDOWS:
@@ -85,7 +85,7 @@ def _letter(padded: str, place: int, dictionary: str) -> str:
 
 
 def _alike(window: str, dictionary: str) -> Iterator[tuple[str, Parts, int]]:
-    """Yield known words in which some letters come together, their phones, and the place."""
+    """Yield known words that contain some letters, their phones, and the position."""
     found, seen = dictionary.find(window), 0
     while found >= 0 and seen < MOST_ALIKE:
         start = dictionary.rfind("\n", 0, found + 1) + 1
@@ -99,7 +99,7 @@ def _alike(window: str, dictionary: str) -> Iterator[tuple[str, Parts, int]]:
 
 @lru_cache(maxsize=4096)
 def align(word: str, phones: Parts) -> Parts:
-    """Share out the phones of a word among its letters, in order, as they fit best."""
+    """Align the phones of a word with its letters, in order, by the best total score."""
     best: dict[int, tuple[float, Parts]] = {0: (0.0, ())}
     for letter in word:
         longer: dict[int, tuple[float, Parts]] = {}

@@ -1,7 +1,7 @@
-"""How people ask the program itself for something: to take a step back, to pause, for help.
+"""Requests to the program itself: to undo, to pause, for help.
 
-Each way stands for the word that can be typed for it; a whole sentence has to be one of them. They
-are listened for like phrases: from everyday words alone, most of them are misheard.
+Each sentence stands for a typed command; only a whole sentence counts. They are in the vocabulary
+of speech recognition, because most would be misheard otherwise.
 """
 
 from __future__ import annotations

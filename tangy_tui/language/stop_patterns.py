@@ -1,9 +1,9 @@
-"""Patterns of sentences that stop the robot or the game, composed of small ones.
+"""Regular expressions of sentences that stop the robot or the game, composed of small ones.
 
-They are for clauses of lower-case words with single spaces and without apostrophes, and with
-numbers as digits. A sentence is made of calls and askings ("please", "can you", "i want it to"), a
-verb of stopping, what is to stop, how, and what else is thought of it. `game` stands for what the
-activity is called.
+They match clauses of lower-case words with single spaces, without apostrophes, and with numbers as
+digits. A sentence consists of calls and requests ("please", "can you", "i want it to"), a verb of
+stopping, its object, its manner, and a further thought. `game` stands for the words of the
+activity's title.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from functools import cache
 
 
 def _any(*ways: str) -> str:
-    """Write a pattern for one of some ways; those that are lists of words have bars."""
+    """Return a pattern that matches any of these; an item may itself be alternatives."""
     return f"(?:{'|'.join(ways)})"
 
 
@@ -33,7 +33,7 @@ NO_ADJECTIVE = (
     "|coffee|tea|washing|sewing|vending|answering|ticket|slot|fax|ice|cash|copy|knitting|bread"
     "|weighing|fruit|time|drinks?|milling|rowing|exercise|x ray|ultrasound|infusion|dialysis"
 )
-"""Words that never mean the robot; other machines are among them."""
+"""Words that never mean the robot, including other machines."""
 BODY = "robots?|bot|machine|machinery|thing|tangy|device|contraption|system"
 LIMBS = "base|wheels?|motors?|engines?|drives?|arms?|hands?|head|movements?|motions?|moving|driving"
 PLAYS = "games?|rounds?|programme|activity|session|exercise|program|playing|play|demo|test|trial"
@@ -53,7 +53,7 @@ THINGS = _any(
 ITSELF = _any(ROBOT, GAME, THINGS)
 SOMEBODY = "him|her|them"
 
-# ------------------------------------------------------------------------------ how, and what else
+# ------------------------------------------------------------------------------ manner and reason
 
 SAKE = r"for (?:\w+ )?\w+ sake|in (?:gods|heavens) name|in the name of (?:god|heaven)"
 NAMED = (
@@ -86,10 +86,10 @@ NEXT = _any(
     rf"(?:that|this) (?:{_FINITE})\b.*",
     rf"{_OTHERS}(?:\w+ ){{1,3}}(?:{_FINITE})\b.*",
 )
-"""Another thought that follows: why it is to stop, or what to do then."""
+"""A further thought: why it should stop, or what to do then."""
 AFTER = f"(?: {HOW}){{0,6}}(?: {NEXT})?"
 
-# -------------------------------------------------------------------------- what it is doing there
+# ------------------------------------------------------------------------- what the robot is doing
 
 _DRIVES = (
     "moving|driving|rolling|turning|spinning|rotating|reversing|backing|going|coming|running"
@@ -122,7 +122,7 @@ PEOPLE_DO = (
     "|staring|stealing|sulking|swearing|teasing|thinking|whining|whispering|whistling|winking"
     "|wondering|worrying|yawning|yelling"
 )
-"""Actions that only people do: the sentence is not about the robot, even if it names nobody."""
+"""Actions that only people do: the sentence is not about the robot, even without a name."""
 _WHOM = "me|us|him|her|them|you|it|that|this|people|everybody|everyone|anybody|anyone|somebody"
 _WHERE = (
     r"about(?! (?:it|that|this|him|her|them|me|us)\b)|"
@@ -144,7 +144,8 @@ _MOVING = _any(
 )
 _OTHERWISE = rf"(?!(?:{PEOPLE_DO})\b)\w+ing"
 
-# ----------------------------------------------------------------------------------- who asks whom
+# ----------------------------------------------------------------------------------- calls and
+# requests
 
 CALL = _any(
     "no|nope|oh|ah|aah|ow|ouch|ooh|hey|hi|hello|okay|ok|alright|all right|right|well|so|and|but",
@@ -189,7 +190,8 @@ ASK = _any(
     "how does 1|(?:press|push|pull|do) to|is there a way to|i (?:do not|dont) know how to",
 )
 
-# -------------------------------------------------------------------------------- stopping, in all
+# -------------------------------------------------------------------------------- the whole
+# sentence
 
 STOP = "stop|halt|cease|freeze|abort|brake"
 _DONE = f"(?:(?:it|that|{ROBOT}|{GAME}) (?:from )?)?{_MOVING}"
@@ -273,39 +275,39 @@ _STOPPED = _any(
 _SENTENCE = _any(
     f"(?:{STOP}|(?:(?:would|do) you mind|how about) stopping){_WHAT}",
     f"{_STOPPED}{AFTER}",
-    f"stop(?:s|ped) (?:{ROBOT}|it|at once|right (?:now|away|there))",  # as it may be heard
+    f"stop(?:s|ped) (?:{ROBOT}|it|at once|right (?:now|away|there))",  # as it may be misheard
 )
 
 
 @cache
 def sentence() -> re.Pattern[str]:
-    """Return what stops the robot, after all that can come before it.
+    """Return the pattern of the stop itself, after any calls and requests.
 
-    It takes a tenth of a second to compile, which no program has to wait for that only starts.
+    It takes a tenth of a second to compile, so it is compiled on first use.
     """
     return re.compile(_SENTENCE)
 
 
 @cache
 def command() -> re.Pattern[str]:
-    """Return what stops the robot also where other words come before it in the same breath."""
+    """Return the pattern of a stop that also counts after other words in the same sentence."""
     told = f"(?:{STOP}|quit) (?:(?:{ROBOT}|{GAME}|it)|{_MOVING})"
     return re.compile(f"{_any(told, _STILL, _SWITCHED)}(?: {HOW}){{0,6}}")
 
 
 @cache
 def before() -> tuple[re.Pattern[str], ...]:
-    """Return what any number of times can come before the stopping itself."""
+    """Return the patterns that may precede the stop, any number of times."""
     return tuple(re.compile(f"{pattern} ") for pattern in (CALL, ASK))
 
 
 @cache
 def own_words() -> frozenset[str]:
-    """Return every word that the patterns have."""
+    """Return every word in the patterns."""
     return frozenset(re.findall("[a-z]+", "|".join((CALL, ASK, _SENTENCE))))
 
 
-# ------------------------------------------------------------- at the end of the preceding words
+# ------------------------------------------------------------- a stop at the end of other words
 
 ASKS_FIRST = re.compile(
     r"(?:where|when|what|who|which|how|why|does|do|did|will|would|is|are|was|has|have|can|could|if)"
@@ -315,7 +317,7 @@ ASKS_FIRST = re.compile(
 
 @cache
 def alarm() -> re.Pattern[str]:
-    """Return what somebody says who is alarmed."""
+    """Return the pattern of an alarmed exclamation."""
     return re.compile(
         rf"(?:{CALL}|youre|you are|mind|watch|its|hes|shes|theyre|too|{ROBOT})\b.*"
         r"|.*\b(?:is|are|has|have|fell|hit|hurts|im|theres)\b.*"
@@ -324,7 +326,7 @@ def alarm() -> re.Pattern[str]:
 
 @cache
 def cry() -> re.Pattern[str]:
-    """Return a cry to stop, with what comes `before` it and `what` is to stop, if that is said."""
+    """Return the pattern of a cry to stop, with the words `before` it and its object `what`."""
     what = f" (?:{ROBOT}|{GAME}|it)"
     return re.compile(rf"(?P<before>.+) (?:{STOP})(?P<what>{what})?(?: {HOW}){{0,6}}")
 
@@ -336,9 +338,9 @@ NO_CRY_BEFORE = frozenset(
         *("next", "sign", "light", "watch", "press", "gap", "valve", *PEOPLE_DO.split("|")),
     )
 )
-"""A single word after a verb of stopping that says that nobody cries it."""
+"""Words after a verb of stopping that show that it is no cry."""
 ENDS_A_THOUGHT = frozenset(("this", "that", "and"))
-"""Words between an exclamation and the thing to stop that end another clause, or join it on."""
+"""Words before the verb of stopping that end or join a clause."""
 FORBIDS = re.compile(
     r"\b(?:not|never|nobody|(?:do|does|did|wo|would|could|should|need|must)nt)\b|.* to \w+ and$"
 )
@@ -346,7 +348,7 @@ NEEDLESS = re.compile(
     r"\b(?:no|any|little|hardly a|hardly any) (?:need|reason|point|cause|use|hurry|time|wish) to\b"
     r"|\b(?:too (?:early|soon|late)|silly|a pity|a shame|nothing|no one) (?:\w+ )?to\b"
 )
-"""Words that say that there is no cause to stop, or no wish."""
+"""Words that deny a reason or wish to stop."""
 NO_CRY_AFTER = frozenset(
     (
         *("to", "dont", "not", "never", "cant", "cannot", "couldnt", "wont", "wouldnt", "shouldnt"),
@@ -361,13 +363,13 @@ NO_CRY_AFTER = frozenset(
         *("if", "people", "buses", "trains", "nonstop", "without", "until", "nearly", "almost"),
     )
 )
-"""Words after which stopping is a noun, or what somebody does, may do or must not do."""
+"""Words after which stopping is a noun, or the action of somebody."""
 NO_COMMAND_AFTER = NO_CRY_AFTER | set(f"{_FINITE}|be|been|were|get|got|let|just".split("|"))
-"""Words after which the rest is a part of what they tell."""
+"""Words after which the rest belongs to their clause."""
 MAY_BE_MISHEARD = frozenset(("to", "you", "i", "the", "at", "and", "a"))
-"""Those of them that are short and weak, so that other words are often heard as them."""
+"""Those that are short and unstressed, so that other words are often misheard as them."""
 REPORTS_OR_ASKS = re.compile(
     r"(?:where|when|what|who|which|how|why|does|do|did|is|are|was|has|have|he|she|they|my|his|her)"
     r"\b"
 )
-"""How sentences begin that tell of stopping, or ask about it."""
+"""Beginnings of sentences that report or ask about stopping."""

@@ -1,7 +1,7 @@
-"""Ways to stop a robot or a game, and to talk of stopping other things.
+"""Sentences that stop a robot or a game, and sentences about stopping other things.
 
-The ears for stopping learn from them. Most are put together by chance, the same ones each time,
-from the texts of `stopping.toml`.
+The stop decoder's language model is trained on them. Most are generated from `stopping.toml` with a
+fixed seed.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ from importlib.resources import files
 from tangy_tui.language.stop_sentence import STOPS
 
 EACH = 40
-"""How many sentences are made of each form."""
+"""The number of sentences generated from each template."""
 PLAIN = 3
-"""How many times each of the plain ones counts."""
+"""The repetitions of each plain sentence."""
 SEED = 1
 _SLOT = re.compile(r"{(\w+)}")
 
 
 @cache
 def stop_texts() -> tuple[str, ...]:
-    """Return sentences that stop, in lower case; common ones come several times."""
+    """Return sentences that stop the robot, in lower case; common ones are repeated."""
     return (*STOPS * PLAIN, *_made("said", "stops"))
 
 
 @cache
 def other_stop_texts() -> tuple[str, ...]:
-    """Return sentences with words of stopping that stop nothing here, in lower case."""
+    """Return sentences about stopping other things, in lower case."""
     return _made("said_of_others", "others")
 
 

@@ -1,8 +1,8 @@
-"""Words by their meaning: a table of vectors in which words of like meaning lie near one another.
+"""Word vectors: words of similar meaning have similar vectors.
 
-The vectors are those that the sentence encoder all-MiniLM-L6-v2 (Apache licence 2.0) gives single
-words, brought to 48 dimensions by their principal components: `tests/bench/word_vectors.py` makes
-the table. It is read as bytes, without numpy.
+They are the vectors of single words in the sentence encoder all-MiniLM-L6-v2 (Apache licence 2.0),
+reduced to 48 dimensions by PCA; `tests/bench/word_vectors.py` makes the table. It is read without
+numpy.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from importlib.resources import files
 from tangy_tui.language.words import Words
 
 DIMENSIONS = 48
-COMMON = 400  # words that are said most, which mean less by themselves
-LEAST_WEIGHT = 0.25  # of the commonest of all
+COMMON = 400  # the most frequent words, which get less weight
+LEAST_WEIGHT = 0.25  # of the most frequent word
 
 
 @cache
@@ -28,9 +28,9 @@ def _table() -> tuple[Mapping[str, int], memoryview]:
 
 
 def sentence_vector(words: Words) -> tuple[float, ...]:
-    """Return the mean of the vectors of words as numbers from 0 to 1 and their negatives.
+    """Return the mean of the vectors of words (numbers from 0 to 1 or negative), with length 1.
 
-    Its length is 1; it is zeros if none of the words is known.
+    It is zero if no word is known.
     """
     places, table = _table()
     total = [0.0] * DIMENSIONS

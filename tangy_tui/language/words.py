@@ -1,11 +1,11 @@
-"""Text as words: cleaned, split, numbers as digits, and how like one word is to another."""
+"""Text as words: cleaning, splitting, numbers as digits, and similarity of words."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
 
-LONGEST_TEXT = 200  # characters of a command that are looked at
+LONGEST_TEXT = 200  # characters of a command; the rest is ignored
 
 FILLERS = frozenset(
     (
@@ -26,10 +26,10 @@ Words = tuple[str, ...]
 
 
 def likeness(said: str, known: str) -> float:
-    """Return how like a typing slip of a known word this is: from 0 to 1.
+    """Return the similarity of a word to a known one, as a misspelling: from 0 to 1.
 
-    Short words are taken for slips only of words with the same letters, or one more or less: one
-    letter exchanged in "go" or "mark" mostly makes another English word.
+    Short words only count as misspellings of words with the same letters, or one more or less: a
+    replaced letter in "go" or "mark" usually gives another English word.
     """
     longest = max(len(said), len(known))
     if not (said.isalpha() and known.isalpha()) or longest - min(len(said), len(known)) > 2:
@@ -42,7 +42,7 @@ def likeness(said: str, known: str) -> float:
 
 
 def _slips(one: str, other: str) -> int:
-    """Count the letters to insert, drop or replace."""
+    """Return the edit distance of two words."""
     row = list(range(len(other) + 1))
     for i, letter in enumerate(one, 1):
         last, row = row, [i]
@@ -52,28 +52,28 @@ def _slips(one: str, other: str) -> int:
 
 
 def clean(text: str, *, strip: bool = True) -> str:
-    """Cap a text and take out what cannot be shown: controls, bidi marks, lone surrogates."""
+    """Truncate a text and remove control, bidirectional and other invisible characters."""
     spaced = (" " if char.isspace() else char for char in text[:LONGEST_TEXT])
     shown = "".join(char for char in spaced if not unicodedata.category(char).startswith("C"))
     return re.sub(" +", " ", shown).strip() if strip else shown
 
 
 def words_of(text: str) -> Words:
-    """Split into lower-case words: accents and punctuation dropped, number words as digits."""
+    """Split into lower-case words, without accents and punctuation, number words as digits."""
     folded = unicodedata.normalize("NFKD", text[:LONGEST_TEXT]).casefold().replace("\u2019", "'")
     plain = unicodedata.normalize("NFC", _ACCENTS.sub("", folded))
     return tuple(_digits(word) for word in _WORD.findall(plain[:LONGEST_TEXT]))
 
 
 def _digits(word: str) -> str:
-    """Write a number as digits, however it is written; other words stay as they are."""
+    """Convert a number to digits; leave other words unchanged."""
     if word.isascii() and word.isdigit():
         return str(int(word))
     return str(NUMBERS.index(word)) if word in NUMBERS else word
 
 
 def spoken(words: Words) -> str:
-    """Write words as they are said, numbers up to twenty in words."""
+    """Join words as they are spoken, with numbers up to twenty in words."""
     return " ".join(
         NUMBERS[int(word)] if word.isdigit() and int(word) < len(NUMBERS) else word
         for word in words
@@ -81,21 +81,21 @@ def spoken(words: Words) -> str:
 
 
 def run_together(words: Words) -> str:
-    """Write words without the spaces between them, as they may be heard."""
+    """Join words without spaces, as they may be misheard."""
     return spoken(words).replace(" ", "")
 
 
 def bare(words: Words) -> Words:
-    """Leave out the words that mean nothing by themselves."""
+    """Remove filler words."""
     return tuple(word for word in words if word not in FILLERS)
 
 
 def stem(word: str) -> str:
-    """Take a plural for its singular."""
+    """Strip a plural s."""
     return word[:-1] if len(word) > 3 and word.endswith("s") else word
 
 
 def in_order(wanted: Words, words: Words) -> bool:
-    """Say whether some words come among others, in this order."""
+    """Return whether words occur among others in this order."""
     rest = iter(words)
     return all(word in rest for word in wanted)
