@@ -1,4 +1,4 @@
-"""An activity looked over: what loads, and yet cannot be reached or asked for."""
+"""Check of an activity: stages that cannot be reached, and phrases that cannot be understood."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from tangy_tui.speech.lexicon import Alike, Lexicon, distinct_word
 
 @dataclass(frozen=True, slots=True)
 class CheckedFile:
-    """A checked file: its mistakes and its hints, a line each.
+    """A checked file: its mistakes and its warnings, a line each.
 
-    `notes` say how far it was looked over.
+    `notes` say what was checked.
     """
 
     file: str
@@ -36,10 +36,10 @@ class CheckedFile:
 
 
 def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -> CheckedFile:
-    """Look over an activity that could be read.
+    """Check an activity that could be read.
 
-    Phrases that cannot be told from others, or cannot be heard, are mistakes; the game can be
-    played without them, so it loads all the same.
+    Phrases that are confused with others, or cannot be recognised, are mistakes; the game can be
+    played without them, so the file still loads.
     """
     mistakes: list[str] = []
     try:
@@ -61,7 +61,7 @@ def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -
 
 
 def _pressing(activity: Activity) -> Iterator[str]:
-    """Tell of ways of asking that may press people, where the file does not say which ones do."""
+    """Report strategies that may press people, if the file does not list the pressing ones."""
     used = [
         s for s in activity.strategies if s not in (*activity.pressing, activity.plain_strategy)
     ]
@@ -73,14 +73,14 @@ def _pressing(activity: Activity) -> Iterator[str]:
 
 
 def _asking(activity: Activity) -> Iterator[str]:
-    """Tell how often people are asked in vain, where the file does not say it."""
+    """Report the default limits of requests, if the file does not set them."""
     if not activity.asking.named:
         asking = activity.asking
         yield f"{activity.source}: {VISIT}, {GAME}: not given, so {asking.visit} and {asking.game}"
 
 
 def _stages(activity: Activity) -> Iterator[str]:
-    """Tell of each stage none of whose rules can ever be the first that holds."""
+    """Report each stage whose rules can never apply."""
     reasons: dict[str, list[str | None]] = {}
     for place, rule in enumerate(
         () if isinstance(activity, DeclaredActivity) else activity.stage_rules
@@ -93,7 +93,7 @@ def _stages(activity: Activity) -> Iterator[str]:
 
 
 def _never(rule: StageRule, earlier: Sequence[StageRule], activity: Activity) -> str | None:
-    """Say why a rule can never be the first that holds, or None."""
+    """Return why a rule can never apply, or None."""
     for other in earlier:
         if other.condition == "otherwise":
             return f"{other.stage!r} stands before it with when = 'otherwise'"
@@ -109,7 +109,7 @@ def _never(rule: StageRule, earlier: Sequence[StageRule], activity: Activity) ->
 
 
 def _covers(other: StageRule, rule: StageRule) -> bool:
-    """Say whether an earlier rule holds whenever this one does."""
+    """Return whether an earlier rule holds whenever this one does."""
     if (other.condition, rule.condition) == ("requested or away", "beside requester"):
         return True
     return (
@@ -120,7 +120,7 @@ def _covers(other: StageRule, rule: StageRule) -> bool:
 
 
 def _phrases(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
-    """Tell of phrases that are understood as another behaviour than the one they stand with."""
+    """Report phrases that are understood as another behaviour than their own."""
     for behaviour in activity.behaviours.values():
         heard = {phrase: _heard(phrasebook, phrase) for phrase in _ways(behaviour)}
         lost = {phrase: as_ for phrase, as_ in heard.items() if as_ != behaviour.name}
@@ -147,7 +147,7 @@ def _as(lost: tuple[str, str | None]) -> str:
 
 
 def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
-    """Tell of phrases that always mean something else: they stop the robot, or answer it."""
+    """Report phrases with a fixed meaning: stop commands and answers."""
     for phrase in phrasebook.table.all():
         stop, said = stops(phrase.said), phrase.said
         if phrase.heard and (stop or said in PLAIN):
@@ -161,7 +161,7 @@ def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
 
 
 def _fillers(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
-    """Tell of phrases that only words which mean nothing by themselves tell apart."""
+    """Report phrases that differ only in filler words."""
     first: dict[str, Phrase] = {}
     for phrase in phrasebook.table.all():
         if phrase.user is None and phrase.heard and phrase.bare:
@@ -172,7 +172,7 @@ def _fillers(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
 
 
 def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
-    """Tell of phrases that sound like others, and of words without a pronunciation."""
+    """Report phrases that sound like others, and words without a pronunciation."""
     if not can_look_up():
         return
     lexicon = Lexicon(phrasebook)
@@ -190,7 +190,7 @@ def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
 
 
 def _near(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
-    """Tell of phrases that are easily taken for others, because just one phone is different."""
+    """Report phrases that differ from others in one phone."""
     if can_look_up():
         for alike in Lexicon(phrasebook).confusable_phrases():
             if alike.phrase.bare != alike.other.bare:
@@ -198,7 +198,7 @@ def _near(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
 
 
 def _collision(activity: Activity, phrasebook: Phrasebook, alike: Alike, how: str) -> str:
-    """Say which two phrases collide, as they are written and where, and what would help."""
+    """Return a sentence about two confusable phrases, with their places and a suggestion."""
     phrase, other = alike.phrase, alike.other
     word = distinct_word(phrasebook, phrase.behaviour, phrase)
     such = f", such as {word!r}" if word else ""
@@ -209,7 +209,7 @@ def _collision(activity: Activity, phrasebook: Phrasebook, alike: Alike, how: st
 
 
 def _place(activity: Activity, phrase: Phrase) -> str:
-    """Return where a phrase stands in the file, and how it is written there."""
+    """Return the location of a phrase in the file, as written there."""
     behaviour = activity.behaviours[phrase.behaviour]
     where = f"behaviours[{behaviour.name}]"
     for text in behaviour.phrases:
@@ -221,7 +221,7 @@ def _place(activity: Activity, phrase: Phrase) -> str:
 
 
 def _unused(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
-    """Tell of pronunciations of words that nobody says."""
+    """Report pronunciations of words that occur in no phrase."""
     table = phrasebook.table
     known = {word for phrase in (*table.all(), *table.keywords) for word in phrase.words}
     for word in activity.pronunciations:

@@ -1,4 +1,4 @@
-"""A pronunciation said aloud as it is written, so that people can hear whether it is right."""
+"""Playback of a pronunciation, so that people can check it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tangy_tui.language.pronunciation import to_espeak
 
 
 async def hear(phones: str, preference: VoicePreference | None = None, sink: str = "auto") -> None:
-    """Say phones (a comma between words), and return when they have been heard.
+    """Speak phones (a comma between words), and return when they have been played.
 
-    The sound is made in a folder that is removed afterwards: what names sound like is kept nowhere.
+    The sound file is in a temporary folder, so that the sound of a name is stored nowhere.
 
     Raises:
-        TangyError: espeak-ng is not installed, or no sound comes out here; one sentence.
+        TangyError: espeak-ng is not installed, or there is no sound output; one sentence.
     """
     from tangy_hw.audio.player import open_player
     from tangy_hw.audio.synthesis import USUAL, Synthesiser

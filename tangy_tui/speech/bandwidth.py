@@ -1,8 +1,8 @@
-"""Sound of half the band, as telephones and many Bluetooth headsets send it, made whole.
+"""Bandwidth extension of narrow-band sound, as from telephones and many Bluetooth headsets.
 
-The acoustic models expect sound up to 7 kHz. Where there is none above 4 kHz, hisses are missing,
-and other words are heard: of known phrases of three voices that were cut at 4 kHz, 54 of 69 were
-right without this, 66 with it (tuned voices of `tests/bench/speech.py`, and flite's kal).
+The acoustic models expect sound up to 7 kHz. Without any above 4 kHz, fricatives are missing, and
+other words are recognised: of known phrases of three voices cut off at 4 kHz, 54 of 69 were right
+without this, 66 with it (tuned voices of `tests/bench/speech.py`, and flite's kal).
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 WINDOW, HOP = 512, 256  # samples
 LOW, HIGH = (300, 3_700), (4_300, 7_000)  # Hz: the bands that are compared
-HALF = -50.0  # dB of the high band against the low one, below which there is none
+HALF = -50.0  # dB of the high band relative to the low one, below which it is missing
 EDGE = 3_900  # Hz, at which the spectrum is mirrored
-GAIN, SLOPE = -6.0, -3.0  # dB at the edge, and for every kHz above it
-QUIET = 7  # the quietest of so many frames are noise
+GAIN, SLOPE = -6.0, -3.0  # dB at the edge, and per kHz above it
+QUIET = 7  # the quietest one in this many frames is noise
 
 
 def widened(pcm: bytes) -> bytes:
-    """Return an utterance (16 kHz mono s16le) with its missing upper band made up, if it is.
+    """Return an utterance (16 kHz mono s16le) with a missing upper band synthesised.
 
-    The lower band is mirrored at its edge, and falls off above it ("spectral folding", Makhoul and
-    Berouti 1979). Sound of the whole band is returned as it is.
+    The lower band is mirrored at its edge, and decays above it ("spectral folding", Makhoul and
+    Berouti 1979). Wide-band sound is returned unchanged.
     """
     import numpy as np
 
@@ -56,7 +56,7 @@ def widened(pcm: bytes) -> bytes:
 
 
 def _lacks_upper_band(spectra: Spectra) -> bool:
-    """Whether there is nothing in the upper band but the noise that is always there."""
+    """Return whether the upper band has only background noise."""
     import numpy as np
 
     power = np.abs(spectra) ** 2

@@ -1,9 +1,9 @@
-"""How it is best listened with one microphone in one room, found out from a few utterances.
+"""Calibration of speech recognition for one microphone in one room, from a few utterances.
 
-A few commands and a few other sentences are decoded with several weights of the garbage branch.
-Each weight gives every utterance a score; the threshold between the commands and the rest is
-shifted to where it parts them best. Nine utterances are few, so any settings pay for how far they
-are from the usual ones, which are kept unless others gain a whole utterance.
+A few commands and other sentences are decoded with several weights of the garbage branch. Each
+weight gives a score per utterance, and the threshold between commands and the rest is shifted to
+separate them best. Nine utterances are few, so settings are penalised by their distance from the
+defaults, which are kept unless others gain a whole utterance.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.understanding import SURE, UNSURE, understand
 
 WEIGHTS = (0.1, 0.2, 0.43, 0.9, 2.0)
-"""Of the garbage branch, to be tried."""
+"""Weights of the garbage branch to try."""
 SHIFTS = tuple(step / 4 for step in range(-8, 9))  # -2 to +2
-ROOM = 0.6  # by which every score is on its side of the threshold, with room to spare
-SHIFT_SPREAD = 0.8  # how far shifts usually are from 0, and weights (as a factor) from the usual
+ROOM = 0.6  # margin of every score that makes further weights unnecessary
+SHIFT_SPREAD = 0.8  # prior spread of shifts around 0, and of weights (a factor) around the default
 WEIGHT_SPREAD = 2.5
 SURELY, PERHAPS = math.log(SURE / (1 - SURE)), math.log(UNSURE / (1 - UNSURE))
 WORTH_IT = 1.0  # utterances that other settings must gain
-FAR = 6.0  # scores beyond tell no more
+FAR = 6.0  # scores are clipped to this
 
 
 @dataclass(frozen=True, slots=True)
 class CalibrationPrompt:
-    """What somebody was asked to say: a command (`meant`), or a sentence that is none (None)."""
+    """A prompt to say: a command (`meant`), or a sentence that is none (None)."""
 
     text: str
     meant: UtteranceLabel | None
@@ -46,14 +46,14 @@ class CalibrationPrompt:
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """How well commands and the rest are parted: counts of the utterances that were asked for."""
+    """How well commands and other sentences are separated: counts of the prompts."""
 
     commands: int
     understood: int
     offered: int
     others: int
     taken: int
-    """Of the other sentences: those that were surely taken for a command, or offered as one."""
+    """The other sentences that were taken for a command or offered as one."""
 
     @property
     def kept(self) -> bool:
@@ -63,23 +63,23 @@ class Figures:
 
     @property
     def parted(self) -> bool:
-        """Whether that is good enough to work with."""
+        """Whether the separation is good enough to use."""
         return self.kept and 3 * self.taken <= self.others
 
     @property
     def gain(self) -> float:
-        """What it is worth, a score: a choice half as much as what is surely understood."""
+        """The score of the result: an offered command counts half of an understood one."""
         return self.understood + self.offered / 2 - self.taken
 
     @property
     def perfect(self) -> bool:
-        """Whether every command was surely understood, and nothing else taken for one."""
+        """Whether every command was understood, and nothing else taken for one."""
         return self.understood == self.commands and self.taken == 0
 
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """The settings that were found, what they do with the utterances, and the usual ones too."""
+    """The chosen settings, and their figures and those of the defaults."""
 
     settings: EvidenceSettings
     figures: Figures
@@ -88,7 +88,7 @@ class Chosen:
 
 @dataclass(frozen=True, slots=True)
 class CalibrationScore:
-    """How sure it is (in logits, at shift 0) that an utterance is a command, and is it right."""
+    """The logit that an utterance is a command (at shift 0), and whether it is the right one."""
 
     told: float
     asked: CalibrationPrompt
@@ -101,7 +101,7 @@ def score(
     phrasebook: Phrasebook,
     settings: EvidenceSettings,
 ) -> CalibrationScore:
-    """Grade one utterance, whatever the shift of the settings is."""
+    """Score one utterance, independent of the shift."""
     lowest = SHIFTS[0]
     said = understand(evidence, phrasebook, replace(settings, shift=lowest))
     if isinstance(said, StopCommand):
@@ -116,10 +116,10 @@ def score(
 
 
 def choose(scores: Mapping[float, Sequence[CalibrationScore]]) -> Chosen:
-    """Choose the weight and the shift that part commands from the rest best.
+    """Choose the weight and the shift that separate commands from the rest best.
 
     Args:
-        scores: of the same utterances with each weight; the usual weight must be among them.
+        scores: scores of the same utterances for each weight, including the default one.
     """
     usual = _figures(scores[USUAL.garbage], 0.0)
     if spare(scores[USUAL.garbage]):
@@ -135,7 +135,7 @@ def choose(scores: Mapping[float, Sequence[CalibrationScore]]) -> Chosen:
 
 
 def spare(scores: Sequence[CalibrationScore]) -> bool:
-    """Say whether all utterances are parted without any shift, and with room to spare."""
+    """Return whether all utterances are separated without a shift, with a margin."""
     return all(
         (s.right and s.told >= SURELY + ROOM) if s.asked.meant else s.told <= PERHAPS - ROOM
         for s in scores
@@ -168,9 +168,9 @@ def _figures(scores: Sequence[CalibrationScore], shift: float) -> Figures:
 
 
 def microphone(source: str) -> str:
-    """Return the name under which the settings of a source are kept.
+    """Return the name under which the settings of a source are stored.
 
-    Paths are kept as a digest: names of people may stand in them.
+    Paths are stored as a digest, because they may contain names of people.
     """
     kind, _, rest = source.partition(":")
     if source in ("-", "arecord", "socket") or (kind == "arecord" and rest):
@@ -188,7 +188,7 @@ def keep(store: Store, source: str, chosen: Chosen) -> None:
 
 
 def forget(store: Store, source: str) -> bool:
-    """Go back to the usual settings for a microphone; return whether there were others."""
+    """Reset a microphone to the default settings; return whether it had others."""
     if _stored(store, source) is None:
         return False
     store.append(MicrophoneForgotten(source=microphone(source)))
@@ -196,16 +196,16 @@ def forget(store: Store, source: str) -> bool:
 
 
 def is_checked(store: Store, source: str) -> bool:
-    """Say whether there are settings of its own for a microphone."""
+    """Return whether a microphone has settings of its own."""
     return _stored(store, source) is not None
 
 
 def settings_for(store: Store, source: str | None, mode: str = "tiers") -> EvidenceSettings:
-    """Return how it is listened with a microphone: as its last check has it, else as usual.
+    """Return the settings of a microphone: those of its last check, or else the defaults.
 
     Args:
-        store: has the checks.
-        source: its name, as `tangy_hw.audio.sources` has them; None for none in particular.
+        store: the log with the checks.
+        source: its name, as in `tangy_hw.audio.sources`; None for no particular one.
         mode: one of MODES.
 
     Raises:
@@ -230,7 +230,7 @@ def _stored(store: Store, source: str) -> EvidenceSettings | None:
 
 
 def _read(written: Any) -> EvidenceSettings | None:
-    """Read stored settings; None where they are not what this program would write."""
+    """Read stored settings; return None if they are invalid."""
     try:
         settings = replace(USUAL, garbage=float(written["garbage"]), shift=float(written["shift"]))
     except (KeyError, TypeError, ValueError):

@@ -1,13 +1,12 @@
 """The decoders (III-A-1): an HMM acoustic model labels phonemes and matches them to words.
 
 In the usual mode each utterance is decoded twice: by an n-gram model of the phrases in which
-everyday words can stand anywhere, which says what the words were, and by a grammar of the phrases
-with a branch for any phones, which says how well anything at all can explain the sound. The
-difference of the two scores tells words that were said from words that merely fit best. Ears of
-their own listen for what stops the robot (`stop_decoder`); they answer first, and where they are
-sure nothing else is waited for. In the paper's mode there is just the n-gram model of the phrases.
-
-pocketsphinx holds the interpreter's lock, so this runs in a process of its own: see `worker`.
+everyday words can occur anywhere, which gives the words; and by a grammar of the phrases with a
+garbage branch of any phones, which shows how well any phones explain the sound. The difference of
+the two scores separates spoken commands from words that merely fit best. A separate stop decoder
+(`stop_decoder`) runs first; if it is sure, its result is used at once. The paper's mode has only
+the n-gram model of the phrases. pocketsphinx holds the GIL, so this runs in a process of its own:
+see `worker`.
 """
 
 from __future__ import annotations
@@ -33,46 +32,47 @@ from tangy_tui.speech.stop_decoder import StopDecoder
 
 SHORTEST = 0.1  # s; less cannot hold a word, and an empty buffer raises IndexError
 MODEL = "en-us/"
-AMONG_STOPS = 1_500  # everyday words that the ears for stopping know
+AMONG_STOPS = 1_500  # everyday words of the stop decoder
 HINTS = frozenset(("stop", "stops", "stopped", "halt", "freeze", "emergency"))
-"""Words of which both decoders have to hear one where a stop is in doubt."""
-UNKNOWN_MARGIN = -0.5  # that of most speech which is no command
+"""Words of which both decoders must hear one if the stop decoder is not sure."""
+UNKNOWN_MARGIN = -0.5  # the margin of most speech that is no command
 
-# How sure the paper's n-gram model is: a logistic over two figures of the best path, its score a
-# frame and the mean weighted log P(word | words before). Fitted by tests/bench/speech.py.
+# Confidence of the paper's n-gram model: a logistic regression over two scores of the best path,
+# its score per frame and the mean weighted log P(word | words before). Fitted by
+# tests/bench/speech.py.
 SCORE_MIDDLE, SCORE_WEIGHT = -2.79, 4.77
 WORDS_MIDDLE, WORDS_WEIGHT = -17.9, 0.157
 OFFSET = 5.23
 
 
 class Unspeakable(ValueError):
-    """None of the phrases can be pronounced."""
+    """No phrase has a pronunciation."""
 
 
 class Decoder(Protocol):
-    """What turns the sound of one utterance into words."""
+    """Converts the sound of one utterance to words."""
 
     left_out: tuple[str, ...]
-    """Words that cannot be heard, because nobody says how they are pronounced."""
+    """Words that cannot be recognised, because they have no pronunciation."""
 
     def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         """Decode a whole utterance (16 kHz mono s16le)."""
 
     def begin(self, expecting: Expecting) -> None:
-        """Begin an utterance that comes in pieces, for `partial`."""
+        """Begin an utterance that arrives in chunks, for `partial`."""
 
     def partial(self, pcm: bytes) -> str:
-        """Take the next piece and return the words so far."""
+        """Process the next chunk and return the words so far."""
 
     def close(self) -> None:
-        """End what it has started."""
+        """End its child processes."""
 
 
 def make_decoder(wanted: Wanted) -> Decoder:
-    """Build the decoder for the wanted commands and answers.
+    """Build the decoder for a vocabulary.
 
     Raises:
-        Unspeakable: there is no phrase that can be heard.
+        Unspeakable: no phrase can be recognised.
     """
     return PaperDecoder(wanted) if wanted.settings.mode == "paper" else TwoDecoders(wanted)
 
@@ -117,16 +117,16 @@ class TwoDecoders:
         self._beside_stops.ask(pcm)
         pcm = cleared(surrounded(pcm))
         self._beside.ask((pcm, expecting))
-        stop, sure = self._beside_stops.answer()  # first, while it has a processor of its own
+        stop, sure = self._beside_stops.answer()  # first, while it has a core to itself
         if sure:
             return AcousticEvidence(stop, "", UNKNOWN_MARGIN, 1.0, seconds, stop)
         phrase, garbage, _ = best_path(self._grammar, pcm, expecting)
         words, score = self._beside.answer()
         if HINTS.isdisjoint(words.split()):
-            stop = ""  # which only one of the two decoders heard, and not for sure
+            stop = ""  # only one of the decoders heard it, and was not sure
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
-            phrase = ""  # garbage, or a path that breaks off in the middle of a phrase
+            phrase = ""  # garbage, or an unfinished phrase
         return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop)
 
     def _by_words(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
@@ -134,7 +134,7 @@ class TwoDecoders:
         return words, score
 
     def begin(self, expecting: Expecting) -> None:
-        """Begin an utterance that comes in pieces."""
+        """Begin an utterance that arrives in chunks."""
         self._end()
         self._open = bool(self._said[expecting])
         if self._open:
@@ -142,11 +142,11 @@ class TwoDecoders:
             self._words.start_utt()
 
     def partial(self, pcm: bytes) -> str:
-        """Take the next piece and return the words so far."""
+        """Process the next chunk and return the words so far."""
         return _so_far(self._words, pcm) if self._open else ""
 
     def close(self) -> None:
-        """End the processes beside this one."""
+        """End the child processes."""
         self._beside.close()
         self._beside_stops.close()
 
@@ -157,7 +157,7 @@ class TwoDecoders:
 
 
 class PaperDecoder:
-    """The paper's mode: an n-gram model of the phrases alone determines the sequence of words."""
+    """The paper's mode: the sequence of words by an n-gram model of the phrases alone."""
 
     def __init__(self, wanted: Wanted) -> None:
         known = _pronunciations(
@@ -186,7 +186,7 @@ class PaperDecoder:
         return AcousticEvidence(text, "", 0.0, confidence, seconds)
 
     def begin(self, expecting: Expecting) -> None:
-        """Begin an utterance that comes in pieces."""
+        """Begin an utterance that arrives in chunks."""
         self._end()
         self._open = self._searches[expecting]
         if self._open:
@@ -194,11 +194,11 @@ class PaperDecoder:
             self._decoder.start_utt()
 
     def partial(self, pcm: bytes) -> str:
-        """Take the next piece and return the words so far."""
+        """Process the next chunk and return the words so far."""
         return _so_far(self._decoder, pcm) if self._open else ""
 
     def close(self) -> None:
-        """Nothing was started."""
+        """Do nothing: there are no child processes."""
 
     def _end(self) -> None:
         if self._open:
@@ -207,9 +207,9 @@ class PaperDecoder:
 
 
 def everyday_words(count: int) -> dict[str, float]:
-    """Return the commonest words of the general model that comes with the decoder.
+    """Return the most frequent words of the decoder's general model, with their probabilities.
 
-    Each with its probability; only those that the dictionary has.
+    Words outside the dictionary are left out.
     """
     import pocketsphinx
 
@@ -234,7 +234,7 @@ def _dictionary_lines() -> Iterable[tuple[str, str]]:
 def _pronunciations(
     wanted: set[str], own: Mapping[str, Sequence[str]]
 ) -> dict[str, tuple[str, ...]]:
-    """Return how words are said: as the activity and people have it, else as the dictionary."""
+    """Return pronunciations: those given by activity and people, or else the dictionary's."""
     found: dict[str, list[str]] = {}
     for word, phones in _dictionary_lines():
         if word in wanted and word not in own:
@@ -248,7 +248,7 @@ def _pronunciations(
 def _heard(
     phrases: Sequence[str], known: Mapping[str, Sequence[str]]
 ) -> tuple[tuple[str, ...], list[str]]:
-    """Return the words that cannot be heard, and the phrases that can."""
+    """Return the words that cannot be recognised, and the phrases that can."""
     unknown = words_of(phrases) - set(known)
     heard = [p for p in dict.fromkeys(phrases) if p and not unknown.intersection(p.split())]
     if phrases and not heard:

@@ -1,4 +1,4 @@
-"""Where speech begins and ends, by pocketsphinx's endpointer: for hands-free and recordings."""
+"""Endpointing: where speech begins and ends, by pocketsphinx, for hands-free and recordings."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from collections.abc import Iterator
 
 from tangy_tui.speech.evidence import RATE
 
-WINDOW = 0.3  # s, of which the share below has to be speech, or quiet
+WINDOW = 0.3  # s, of which this share must be speech, or quiet
 RATIO = 0.9
 FEWEST = 4  # frames of speech, 0.12 s; less is a click
-PAUSE = 0.5  # s; the window for recordings, in which nobody waits for an answer
-LEAD = 0.1  # s before an utterance that its words so far are looked for in
-MARGIN = 0.3  # s that are kept before an utterance, and of a recording after it as well
+PAUSE = 0.5  # s; the window for recordings, where latency does not matter
+LEAD = 0.1  # s before an utterance that partial decoding includes
+MARGIN = 0.3  # s kept before an utterance, and in a recording after it too
 
 
 class Endpoints:
-    """Finds an utterance in a stream of samples (16 kHz mono s16le); its window is in s."""
+    """Finds utterances in a stream of samples (16 kHz mono s16le); its window is in s."""
 
     def __init__(self, window: float = WINDOW) -> None:
         import pocketsphinx
@@ -25,30 +25,30 @@ class Endpoints:
         )
         self._rest = b""
         self._window = window
-        self.recent = bytearray()  # the end of what was taken: the utterance, or before one
+        self.recent = bytearray()  # the latest samples, including the utterance
         self.taken = 0
-        """How many bytes of the stream it has looked at."""
+        """The number of bytes processed."""
 
     @property
     def speaking(self) -> bool:
-        """Whether an utterance is going on."""
+        """Whether an utterance is in progress."""
         return bool(self._endpointer.in_speech)
 
     @property
     def begin(self) -> float:
-        """Where the utterance began, in s from the start of the stream."""
+        """The start of the utterance, in s from the start of the stream."""
         return float(self._endpointer.speech_start)
 
     @property
     def end(self) -> float:
-        """Where it ended, in s."""
+        """Its end, in s."""
         return float(self._endpointer.speech_end)
 
     def feed(self, pcm: bytes) -> Iterator[tuple[bool, bytes, bool]]:
-        """Give the speech in these samples: whether it begins here, and whether it is over.
+        """Yield the speech in these samples: whether it begins, its samples, whether it is over.
 
-        It is given as it comes, with the quiet after it: where it ends is known a window later,
-        and by then what must not wait has to be known.
+        It is yielded at once, with the quiet after it: its end is only known a window later, which
+        is too late for urgent words.
         """
         stream = self._rest + pcm
         size = self._endpointer.frame_bytes
@@ -76,20 +76,20 @@ class Endpoints:
         return rest if speaking else b""
 
     def utterance(self) -> bytes:
-        """Return the utterance that was found last, with what lies around it.
+        """Return the last utterance with some sound around it.
 
-        Where nothing but words is left of a sound, the decoder is less sure of them.
+        Without it, the decoder is less certain of the words.
         """
         return self._since(self.begin - MARGIN)
 
     def _since(self, seconds: float) -> bytes:
-        """Return what was taken from a time on, in s from the start of the stream."""
+        """Return the samples since a time, in s from the start of the stream."""
         begin = 2 * round(max(0.0, seconds) * RATE)
         return bytes(self.recent[max(0, begin - (self.taken - len(self.recent))) :])
 
 
 class Pauses:
-    """Follows how long it has been quiet since somebody spoke."""
+    """Measures how long it has been quiet since somebody spoke."""
 
     def __init__(self) -> None:
         import pocketsphinx
@@ -105,7 +105,7 @@ class Pauses:
         return self._quiet * float(self._vad.frame_length) if self._spoken >= FEWEST else 0.0
 
     def feed(self, pcm: bytes) -> bool:
-        """Take the next samples; return whether somebody speaks in them."""
+        """Process the next samples; return whether they contain speech."""
         self._rest += pcm
         size, spoke = self._vad.frame_bytes, False
         while len(self._rest) >= size:
@@ -118,7 +118,7 @@ class Pauses:
 
 
 def pieces(pcm: bytes) -> list[tuple[float, float]]:
-    """Return where the utterances of a recording are, in s from its start."""
+    """Return the start and end of each utterance in a recording, in s from its start."""
     endpoints = Endpoints(PAUSE)
     length = len(pcm) / 2 / RATE
     found: list[tuple[float, float]] = []

@@ -1,4 +1,4 @@
-"""The input of the decoder, and its evidence about an utterance."""
+"""The vocabulary of the decoder, and its evidence about an utterance."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ __all__ = [
 ]
 
 Expecting = Literal["commands", "answers"]
-"""What is listened for: commands, or the answer to a question (yes and no)."""
+"""What to recognise: commands, or the answer to a question (yes and no)."""
 
-LONGEST = 15  # s of an utterance that are decoded at most
+LONGEST = 15  # s; the longest utterance to decode
 MODES = LISTENING
 
 
 @dataclass(frozen=True, slots=True)
 class EvidenceSettings:
-    """Settings of listening, which depend on the microphone and the room.
+    """Recognition settings, which depend on the microphone and the room.
 
-    `mode` is one of MODES. `garbage` is the weight of all speech that is no command, against 1 for
-    the commands; `shift` is added to what is demanded of the sound: above 0 is stricter.
+    `mode` is one of MODES. `garbage` is the weight of all other speech, against 1 for the commands;
+    `shift` is added to the acceptance threshold: above 0 is stricter.
     """
 
     ONLY: ClassVar[bool] = True
@@ -41,16 +41,16 @@ class EvidenceSettings:
 
 
 USUAL = EvidenceSettings()
-"""For a clean, close microphone that nobody has checked."""
+"""The defaults, for a clean, close microphone without a check."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """The vocabulary: commands, answers, and the pronunciation of their words (ARPAbet).
 
-    Those that are `urgent` end an utterance as soon as they are heard. `stops` are many ways to
-    stop the robot, common ones several times, `no_stops` sentences with such words that stop
-    nothing, and `game` are the words that the game is called by.
+    `urgent` phrases end an utterance as soon as they are heard. `stops` are sentences that stop the
+    robot, common ones repeated, `no_stops` similar sentences that do not, and `game` are the words
+    of the activity's title.
     """
 
     phrases: tuple[str, ...]
@@ -65,12 +65,12 @@ class Wanted:
 
 @dataclass(frozen=True, slots=True)
 class AcousticEvidence:
-    """What the decoder says of an utterance.
+    """The decoder's evidence about an utterance.
 
-    `words` are the likeliest ones, everyday words among them; `phrase` is the whole phrase that
-    the grammar finds, or empty; `margin` is log P(sound, words) - log P(sound, grammar or any
-    phones) a frame; `confidence` is that of the paper's mode, else 1; `seconds` is the length.
-    `stop` is the sentence that stops the robot, where the ears for stopping found one.
+    `words` are the likeliest words, including everyday words; `phrase` is the whole phrase found by
+    the grammar, or empty; `margin` is log P(sound, words) - log P(sound, grammar or any phones) per
+    frame; `confidence` is that of the paper's mode, else 1; `seconds` is the length. `stop` is the
+    sentence found by the stop decoder, or empty.
     """
 
     words: str = ""

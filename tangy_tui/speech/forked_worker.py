@@ -1,6 +1,6 @@
-"""Work that a second processor does meanwhile: a copy of this process that only answers.
+"""Parallel work in a forked copy of this process.
 
-pocketsphinx holds the interpreter's lock, so a thread would not do.
+pocketsphinx holds the GIL, so a thread would not run in parallel.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ Answer = TypeVar("Answer")
 class ForkedWorker(Generic[Asked, Answer]):
     """A function evaluated in a child process.
 
-    Where there is no second processor, or that process cannot be made or has died, the answer is
-    worked out here: it only takes longer. The copy ends when this process does, however that ends.
+    With a single core, or if the child cannot be forked or has died, the function is evaluated in
+    this process, which only takes longer. The child ends with this process, however that ends.
     """
 
     def __init__(self, work: Callable[[Asked], Answer]) -> None:
-        """Make the copy, of a function that keeps nothing from one call to the next."""
+        """Fork the child; the function must not keep state between calls."""
         self._work = work
         self._there: Connection | None = None
         self._process: multiprocessing.process.BaseProcess | None = None
@@ -33,7 +33,7 @@ class ForkedWorker(Generic[Asked, Answer]):
             self._fork()
 
     def ask(self, asked: Asked) -> None:
-        """Have it worked out; `answer` gives what comes of it."""
+        """Start an evaluation; `answer` returns its result."""
         self._asked = [asked]
         self._number += 1
         if self._there is not None:
@@ -43,20 +43,20 @@ class ForkedWorker(Generic[Asked, Answer]):
                 self._there = None
 
     def answer(self) -> Answer:
-        """Wait for the answer to the last request."""
+        """Wait for the result of the last request."""
         while self._there is not None:
             try:
                 number, answer = self._there.recv()
             except (EOFError, OSError):
                 self._there = None
             else:
-                if number == self._number:  # else nobody waited for that one
+                if number == self._number:  # else it is the result of an abandoned request
                     found: Answer = answer
                     return found
         return self._work(self._asked.pop())
 
     def close(self) -> None:
-        """End the copy."""
+        """End the child process."""
         if self._there is not None:
             self._there.close()
             self._there = None
@@ -77,10 +77,10 @@ class ForkedWorker(Generic[Asked, Answer]):
         there.close()
 
     def _serve(self, here: Connection, there: Connection) -> None:
-        """Answer until nobody asks any more."""
+        """Answer requests until the pipe closes."""
         own = there.fileno()
         here.close()
-        os.closerange(3, own)  # what others wait to see closed
+        os.closerange(3, own)  # else other pipes would never close
         os.closerange(own + 1, os.sysconf("SC_OPEN_MAX"))
         try:
             while True:
@@ -91,6 +91,6 @@ class ForkedWorker(Generic[Asked, Answer]):
 
 
 def processors() -> range:
-    """Return a number for each processor that this program may use."""
+    """Return a range as long as the number of cores that this process may use."""
     usable = getattr(os, "sched_getaffinity", None)
     return range(len(usable(0)) if usable is not None else os.cpu_count() or 1)

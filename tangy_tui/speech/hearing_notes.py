@@ -1,4 +1,4 @@
-"""Notes about hearing while Tangy listens; `tangy_tui.text` puts them in words."""
+"""Notes about speech recognition for people; `tangy_tui.text` has their words."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ HearingKind: TypeAlias = Literal[
 
 @dataclass(frozen=True, slots=True)
 class HearingNote:
-    """One thing to say about hearing.
+    """One note.
 
     Args:
         kind: what has happened.
-        about: the words, the phrase, the file or the reason that it is about.
-        other: whose name a word is (an id), or what a phrase sounds like.
-        seconds: how long what was said is, whole.
+        about: the words, phrase, file or reason concerned.
+        other: the id of the person with this name, or the similar phrase.
+        seconds: the length of the utterance, in whole s.
     """
 
     kind: HearingKind

@@ -1,4 +1,4 @@
-"""Ears: a source of sound and the decoder behind it, giving commands as a teacher types them."""
+"""Speech input: a sound source with a decoder, yielding commands as if they were typed."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from tangy_tui.speech.recordings import Recorder
 from tangy_tui.speech.understanding import commanded, replied, sounds_of, understand, wanted
 from tangy_tui.speech.utterance import MOST_TALK, State, Utterance
 
-RINGING = 0.3  # s for which a microphone stays shut after the robot has spoken
-FAILURES = 3  # utterances in a row that cannot be decoded, until it is no use to go on by itself
+RINGING = 0.3  # s for which the microphone stays muted after the robot has spoken
+FAILURES = 3  # failed utterances in a row after which hands-free listening ends
 
 Heard: TypeAlias = Say | StopCommand | Reply
 WAITS: dict[State, HearingKind] = {"starting": "getting ready", "thinking": "still thinking"}
@@ -33,9 +33,9 @@ WAITS: dict[State, HearingKind] = {"starting": "getting ready", "thinking": "sti
 class SpeechInput:
     """A source of spoken commands: `async for heard in ears`. Opening it checks the source.
 
-    A live microphone listens while it is pushed to talk, or (hands-free) all the time; a recording
-    gives one command after the other. While the robot speaks it is `shut`; while a question is
-    open (`asking`) it hears answers, if that is switched on, and otherwise only what stops.
+    A live microphone listens in push-to-talk, or (hands-free) all the time; a recording yields one
+    command after another. While the robot speaks it is `shut`. While a question is open (`asking`)
+    it hears answers, if enabled, and otherwise only stop commands.
     """
 
     def __init__(
@@ -54,15 +54,15 @@ class SpeechInput:
         """Open the source.
 
         Args:
-            source: its name, as `tangy_hw.audio.sources` has them.
-            phrasebook: what can be said.
-            settings: how it is listened with this microphone.
-            hands_free: listen all the time, and find out where an utterance begins and ends.
-            spoken: a recording is heard as if somebody said it now, from `begin` on; hands-free.
-            answers: also hear yes and no while a question is open.
-            recorder: keeps what is heard, with the teacher's consent.
-            stdin: the file descriptor that `-` stands for.
-            folder: the data folder, for the socket and the messages of the decoder.
+            source: its name, as in `tangy_hw.audio.sources`.
+            phrasebook: the phrases.
+            settings: the settings of this microphone.
+            hands_free: listen all the time, and detect the ends of utterances.
+            spoken: play a recording in real time like live speech, starting at `begin`; hands-free.
+            answers: also recognise yes and no while a question is open.
+            recorder: records utterances, with the teacher's consent.
+            stdin: the file descriptor of the source `-`.
+            folder: the data folder, for the socket and the decoder's log.
 
         Raises:
             SoundError: the source cannot be used.
@@ -70,17 +70,17 @@ class SpeechInput:
         self._source = open_source(source, stdin=stdin, folder=folder, spoken=spoken)
         hands_free |= isinstance(self._source, SpokenRecording)
         self.live = self._source.live
-        """Whether somebody is speaking right now, rather than on a recording."""
+        """Whether it is live speech, not a recording."""
         self.hands_free = hands_free
         self.answers = answers
         self.meter = Meter()
-        self.words = ""  # so far of what is being said
+        self.words = ""  # the partial result of the current utterance
         self.sound = b""
-        """The last utterance that was heard, 16 kHz mono s16le."""
+        """The last utterance, 16 kHz mono s16le."""
         self.tell: Callable[[HearingNote], None] = lambda note: None
-        """Is called when something must be said about hearing."""
+        """Called with a note for people."""
         self.changed: Callable[[], None] = lambda: None
-        """Is called when `state` or `words` have changed."""
+        """Called when `state` or `words` have changed."""
         self._state: State = "starting"
         self._phrasebook = phrasebook
         self._settings = settings
@@ -88,25 +88,25 @@ class SpeechInput:
         self._log = folder / "speech.log" if folder is not None and folder.is_dir() else None
         self._heard: AsyncGenerator[Heard, None] | None = None
         self._recogniser: Recogniser | None = None
-        self.utterance: Utterance | None = None  # the one that is listened for
+        self.utterance: Utterance | None = None  # the current or awaited one
         self._talks = asyncio.Event()  # it has begun, or none will
         self._free = asyncio.Event()
         self._free.set()
-        self._shuts = 0  # those who have shut it, and not opened it again
+        self._shuts = 0  # how many callers have shut it and not opened it yet
         self._asking, self._choices = False, tuple[str, ...]()
-        self.steering: tuple[Steering, ...] = ()  # taken while no command is
-        self._renew = False  # there are other phrases to listen for
+        self.steering: tuple[Steering, ...] = ()  # accepted while commands are not
+        self._renew = False  # the vocabulary has changed
         self._noticed: set[HearingNote] = set()
         if recorder is not None:
             recorder.tell = lambda why: self._told("records no more", why)
-        self.ended = False  # the source has no more
+        self.ended = False  # the source has ended
         self._closed = False
-        self._over = asyncio.Event()  # all that was started has ended
-        self._deaf = 0  # bytes that are not heard: the room still rings
+        self._over = asyncio.Event()  # all tasks have ended
+        self._deaf = 0  # bytes still to ignore, because the room reverberates
 
     @property
     def state(self) -> State:
-        """What it is doing."""
+        """The state, such as listening or thinking."""
         return "shut" if not self._free.is_set() and self._state != "over" else self._state
 
     @property
@@ -118,11 +118,11 @@ class SpeechInput:
     def trouble(self) -> SoundTrouble | None:
         """The fault of the sound; None if it is good."""
         listens = self.state in ("listening", "speaking")
-        spoken = not self.words and not self.hands_free  # who was heard spoke loudly enough
+        spoken = not self.words and not self.hands_free  # a voice that was heard is loud enough
         return self.meter.trouble(speaking=spoken) if self.live and listens else None
 
     def begin(self) -> None:
-        """Let a recording that is heard as if it were said now begin."""
+        """Start a recording that is played in real time."""
         self._source.begin()
 
     def talk(self) -> None:
@@ -141,7 +141,7 @@ class SpeechInput:
             self._now("listening")
 
     def shut(self) -> None:
-        """Hear nothing for a while: the robot speaks. A recording has no robot in it."""
+        """Mute the microphone while the robot speaks; a recording is not affected."""
         if not self.live:
             return
         self._shuts += 1
@@ -151,7 +151,7 @@ class SpeechInput:
             self.changed()
 
     def open(self) -> None:
-        """Hear again, a moment from now: the room still rings."""
+        """Unmute after a short delay, because the room reverberates."""
         self._shuts = max(0, self._shuts - 1)
         if not self._shuts and not self._free.is_set():
             self._deaf = round(RINGING * RATE) * 2
@@ -159,7 +159,7 @@ class SpeechInput:
             self.changed()
 
     def asking(self, asks: bool, choices: Sequence[str] = ()) -> None:
-        """Take note that a question is open, with what can be chosen instead, or no longer."""
+        """Set whether a question is open, and its choices."""
         self._choices = tuple(choices)
         if self._asking != asks:
             self._asking = asks
@@ -167,14 +167,14 @@ class SpeechInput:
                 self._end(dropped=True)
 
     def understand_by(self, phrasebook: Phrasebook) -> None:
-        """Use these phrases from the next utterance on."""
+        """Use this phrasebook from the next utterance on."""
         before, self._phrasebook = self._phrasebook, phrasebook
         if sounds_of(before) != sounds_of(phrasebook):
             self._renew = True
             self._talks.set()
 
     def follow(self, events: Iterable[TeachingEvent]) -> None:
-        """Take note of what followed from commands, so that recordings get their names."""
+        """Pass the events of commands to the recorder, which labels recordings by them."""
         if self._recorder is not None:
             self._recorder.follow(events)
 
@@ -189,7 +189,7 @@ class SpeechInput:
         return await anext(self._heard)
 
     async def close(self) -> None:
-        """Stop listening for good, and end the decoder, whatever it is doing."""
+        """Stop listening, and end the decoder, even if it is busy."""
         self._closed = True
         await self._source.close()
         if self._recogniser is not None:
@@ -197,7 +197,7 @@ class SpeechInput:
         if self._heard is not None:
             try:
                 await self._heard.aclose()
-            except RuntimeError:  # somebody waits for it, and gets the end
+            except RuntimeError:  # another task waits for it, and gets the end
                 await self._over.wait()
 
     async def _hear(self) -> AsyncGenerator[Heard, None]:
@@ -246,7 +246,7 @@ class SpeechInput:
                 self._now("over")
 
     async def _listen_for(self, recogniser: Recogniser) -> None:
-        """Have the decoder listen for the phrases as they are now."""
+        """Send the current vocabulary to the decoder."""
         self._renew = False
         phrasebook = self._phrasebook
         lexicon = await asyncio.to_thread(Lexicon, phrasebook, suggest=lambda word: "")
@@ -304,13 +304,13 @@ class SpeechInput:
                 continue
             self.sound = recogniser.said
             command = understand(evidence, self._phrasebook, self._settings)
-            if not utterance.dropped or isinstance(command, StopCommand):  # whatever came between
+            if not utterance.dropped or isinstance(command, StopCommand):  # a stop always counts
                 yield evidence
             elif evidence.words and self._asking:
                 self._told("question between", evidence.words)
 
     async def _next(self, recogniser: Recogniser) -> Utterance | None:
-        """Wait for the next utterance to listen to; None if the source is over."""
+        """Wait for the next utterance; None if the source has ended."""
         while True:
             if self.hands_free and (self.utterance is None or self.utterance.dropped):
                 self.utterance = None if self.ended else Utterance(found=True)
@@ -331,14 +331,14 @@ class SpeechInput:
                 self._talks.clear()
 
     def _go_on(self, begun: bytes) -> None:
-        """Listen on to a stream from where an utterance ended: somebody may have spoken on."""
+        """Continue with the stream after an utterance, where the next one may have begun."""
         if begun or not self.ended:
             self.utterance = Utterance(found=True, begun=begun)
             if self.ended:
                 self.utterance.end()
 
     async def _pump(self) -> None:
-        """Read the sound as it comes, and queue the parts to decode."""
+        """Read the sound, and queue the parts to decode."""
         try:
             async for chunk in self._source:
                 self.meter.feed(chunk)
@@ -355,12 +355,12 @@ class SpeechInput:
             self._talks.set()
 
     def _late(self, utterance: Utterance) -> None:
-        """End an utterance without an end, because no more sound comes."""
+        """End an utterance after a timeout, because no more sound comes."""
         if self.utterance is utterance:
             self._end()
 
     def _end(self, *, dropped: bool = False) -> None:
-        """Let the present utterance end; if it is dropped, it counts for nothing."""
+        """End the current utterance; if `dropped`, ignore it."""
         if self.utterance is not None:
             self.utterance.end(dropped=dropped)
             self._thinks()

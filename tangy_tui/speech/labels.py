@@ -15,17 +15,17 @@ from tangy_tui.language.stop_sentence import STOPS
 from tangy_tui.language.words import Words, words_of
 
 STOP = "stop"
-"""The intent of the words that stop the robot."""
+"""The intent of stop commands."""
 NO_COMMAND = frozenset(
     (
         *("none", "other", "others", "noise", "noises", "far", "near", "garbage", "silence"),
         *("speech", "babble", "background", "nothing"),
     )
 )
-"""Names of recordings, or of folders of them, in which there is no command."""
+"""Names of recordings or folders without a command."""
 SUFFIXES = (".wav", ".wave")
 
-TAKE = "#"  # stands for a number that counts recordings: with a zero before it, or of many digits
+TAKE = "#"  # stands for the number of a recording: with a leading zero, or three digits or more
 _TAKE = re.compile(r"(?<!\d)(?:0\d*|\d{3,})(?!\d)")
 
 
@@ -33,7 +33,7 @@ _TAKE = re.compile(r"(?<!\d)(?:0\d*|\d{3,})(?!\d)")
 class UtteranceLabel:
     """A label: a behaviour (or STOP), and the person it names; None: no command.
 
-    `named` is False if nobody can tell from the name; such a recording proves nothing.
+    `named` is False if the name gives no label; such a recording is not used.
     """
 
     behaviour: str | None
@@ -42,7 +42,7 @@ class UtteranceLabel:
 
     @property
     def words(self) -> str:
-        """What it is called in a report."""
+        """The name of the label in a report."""
         return " ".join(filter(None, (self.behaviour, self.user))) or "no command"
 
 
@@ -53,7 +53,7 @@ NOBODY_KNOWS = UtteranceLabel(None, named=False)
 class LabelledRecordings:
     """The labelled recordings below a folder, and those left out with the reason.
 
-    `unnamed` are those whose names do not tell what was said: they are left out as well.
+    `unnamed` are the recordings whose names give no label; they are left out too.
     """
 
     folder: Path
@@ -63,14 +63,14 @@ class LabelledRecordings:
 
 
 class Labels:
-    """Reads the names of recordings by the behaviours, phrases and people of a phrasebook.
+    """Derives labels from names of recordings, by a phrasebook's behaviours, phrases and people.
 
-    Case, underscores, hyphens and dots are of no account. The longest intent that a name begins
-    with counts; what follows (a number, a voice, a date) is cut off.
+    Case, underscores, hyphens and dots are ignored. The longest intent at the beginning of a name
+    counts; the rest (a number, a voice, a date) is ignored.
     """
 
     def __init__(self, phrasebook: Phrasebook) -> None:
-        """Know what can be said."""
+        """Index the intents of a phrasebook."""
         phrases = phrasebook.table.by_words
         self._intents = {words: UtteranceLabel(p.behaviour, p.user) for words, p in phrases.items()}
         self._intents |= {
@@ -87,7 +87,7 @@ class Labels:
     def of(self, file: Path, folder: Path) -> UtteranceLabel:
         """Return the label of a recording below a folder.
 
-        The folder it lies in counts first, then its own name, then the folders further up.
+        The name of its folder has priority, then its own name, then the folders further up.
         """
         stem = _words(file.stem)
         above = [file.parent, *file.parent.parents]
@@ -106,7 +106,7 @@ class Labels:
         """Find the recordings below a folder, without following symbolic links.
 
         Raises:
-            TangyError: it is not a folder, or there are no recordings in it that are named.
+            TangyError: it is not a folder, or has no labelled recordings.
         """
         shown = plain(str(folder))
         if not folder.is_dir():
@@ -147,7 +147,7 @@ class Labels:
         return LabelledRecordings(top, tuple(found), tuple(left_out), tuple(unnamed))
 
     def _of_folder(self, folder: Path, *, below: bool) -> UtteranceLabel | None:
-        """Return what a folder's name says; of the first one just an intent, not "speech"."""
+        """Return the label by a folder's name; the top one can only name an intent."""
         words = _words(folder.name)
         return self._intent(words) or (_no_command(words) if below else None)
 
@@ -172,7 +172,7 @@ class Labels:
 
 
 def _words(name: str) -> Words:
-    """Split a name into words; a number that only counts recordings is no person's."""
+    """Split a name into words; the number of a recording becomes TAKE."""
     first, *rest = _TAKE.split(name)
     words = list(words_of(first))
     for part in rest:
@@ -186,7 +186,7 @@ def _no_command(words: Words) -> UtteranceLabel | None:
 
 
 def _files(top: Path) -> Iterator[tuple[Path, str]]:
-    """Yield every file below a folder in order, with the reason if it is not to be heard."""
+    """Yield every file below a folder in order, with the reason if it is skipped."""
     unread: list[tuple[Path, str]] = []
 
     def cannot(error: OSError) -> None:

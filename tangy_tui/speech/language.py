@@ -1,7 +1,7 @@
-"""What the decoder listens for, as text: a dictionary, a grammar and n-gram models.
+"""The decoder's language models as text: a dictionary, a grammar and n-gram models.
 
-All of it is made of the phrases of one phrasebook. Two things stand for speech that is none of
-them: in the grammar a branch of any phones (garbage), and in the n-gram model everyday words.
+They are made from the phrases of one phrasebook. Other speech is modelled in two ways: in the
+grammar by a branch of any phones (garbage), in the n-gram model by everyday words.
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ from collections.abc import Iterable, Mapping, Sequence
 from tangy_profiles.phones import PHONES
 
 EVERYDAY = 3_000
-"""How many everyday words are known beside those of the phrases.
+"""The number of everyday words besides those of the phrases.
 
 Of 75 other sentences, 9, 13 and 16 were taken for commands with 2,500, 1,000 and no such words.
 """
-DISCOUNT = 0.5  # probability mass that n-grams of phrases leave for sequences no phrase has
-LEAST_PROBABILITY = 1e-99  # below it a logarithm is none that a decoder reads
-GARBAGE = "_"  # begins the name of a phone among the words
+DISCOUNT = 0.5  # probability mass that phrase n-grams leave for other sequences
+LEAST_PROBABILITY = 1e-99  # the decoder cannot read smaller logarithms
+GARBAGE = "_"  # prefix of a phone used as a word
 
 
 def dictionary(pronunciations: Mapping[str, Sequence[str]], *, phones: bool = False) -> str:
-    """Return a pronouncing dictionary as the decoder reads it.
+    """Return a pronouncing dictionary in the decoder's format.
 
     Args:
-        pronunciations: for each word at least one, in ARPAbet.
-        phones: also have every phone as a word, for the garbage branch.
+        pronunciations: one or more for each word, in ARPAbet.
+        phones: also add every phone as a word, for the garbage branch.
     """
     lines = [
         f"{word}{f'({number})' if number > 1 else ''} {phones_of_it}\n"
@@ -42,12 +42,12 @@ def dictionary(pronunciations: Mapping[str, Sequence[str]], *, phones: bool = Fa
 def grammar(phrases: Sequence[str], garbage: float) -> str:
     """Return a JSGF grammar: one of the phrases, or any phones (by a probability).
 
-    The weight stands on the branch: JSGF normalises weights within each alternative, so those of
+    The weight is on the branch: JSGF normalises weights within each alternative, so weights of
     single phones would be divided by their number.
 
     Args:
-        phrases: what can be said.
-        garbage: the weight of the branch for anything else, against 1 for all phrases together.
+        phrases: the phrases.
+        garbage: the weight of the garbage branch, against 1 for all phrases together.
     """
     commands = "\n  | ".join(phrases)
     phones = " | ".join(GARBAGE + phone.lower() for phone in sorted(PHONES))
@@ -73,15 +73,15 @@ def phrase_model(phrases: Sequence[str]) -> str:
 
 
 def open_model(phrases: Sequence[str], everyday: Mapping[str, float], share: float) -> str:
-    """Return a trigram model of the phrases in which everyday words can stand anywhere.
+    """Return a trigram model of the phrases in which everyday words can occur anywhere.
 
-    Its unigrams are mixed: those of the phrases and those of everyday speech. After the words of
-    a phrase anything else can follow, by the mass that the discount leaves.
+    Its unigrams are a mixture of phrases and everyday speech. After the words of a phrase any other
+    word can follow, with the mass that the discount leaves.
 
     Args:
-        phrases: what can be said.
+        phrases: the phrases.
         everyday: the probabilities of everyday words.
-        share: the part of the everyday words in the mixture, 0 to 1.
+        share: the share of everyday words in the mixture, 0 to 1.
     """
     head, rest = phrase_model(phrases).split("\\1-grams:\n")
     unigrams, rest = rest.split("\n\n\\2-grams:", 1)
@@ -91,7 +91,7 @@ def open_model(phrases: Sequence[str], everyday: Mapping[str, float], share: flo
     for line in unigrams.splitlines():
         score, word, backoff = line.split()
         own.add(word)
-        if word != "<s>":  # which is never said; the end of a phrase shares with everyday words
+        if word != "<s>":  # never spoken; the end of a phrase is mixed too
             mixed = (1 - share) * 10 ** float(score) + share * everyday.get(word, 0.0) / whole
             score = f"{math.log10(max(mixed, LEAST_PROBABILITY)):.4f}"
         lines.append(f"{score} {word} {backoff}")

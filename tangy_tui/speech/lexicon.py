@@ -1,4 +1,4 @@
-"""How each word of a phrasebook is said, and which of its phrases can be told by their sound."""
+"""The pronunciation of each word of a phrasebook, and phrases that sound the same."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from tangy_tui.language.pronunciation import pronounce, suggest
 from tangy_tui.language.words import Words, clean, spoken, words_of
 from tangy_tui.speech.hearing_notes import HearingNote
 
-MOST_WAYS = 64  # to say one phrase; those of most words count first
+MOST_WAYS = 64  # pronunciations of one phrase; the first ones of most words come first
 
 WordSource: TypeAlias = Literal["activity", "person", "dictionary", "suggested", ""]
-"""Where a pronunciation comes from: "" where nobody knows one."""
+"""The source of a pronunciation; "" if unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """How a word is said: its pronunciations, and where they come from.
+    """A word with its pronunciations and their source.
 
-    `source` is "activity", "person", "dictionary", "suggested" (guessed: it cannot be heard), or
-    "" where nothing can be guessed.
+    `source` is "activity", "person", "dictionary", "suggested" (a guess, which is not recognised),
+    or "" if not even a guess is possible.
     """
 
     word: str
@@ -38,30 +38,30 @@ class Said:
 
     @property
     def heard(self) -> bool:
-        """Whether the recogniser can hear it."""
+        """Whether speech recognition knows the word."""
         return self.source not in ("suggested", "")
 
 
 @dataclass(frozen=True, slots=True)
 class Alike:
-    """A phrase that sounds (nearly) like another of another meaning, which came first."""
+    """A phrase that sounds (nearly) like an earlier one with another meaning."""
 
     phrase: Phrase
     other: Phrase
 
 
 class Lexicon:
-    """The words of a phrasebook by their sound.
+    """The words of a phrasebook with their pronunciations.
 
     It reads the pronouncing dictionary: some 30 ms for the words of an activity.
     """
 
     words: Mapping[str, Said]
-    """Of every word that can be said or typed, how it is said."""
+    """Every word that can be spoken or typed, with its pronunciations."""
     alike: tuple[Alike, ...]
-    """Phrases that cannot be told from others by their sound; the others can be heard."""
+    """Phrases that sound like earlier ones and are not recognised; the earlier ones are."""
     phrases: tuple[Phrase, ...]
-    """Those that are listened for, if they can be heard."""
+    """The phrases to recognise, if possible."""
 
     def __init__(
         self,
@@ -70,7 +70,7 @@ class Lexicon:
         pronounce: Callable[[str], tuple[str, ...]] = pronounce,
         suggest: Callable[[str], str] = suggest,
     ) -> None:
-        """Look up every word; `suggest` is asked about those that nobody has a pronunciation of."""
+        """Look up every word; `suggest` guesses the pronunciation of unknown ones."""
         self.phrases = tuple(p for p in phrasebook.table.all() if p.heard)
         self._pronounce, self._suggest = pronounce, suggest
         self._table = phrasebook.table
@@ -85,16 +85,16 @@ class Lexicon:
         return tuple(self.words[word] for word in words if not self.words[word].heard)
 
     def heard(self) -> tuple[str, ...]:
-        """Return the phrases that can be heard, as they are said."""
+        """Return the phrases that can be recognised, in spoken form."""
         out = {one.phrase.said for one in self.alike}
         return tuple(
             dict.fromkeys(p.said for p in self.phrases if self._known(p) and p.said not in out)
         )
 
     def confusable_phrases(self) -> tuple[Alike, ...]:
-        """Return the phrases of one behaviour that one phone tells from those of another.
+        """Return phrases of different behaviours that differ in one phone.
 
-        They can be heard, and are easily mistaken; it looks at every way to say each.
+        They can be recognised, but are easily confused; all pronunciations are compared.
         """
         out = {one.phrase.said for one in self.alike}
         first: dict[Words, list[Phrase]] = defaultdict(list)
@@ -111,7 +111,7 @@ class Lexicon:
         return tuple(found.values())
 
     def left_out(self) -> dict[str, str]:
-        """Return the phrases that cannot be heard, only typed, each with the reason in words."""
+        """Return the phrases that can only be typed, each with the reason in words."""
         reasons = {one.phrase.said: f"sounds like {one.other.said!r}" for one in self.alike}
         for phrase in self.phrases:
             lacks = [word for word in phrase.said.split() if not self.words[word].heard]
@@ -120,7 +120,7 @@ class Lexicon:
         return reasons
 
     def notices(self) -> tuple[HearingNote, ...]:
-        """Return a note for each word and phrase that cannot be heard."""
+        """Return a note for each word and phrase that cannot be recognised."""
         whose = {word: id for words, id in self._table.names.items() for word in words}
         notes = [
             HearingNote("name not heard", said.word, whose[said.word])
@@ -146,7 +146,7 @@ class Lexicon:
         return all(self.words[word].heard for word in phrase.said.split())
 
     def _find_alike(self) -> Iterator[Alike]:
-        """Find phrases of different meanings that have the same phones, whatever their words."""
+        """Yield phrases with different meanings and the same phones."""
         first: dict[str, Phrase] = {}
         for phrase in filter(self._known, self.phrases):
             ways = set(self._ways(phrase))
@@ -158,17 +158,17 @@ class Lexicon:
                     first.setdefault(way, phrase)
 
     def _ways(self, phrase: Phrase) -> Iterator[str]:
-        """Yield the ways to say a phrase, as phones without a gap between words."""
+        """Yield the pronunciations of a phrase, as phones without word boundaries."""
         choices = [self.words[word].phones for word in phrase.said.split()]
         return (" ".join(way) for way in islice(product(*choices), MOST_WAYS))
 
 
 def _one_less(phones: Sequence[str]) -> Iterator[Words]:
-    """Yield what two phrases share that one phone more, or another one, tells apart."""
+    """Yield keys that two phrases share if they differ in one phone."""
     for place in range(len(phones)):
-        yield (*phones[:place], "", *phones[place + 1 :])  # any phone stands here
+        yield (*phones[:place], "", *phones[place + 1 :])  # one phone replaced
     for place in range(len(phones) + 1):
-        yield (*phones[:place], "", *phones[place:])  # or none
+        yield (*phones[:place], "", *phones[place:])  # or inserted
 
 
 def _differ(other: Phrase | None, phrase: Phrase) -> bool:
@@ -176,7 +176,7 @@ def _differ(other: Phrase | None, phrase: Phrase) -> bool:
 
 
 def distinct_word(phrasebook: Phrasebook, behaviour: str, phrase: Phrase) -> str:
-    """Return a word that only one behaviour is asked for with, and a phrase lacks; "" if none."""
+    """Return a word used only for one behaviour and missing in a phrase; "" if none."""
     users: dict[str, set[str]] = defaultdict(set)
     for entry in (*phrasebook.table.all(), *phrasebook.table.keywords):
         for word in entry.bare:
@@ -187,10 +187,10 @@ def distinct_word(phrasebook: Phrasebook, behaviour: str, phrase: Phrase) -> str
 
 
 def phones_of(text: str, activity: Activity) -> str:
-    """Return the phones to say: as they were given in capitals, or those of words.
+    """Return the phones to speak: given in capitals, or those of words.
 
     Raises:
-        ProfileError: one of several phones is none, or a word has no pronunciation at all.
+        ProfileError: a phone is invalid, or a word has no pronunciation.
     """
     if text.isupper() and (" " in text.strip() or text.strip() in PHONES):
         return read_name_phones(text)

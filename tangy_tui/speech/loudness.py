@@ -1,4 +1,4 @@
-"""How loud a voice is above its room, and what to change about it."""
+"""The loudness of a voice above its room, and advice about it."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from typing import Literal, TypeAlias
 from tangy_hw.audio.meter import CLIPPED, QUIET, RAILS
 
 FRAME = 320  # samples, 20 ms
-LOUD = 0.9  # the part of the frames that is less loud than a voice, or a room, is said to be
+LOUD = 0.9  # quantile of the frames that defines the loudness of a voice or a room
 CLEAR, FAIR = 20.0, 12.0  # dB of a voice above the room
-LEAST = 0.33  # of a sample's steps: nothing that was recorded is less loud
-SILENT = -99.0  # dB: zeros alone are below that
+LEAST = 0.33  # quantisation steps; the least possible loudness
+SILENT = -99.0  # dB; digital silence is below that
 
 SoundAdvice: TypeAlias = Literal[
     "turn down", "turn up", "room as loud", "room rather loud", "speak soon", "without a pause"
 ]
-"""What to change about a sound: the microphone's level, the room, or how phrases are said."""
+"""Advice about the sound: the microphone's level, the room, or the way of speaking."""
 
 
 def loudness(pcm: bytes, share: float) -> float:
-    """Return how loud a sound is in dB below full scale: a share of it is less loud than that."""
+    """Return a quantile (`share`) of the loudness of a sound's frames, in dB below full scale."""
     import numpy as np
 
     frames = np.frombuffer(pcm[: len(pcm) // (2 * FRAME) * (2 * FRAME)], "<i2").reshape(-1, FRAME)
@@ -32,7 +32,7 @@ def loudness(pcm: bytes, share: float) -> float:
 
 
 def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) -> list[SoundAdvice]:
-    """Return what to change, by the levels in dB: nothing if the sound is right."""
+    """Return advice by the levels in dB; empty if the sound is good."""
     said: list[SoundAdvice] = []
     if sum(_cut_off(pcm) for pcm in sounds) > 1:
         said.append("turn down")

@@ -1,6 +1,6 @@
 """A microphone check of a minute: the quiet room, some commands, some other sentences.
 
-Nothing of what is recorded here is kept; what comes of it are figures and settings.
+No sound is stored, only figures and settings.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ from tangy_tui.speech.understanding import wanted
 
 COMMANDS = 6
 OTHERS = 3
-QUIET_SECONDS = 3.0  # of the room alone
-WAIT_SECONDS = 6.0  # for a phrase to begin
-LONGEST_SECONDS = 6.0  # of a phrase
-PATIENCE = 30.0  # s without any sound, after which a check is given up
-LOOK_SECONDS = 0.5  # between two looks at the meter
-TIMES = 2  # that a phrase is asked for, or the quiet of the room
+QUIET_SECONDS = 3.0  # s of the room alone
+WAIT_SECONDS = 6.0  # s for a phrase to begin
+LONGEST_SECONDS = 6.0  # s of a phrase
+PATIENCE = 30.0  # s without any sound, after which the check ends
+LOOK_SECONDS = 0.5  # s between two checks of the meter
+TIMES = 2  # attempts at a phrase, or at the quiet room
 
 StepKind: TypeAlias = Literal[
     "recording holds",
@@ -59,15 +59,15 @@ StepKind: TypeAlias = Literal[
     "goes on by itself",
     "works out",
 ]
-"""What a check asks for or does: `say` and `say again` come for each phrase."""
+"""The steps of a check; `say` or `say again` for each phrase."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckStep:
-    """What a check asks for or does now.
+    """An instruction or a state of the check.
 
-    `about` is the phrase to say, or the recording; `number` is the phrase's, how many there are, or
-    for how many seconds (whole) to be quiet.
+    `about` is the phrase to say, or the recording; `number` is the number of the phrase, the count
+    of phrases, or the whole seconds to be quiet.
     """
 
     kind: StepKind
@@ -77,7 +77,7 @@ class CheckStep:
 
 @dataclass(frozen=True, slots=True)
 class SourceNews:
-    """What a source of sound says of itself, in its own words."""
+    """A message of the sound source, in its own words."""
 
     words: str
 
@@ -93,26 +93,26 @@ class CheckRecogniser(Protocol):
     speaking: Callable[[], None]
 
     async def start(self, wanted: Wanted) -> None:
-        """Listen for something."""
+        """Set the vocabulary."""
 
     async def hear(
         self, sound: asyncio.Queue[bytes], expecting: Expecting = ..., *, endpoint: bool = ...
     ) -> AcousticEvidence:
-        """Hear one utterance as it is spoken."""
+        """Recognise one utterance as it is spoken."""
 
     async def decode(self, pcm: bytes, expecting: Expecting = ...) -> AcousticEvidence:
         """Decode one utterance."""
 
     async def pieces(self, pcm: bytes) -> list[bytes]:
-        """Cut a recording at its pauses."""
+        """Split a recording at its pauses."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """What came of a check; loudness in dB below full scale (negative).
+    """The result of a check; loudness in dB below full scale (negative).
 
-    `heard` has for each text that was asked for the words that were heard with the settings that
-    were chosen, None where nothing was said. `advice` is what to change.
+    `heard` has, for each prompt, the words recognised with the chosen settings; None if nothing was
+    said. `advice` is what to change.
     """
 
     room: float
@@ -124,13 +124,13 @@ class CheckResult:
 
     @property
     def room_heard(self) -> bool:
-        """Whether there was any sound of the room, above which a voice can be measured."""
+        """Whether there was any sound of the room, as a reference for the voice."""
         return self.room > SILENT
 
 
 @cache
 def other_talk() -> tuple[str, ...]:
-    """Return sentences of everyday speech; one that means something in an activity is not used."""
+    """Return sentences of everyday speech; the caller skips those that mean something."""
     content = files("tangy_tui.speech").joinpath("other_talk.toml").read_text(encoding="utf-8")
     return tuple(tomllib.loads(content)["sentences"])
 
@@ -138,7 +138,7 @@ def other_talk() -> tuple[str, ...]:
 def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[CalibrationPrompt]:
     """Return the sentences to say: commands of different behaviours, then others.
 
-    The commands have many different words, and none has just one, because that proves little.
+    The commands have many different words, and at least two each, because one word proves little.
     """
     heard = set(lexicon.heard())
     phrases = [p for p in phrasebook.table.all() if p.heard and p.said in heard and len(p.bare) > 1]
@@ -160,7 +160,7 @@ def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[CalibrationPrompt]:
 
 
 class MicrophoneCheck:
-    """One check of one source. A recording is taken for the answers, one after the other."""
+    """One check of one source. A recording is used as the answers, one after another."""
 
     def __init__(
         self,
@@ -172,16 +172,16 @@ class MicrophoneCheck:
         phrases: Sequence[str] | None = None,
         patience: float = PATIENCE,
     ) -> None:
-        """Make a check.
+        """Prepare a check.
 
         Args:
-            source: is closed when it is over.
-            phrasebook: what can be said.
-            recogniser: is started and told what to listen for.
-            asked: what is to be said, from `to_say`.
-            tell: says what to do, and what is wrong.
-            phrases: those that are listened for, if not all that can be said.
-            patience: seconds without any sound, after which it is given up.
+            source: the sound source, closed at the end.
+            phrasebook: the phrases.
+            recogniser: the recogniser, started here.
+            asked: the prompts, from `to_say`.
+            tell: receives instructions and problems.
+            phrases: the vocabulary, if not all phrases.
+            patience: time without any sound, in s, after which the check ends.
         """
         self._source = source
         self._phrasebook = phrasebook
@@ -191,7 +191,7 @@ class MicrophoneCheck:
         self._meter = Meter()
         self._phrases = phrases
         self._sound: asyncio.Queue[bytes] | None = None
-        self._left = 0  # bytes for which it is still listened
+        self._left = 0  # bytes until the timeout of the phrase
         self._spoke = False
         self._ended = False
         self._room = bytearray()
@@ -201,10 +201,10 @@ class MicrophoneCheck:
         self._offered = False
 
     async def run(self) -> CheckResult:
-        """Listen, and find the settings. The source is closed in the end.
+        """Run the check and find the settings; the source is closed at the end.
 
         Raises:
-            SoundError: the source gives nothing.
+            SoundError: the source has no sound.
             SpeechUnavailable: the worker cannot run here.
         """
         try:
@@ -226,7 +226,7 @@ class MicrophoneCheck:
         pcm = b"".join([chunk async for chunk in self._source])
         found = await self._recogniser.pieces(pcm)
         if len(found) < len(self._asked):
-            found = max(found, split(pcm), key=len)  # noise has no pauses, but is less loud
+            found = max(found, split(pcm), key=len)  # noise has no pauses: split by loudness
         sounds = [*found, *([b""] * len(self._asked))][: len(self._asked)]
         return loudness(pcm, 1 - LOUD), sounds
 
@@ -250,9 +250,9 @@ class MicrophoneCheck:
             await asyncio.wait({pump, watch})
 
     async def _room_alone(self, pump: asyncio.Task[None]) -> float:
-        """Return how loud the room is; where nothing is heard of it, it has a second chance.
+        """Return the loudness of the room in dB; repeat the step if there is no sound.
 
-        A microphone that is muted sends silence; so does one that lets only voices through.
+        A muted microphone sends silence; so does one with a noise gate.
         """
         for _ in range(TIMES):
             self._tell(CheckStep("be quiet", number=round(QUIET_SECONDS)))
@@ -262,7 +262,7 @@ class MicrophoneCheck:
             await self._still_there(pump)
             if self._ended or not self._silent(NO_SOUND_SECONDS):
                 break
-            while not self._ended and self._silent(NO_SOUND_SECONDS):  # noqa: ASYNC110 - by the clock
+            while not self._ended and self._silent(NO_SOUND_SECONDS):  # noqa: ASYNC110 - polls a meter
                 await asyncio.sleep(LOOK_SECONDS)
             await self._still_there(pump)
         return loudness(bytes(self._room), LOUD)
@@ -271,7 +271,7 @@ class MicrophoneCheck:
         return self._meter.seconds_since_sound >= seconds
 
     async def _still_there(self, pump: asyncio.Task[None]) -> None:
-        """Raise what has ended the sound, if that was no ordinary end."""
+        """Raise the error that ended the sound, if any."""
         if pump.done():
             await pump
         elif self._ended:
@@ -281,7 +281,7 @@ class MicrophoneCheck:
             )
 
     async def _say(self, number: int, asked: CalibrationPrompt) -> bytes:
-        """Ask for one text, twice if nothing is heard; return its sound."""
+        """Ask for one prompt, twice if nothing is heard; return its sound."""
         for again in range(TIMES):
             if self._ended:
                 break
@@ -296,7 +296,7 @@ class MicrophoneCheck:
         return b""
 
     async def _pump(self) -> None:
-        """Read the sound as it comes, and keep the utterances."""
+        """Read the sound, and queue the utterances."""
         try:
             async for chunk in self._source:
                 self._meter.feed(chunk)
@@ -341,7 +341,7 @@ class MicrophoneCheck:
                 self._end()
 
     async def _find(self, room: float, sounds: Sequence[bytes]) -> CheckResult:
-        """Decode an utterance, with one weight or with all of them."""
+        """Decode the utterances, with one weight or with all of them, and choose the settings."""
         self._tell(CheckStep("works out"))
         scores: dict[float, list[CalibrationScore]] = {}
         words: dict[float, list[str | None]] = {}
@@ -356,7 +356,7 @@ class MicrophoneCheck:
             scores[weight] = [
                 score(one, asked, self._phrasebook, settings)
                 for one, asked, pcm in zip(heard, self._asked, sounds, strict=True)
-                if pcm or asked.meant  # silence proves nothing of other sentences
+                if pcm or asked.meant  # silence proves nothing about other sentences
             ]
             if spare(scores[USUAL.garbage]):
                 break

@@ -1,4 +1,4 @@
-"""Names confusable with other names or commands, as words or by sound."""
+"""Names that can be confused with other names or commands, as words or by sound."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from tangy_tui.speech.name_pronunciation import how_said
 
 @dataclass(frozen=True, slots=True)
 class NameConflict:
-    """What a name sounds like: `like` in words; `lost` cannot be heard then ("": both can).
+    """A conflict: `like` is what a name sounds like; `lost` is not recognised ("": both are).
 
-    `guessed` are the phones, if nobody has said yet that the name is said so.
+    `guessed` are the phones, if they are only a suggestion.
     """
 
     person: Person
@@ -34,7 +34,7 @@ class NameConflict:
 
 
 def find_clash(activity: Activity, people: Sequence[Person], person: Person) -> NameConflict | None:
-    """Find what the name of one of the people sounds like: as it is said, else as is suggested."""
+    """Find a conflict of a person's name, by its pronunciation or else the suggested one."""
     said, guessed = person, ""
     how = how_said(person)
     if how.source == "suggested":
@@ -47,10 +47,10 @@ def find_clash(activity: Activity, people: Sequence[Person], person: Person) -> 
 
 
 def check_said(activity: Activity, people: Sequence[Person], person: Person, phones: str) -> None:
-    """Check that a name that is said so can be told from others.
+    """Check that a name with this pronunciation is distinguishable.
 
     Raises:
-        TangyError: it sounds like somebody else's name, or like a phrase.
+        TangyError: it sounds like another name, or like a phrase.
     """
     clash = find_clash(activity, people, replace(person, pronunciation=phones))
     if clash is not None:
@@ -63,15 +63,15 @@ def check_said(activity: Activity, people: Sequence[Person], person: Person, pho
 
 
 def check_new_name(activity: Activity, people: Sequence[Person], person: Person) -> None:
-    """Check that a name means nothing else where it is said or typed.
+    """Check that a name has no other meaning, typed or spoken.
 
     Args:
-        activity: has the phrases.
-        people: everybody, with the names they have now.
-        person: with the new name.
+        activity: the activity with its phrases.
+        people: everybody, with their current names.
+        person: the person with the new name.
 
     Raises:
-        TangyError: it stops the robot, is an answer, a whole phrase, or what another is called.
+        TangyError: it stops the robot, is an answer, a whole phrase, or refers to another person.
     """
     words = words_of(clean(person.name))
     if not words:
@@ -103,7 +103,7 @@ def check_new_name(activity: Activity, people: Sequence[Person], person: Person)
 def _alike(
     activity: Activity, people: Sequence[Person], person: Person
 ) -> Iterator[tuple[str, str]]:
-    """Yield what a name sounds like, and what of both cannot be heard."""
+    """Yield what a name sounds like, and which of both is not recognised."""
     name = words_of(clean(person.name))
     if not name:
         return
@@ -125,7 +125,7 @@ def _alike(
 
 
 def _ways(activity: Activity, words: Words, own: dict[str, str]) -> Iterator[str]:
-    """Yield the ways to say words, as phones without a gap between words."""
+    """Yield the pronunciations of words, as phones without word boundaries."""
     choices = [
         (own[word],) if word in own else (*activity.pronunciations.get(word, ()), *pronounce(word))
         for word in spoken(words).split()

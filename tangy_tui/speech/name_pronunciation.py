@@ -1,4 +1,4 @@
-"""How a person's name is said, and who says so."""
+"""The pronunciation of a person's name, and its source."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from tangy_tui.language.pronunciation import suggest_name, unknown_words
 from tangy_tui.language.words import bare, clean, words_of
 
 NameSource: TypeAlias = Literal["person", "dictionary", "suggested", ""]
-"""Who says how a name is said: staff, the dictionary, a guess, or nobody."""
+"""The source of a pronunciation: staff, the dictionary, a guess, or none."""
 
 
 @dataclass(frozen=True, slots=True)
 class HowSaid:
-    """A name's phones, a comma between words, and where they come from.
+    """A name's phones, with commas between words, and their source.
 
-    `source` is "person" (staff noted it), "dictionary", "suggested" (guessed: the name is not
-    heard before that is accepted), or "" where nobody knows. `lacks` are the words of the name that
-    the dictionary does not have.
+    `source` is "person" (entered by staff), "dictionary", "suggested" (a guess: the name is not
+    recognised until it is accepted), or "" if unknown. `lacks` are the words of the name that the
+    dictionary does not have.
     """
 
     name: str
@@ -30,7 +30,7 @@ class HowSaid:
     lacks: tuple[str, ...]
 
     def to_json(self) -> dict[str, Any]:
-        """Write it for a script."""
+        """Return it as JSON."""
         return {
             "pronunciation": self.phones or None,
             "source": self.source or None,
@@ -39,7 +39,7 @@ class HowSaid:
 
 
 def how_said(person: Person) -> HowSaid:
-    """Return how a person's name is said: as noted, else by the dictionary, else as guessed."""
+    """Return the pronunciation of a name: stored, or else by the dictionary, or else guessed."""
     if name_phones(person) and person.pronunciation is not None:
         return HowSaid(person.name, person.pronunciation, "person", ())
     phones, lacks = suggest_name(person.name), unknown_words(person.name)
@@ -49,10 +49,10 @@ def how_said(person: Person) -> HowSaid:
 
 
 def accept_suggested(person: Person) -> str:
-    """Return the phones that are suggested for a name.
+    """Return the suggested phones of a name.
 
     Raises:
-        TangyError: nothing can be suggested.
+        TangyError: there is no suggestion.
     """
     said = how_said(person)
     if not said.phones:

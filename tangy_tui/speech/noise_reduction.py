@@ -1,7 +1,7 @@
-"""Steady noise taken out of an utterance before it is decoded: fans, traffic, hiss.
+"""Reduction of steady noise in an utterance before decoding: fans, traffic, hiss.
 
-The decoder has nothing of the kind itself (its option `remove_noise` changes nothing). Of known
-phrases in white noise 10 dB below the voice 38 % were right without, 74 % with this.
+The decoder has none itself (its option `remove_noise` has no effect). Of known phrases in white
+noise 10 dB below the voice 38 % were right without, 74 % with this.
 """
 
 from __future__ import annotations
@@ -16,31 +16,31 @@ if TYPE_CHECKING:
 
     Samples = NDArray[np.float64]
 
-WINDOW, HOP, BINS = 400, 160, 512  # samples: 25 ms, 10 ms, and the length of the transform
+WINDOW, HOP, BINS = 400, 160, 512  # samples: 25 ms, 10 ms, and the length of the FFT
 AROUND = 4_000  # samples, 0.25 s
-LEAST_QUIET = 4.0  # root mean square of 16-bit samples: that of a good microphone
-QUIET = 0.15  # the part of the frames that is taken for noise alone
-FEWEST = 10  # frames; what is shorter is left as it is
-CLEAN = 30.0  # dB; what stands out of the noise by more is left as it is
+LEAST_QUIET = 4.0  # root mean square of 16-bit samples, as of a good microphone
+QUIET = 0.15  # share of the frames that counts as noise alone
+FEWEST = 10  # frames; shorter utterances are unchanged
+CLEAN = 30.0  # dB above the noise, from which an utterance is unchanged
 SMOOTHING = 0.92  # of the signal-to-noise ratio from frame to frame
-FLOOR = 0.2  # the least that is left of a band; less leaves gaps that no phone has
+FLOOR = 0.2  # lowest gain of a band; a lower one leaves unnatural gaps
 
 
 def cleared(pcm: bytes) -> bytes:
-    """Return an utterance (16 kHz mono s16le) as the decoder hears it best: see `cleaned`.
+    """Return an utterance (16 kHz mono s16le) enhanced for the decoder (see `cleaned`).
 
-    Where there is no noise, the missing upper band is made up (`widened`): in noise nobody can
-    tell what is missing.
+    If there is no noise, a missing upper band is synthesised (`widened`); in noise it cannot be
+    detected.
     """
     clean = cleaned(pcm)
     return widened(pcm) if clean == pcm else clean
 
 
 def cleaned(pcm: bytes) -> bytes:
-    """Return an utterance (16 kHz mono s16le) with steady noise turned down, of the same length.
+    """Return an utterance (16 kHz mono s16le) with less steady noise, of the same length.
 
-    A Wiener gain for every band, the signal-to-noise ratio estimated decision-directed (Ephraim
-    and Malah 1984); the noise is the mean of the quietest frames.
+    It applies a Wiener gain to every band, with a decision-directed estimate of the signal-to-noise
+    ratio (Ephraim and Malah 1984). The noise is the mean of the quietest frames.
     """
     import numpy as np
 
@@ -71,10 +71,10 @@ def cleaned(pcm: bytes) -> bytes:
 
 
 def surrounded(pcm: bytes) -> bytes:
-    """Return an utterance with a quarter of a second of its own quiet before and after it.
+    """Return an utterance padded by a quarter of a second of its own noise on both sides.
 
-    Words that begin with the first sample, or end with the last, are heard with less certainty;
-    so are words beside silence without any noise, as gates and synthesisers make it.
+    Words at the very beginning or end are recognised with less certainty; so are words next to
+    digital silence, as from noise gates and synthesisers.
     """
     import numpy as np
 
@@ -92,7 +92,7 @@ def surrounded(pcm: bytes) -> bytes:
 
 
 def _gains(posterior: Samples) -> Samples:
-    """Return the gain of each frame and band from its power over that of the noise."""
+    """Return the gain of each frame and band, shape (frames, bands), from power over noise."""
     import numpy as np
 
     gains = np.empty_like(posterior)

@@ -1,4 +1,4 @@
-"""The phrasebook as people read it: what can be said for what, and how each word is said."""
+"""The phrasebook for people: the phrases of each behaviour, and pronunciations."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tangy_tui.speech.name_pronunciation import HowSaid, how_said
 
 @dataclass(frozen=True, slots=True)
 class Ways:
-    """What can be said or typed for a behaviour; `to_people`: any of these with a person."""
+    """The phrases of a behaviour; `to_people`: any of them can be combined with a person."""
 
     behaviour: str
     question: str
@@ -26,7 +26,7 @@ class Ways:
 
 @dataclass(frozen=True, slots=True)
 class Called:
-    """What a person can be called in a command, and how the name is said."""
+    """The ways to refer to a person in a command, and the name's pronunciation."""
 
     person: Person
     ways: tuple[str, ...]
@@ -35,19 +35,19 @@ class Called:
 
 @dataclass(frozen=True)
 class PhraseList:
-    """Everything that can be said in an activity among some people."""
+    """Everything that can be said in an activity with these people."""
 
     title: str
     behaviours: tuple[Ways, ...]
     people: tuple[Called, ...]
     words: tuple[Said, ...]
     left_out: Mapping[str, str]
-    """What cannot be heard, only typed, with the reason."""
+    """Phrases that can only be typed, with the reason."""
     own: Mapping[str, str]
-    """The phrases that are a teacher's own, with their behaviours."""
+    """A teacher's own phrases, with their behaviours."""
 
     def to_json(self) -> dict[str, Any]:
-        """Write it for a script."""
+        """Return it as JSON."""
         return {
             "title": self.title,
             "behaviours": [
@@ -81,12 +81,12 @@ class PhraseList:
 def list_phrases(
     activity: Activity, people: Sequence[Person], own: Mapping[str, str] | None = None
 ) -> PhraseList:
-    """List what can be said; it looks every word up, which takes some 50 ms.
+    """List the phrases; looking up every word takes some 50 ms.
 
     Args:
-        activity: has all phrases.
-        people: who takes part.
-        own: which of the phrases are a teacher's own.
+        activity: the activity with all phrases.
+        people: the participants.
+        own: the phrases that are a teacher's own.
     """
     phrasebook = Phrasebook(activity, people)
     lexicon = Lexicon(phrasebook)

@@ -1,4 +1,4 @@
-"""pocketsphinx's searches: made of a dictionary and models, and asked for the likeliest path."""
+"""pocketsphinx searches: built from a dictionary and models, and queried for the best path."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from tangy_tui.speech.evidence import RATE
 
 SHIFT = 1024  # pocketsphinx keeps scores shifted right by ten bits
 FRAMES_A_SECOND = 100
-NOISES = ("<", "[", "+", "(")  # how silences and noises begin among the words of a path
-NO_PATH = -1e9  # the score where no path comes to an end
+NOISES = ("<", "[", "+", "(")  # prefixes of silences and noises among the words of a path
+NO_PATH = -1e9  # score if no path is complete
 
 
 def make_search(words: str, *, bestpath: bool, active: int = 30_000) -> Any:
-    """Make a decoder without any search in it yet.
+    """Create a decoder without any search.
 
     Args:
         words: its dictionary.
-        bestpath: search the lattice once more in the end.
-        active: how many models are followed at most; fewer are faster, and at some point wrong.
+        bestpath: search the lattice again at the end.
+        active: the beam, as the most active HMMs; fewer are faster, but less accurate.
     """
     import pocketsphinx
 
@@ -36,7 +36,7 @@ def make_search(words: str, *, bestpath: bool, active: int = 30_000) -> Any:
 
 
 def add_model(decoder: Any, name: str, arpa: str) -> None:
-    """Give a decoder one more search, by an n-gram model in ARPA format."""
+    """Add a search to a decoder, with an n-gram model in ARPA format."""
     with tempfile.TemporaryDirectory(prefix="tangy-speech-") as folder:
         path = Path(folder) / "lm"
         path.write_text(arpa, encoding="utf-8")
@@ -44,12 +44,12 @@ def add_model(decoder: Any, name: str, arpa: str) -> None:
 
 
 def best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float]:
-    """Return the words of the likeliest path, and the two figures that grade it.
+    """Return the words of the best path, and its two scores.
 
-    They are log P(sound, words) a frame and the mean weighted log P(word | words before).
+    They are log P(sound, words) per frame and the mean weighted log P(word | words before).
     """
     decoder.activate_search(search)
-    decoder.reinit_feat()  # else what was heard before, and the words so far, change the scores
+    decoder.reinit_feat()  # else earlier utterances and partial decoding change the scores
     decoder.start_utt()
     decoder.process_raw(pcm, full_utt=True)
     decoder.end_utt()
@@ -62,9 +62,9 @@ def best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float]
 
 
 def next_best(decoder: Any, most: int) -> Iterator[str]:
-    """Yield the likeliest sentences of what `best_path` has decoded last, best first."""
+    """Yield the likeliest sentences of the last `best_path`, best first."""
     for _, guess in zip(range(most), decoder.nbest() or (), strict=False):
-        if guess is not None:  # as the search gives where it has no more
+        if guess is not None:  # None if the search has no more
             yield str(guess.hypstr)
 
 

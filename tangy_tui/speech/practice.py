@@ -1,4 +1,4 @@
-"""Practice: how well spoken commands are understood, counted on recordings with known words."""
+"""Practice: accuracy of spoken commands, measured on labelled recordings."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ class PracticeRecogniser(Protocol):
 
     @property
     def pid(self) -> int | None:
-        """The process that decodes."""
+        """The id of the decoding process."""
 
     async def start(self, wanted: Wanted) -> None:
-        """Listen for something."""
+        """Set the vocabulary."""
 
     async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:
         """Decode one utterance."""
@@ -52,9 +52,9 @@ class PracticeRecogniser(Protocol):
 class PracticeRow:
     """The result of one recording.
 
-    `understood` is what was understood first, sure or not ("" is nothing); `outcome` is right
-    (sure), offered (the right one is among the choices), wrong (another one is asked about or
-    offered) or nothing; of a recording without a command, all but nothing are false accepts.
+    `understood` is the first command, sure or not ("" is nothing). `outcome` is right (sure),
+    offered (the right one is among the choices), wrong (another one is asked about or offered) or
+    nothing; for a recording without a command, all but nothing are false accepts.
     """
 
     file: str
@@ -69,7 +69,7 @@ class PracticeRow:
     latency: float  # s from the end of the sound to the result
 
     def to_json(self) -> dict[str, Any]:
-        """Write it for a document."""
+        """Return it as JSON."""
         choices = [{"behaviour": c.behaviour, "user": c.user} for c in self.choices]
         said = {"said": self.said.behaviour, "user": self.said.user}
         return {**asdict(self), **said, "choices": choices, "latency": round(self.latency, 4)}
@@ -77,10 +77,10 @@ class PracticeRow:
 
 @dataclass(frozen=True, slots=True)
 class Practice:
-    """All recordings of a folder, heard with the same settings; `cpu` in s, where it is known.
+    """All recordings of a folder, decoded with the same settings; `cpu` in s, if known.
 
-    `cut_off` are those that end before they say they do: what there is of them was heard.
-    `unnamed` were not heard, because their names do not tell what is said in them.
+    `cut_off` are truncated files, whose existing part was decoded. `unnamed` were not decoded,
+    because their names give no label.
     """
 
     settings: EvidenceSettings
@@ -101,7 +101,7 @@ class Practice:
         return [row for row in self.rows if row.said.behaviour is None]
 
     def intents(self) -> dict[str, Counter[Outcome]]:
-        """Count the outcomes of each intent, in the order of their names."""
+        """Count the outcomes of each intent, in alphabetical order."""
         counted: dict[str, Counter[Outcome]] = defaultdict(Counter)
         for row in sorted(self.commands, key=lambda row: row.said.words):
             counted[row.said.words][row.outcome] += 1
@@ -115,12 +115,12 @@ class Practice:
         )
 
     def false_accepts(self) -> tuple[int, int]:
-        """Count the recordings of no command that were taken for one: surely, and as a choice."""
+        """Count the recordings without a command that were accepted: as sure, and as a choice."""
         taken = Counter(row.tier for row in self.others)
         return taken["sure"] + taken["stop"], taken["unsure"]
 
     def latencies(self) -> tuple[float, float, float]:
-        """Return median, 95th percentile and worst of the times to a result, in s."""
+        """Return median, 95th percentile and maximum of the latencies, in s."""
         times = sorted(row.latency for row in self.rows) or [0.0]
         return (statistics.median(times), times[math.ceil(0.95 * len(times)) - 1], times[-1])
 
@@ -169,12 +169,12 @@ async def practise(
     """Decode every recording as one whole utterance.
 
     Args:
-        found: the recordings, and what was said in each.
-        phrasebook: what can be said.
-        settings: how it is listened.
-        recogniser: decodes; is started here, and left running.
-        tell: is called after each with how many are done, and of how many.
-        phrases: those that are listened for, if not all that can be said.
+        found: the labelled recordings.
+        phrasebook: the phrases.
+        settings: the recognition settings.
+        recogniser: decodes; started here, and left running.
+        tell: called after each with the number done, and the total.
+        phrases: the vocabulary, if not all phrases.
 
     Raises:
         SpeechUnavailable: the worker cannot run here.
@@ -240,12 +240,12 @@ def _fits(said: UtteranceLabel, understood: UtteranceLabel) -> bool:
 
 
 def _called(understood: UtteranceLabel, said: UtteranceLabel) -> str:
-    """Name what was understood: with the person only where a person was demanded."""
+    """Return the name of a command, with the person only if the label has one."""
     return understood.words if said.user is not None else understood.behaviour or ""
 
 
 def _reason(error: SoundError, file: Path) -> str:
-    """Cut from an error the file, which is named anyway, and how to do better."""
+    """Remove the file name and the advice from an error message."""
     return str(error).removeprefix(f"{plain(str(file))}: ").partition(";")[0].rstrip(".")
 
 

@@ -1,7 +1,7 @@
-"""Speech identification (III-A-1) as the program sees it: sound in, evidence of words out.
+"""The recogniser, the program's side of the speech worker (III-A-1): sound in, evidence out.
 
-The decoder runs in a process of its own (see `worker`, which also documents how it is spoken to);
-here it is started, asked, watched, and started again when it has died, with what it had heard.
+The decoder runs in a worker process (see `worker` for the protocol). The recogniser starts it,
+sends requests, monitors it, and restarts it with the sound so far if it has died.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
 
 WORKER = (sys.executable, "-P", "-m", "tangy_tui.speech.worker")
-START_SECONDS = 30.0  # for the worker to load its models: 0.8 s when nothing else runs
-DECODE_SECONDS = 30.0  # for an utterance: 0.2 s when nothing else runs
-STALLED_SECONDS = 2.0  # in which a worker that is to decode does nothing at all: it hangs
+START_SECONDS = 30.0  # timeout for loading the models: 0.8 s on an idle machine
+DECODE_SECONDS = 30.0  # timeout of an utterance: 0.2 s on an idle machine
+STALLED_SECONDS = 2.0  # without CPU time, after which a decoding worker counts as hung
 LOOK_SECONDS = 0.1
 END_SECONDS = 2.0
-BEHIND = 5.0  # s of sound that are on the way to the worker at most
-ATTEMPTS = 2  # at one utterance, before it is given up
+BEHIND = 5.0  # s of sound in transit to the worker at most
+ATTEMPTS = 2  # at one utterance
 LONGEST_ANSWER = 1 << 20  # bytes; a recording may have thousands of utterances
 
 
@@ -43,48 +43,48 @@ class _WorkerDied(Exception):
 
 
 class Recogniser:
-    """The decoder with its vocabulary. It hears one utterance at a time.
+    """The decoder with its vocabulary, for one utterance at a time.
 
-    `left_out` lists the words that cannot be heard, because nobody knows how they are pronounced;
-    the phrases with them are understood only when they are typed.
+    `left_out` lists the words that cannot be recognised, because they have no pronunciation;
+    phrases with them can only be typed.
     """
 
     def __init__(
         self, *, log: Path | None = None, notify: Callable[[str], None] | None = None
     ) -> None:
-        """Prepare a recogniser; `start` starts it.
+        """Prepare a recogniser; call `start` to start it.
 
         Args:
-            log: where the worker's messages go; nowhere if not given.
-            notify: is called with one sentence when the worker dies.
+            log: the file for the worker's messages; None for nowhere.
+            notify: called with one sentence when the worker dies.
         """
         self.left_out: tuple[str, ...] = ()
         self.partial: Callable[[str], None] = lambda words: None
-        """Is called with the words so far of the utterance that is being spoken."""
+        """Called with the partial words of the current utterance."""
         self.speaking: Callable[[], None] = lambda: None
-        """Is called where the beginning of an utterance was found in what comes."""
+        """Called when the beginning of an utterance was detected."""
         self._log = log
         self._notify = notify
         self._wanted: Wanted | None = None
         self._worker: WorkerProcess | None = None
-        self._hearing = 0  # the id of the utterance that is heard
+        self._hearing = 0  # the id of the current utterance
         self._turn = asyncio.Lock()
         self._closing = False
         self.said = b""
-        """The sound of the last utterance that was heard."""
+        """The sound of the last utterance."""
         self.left = b""
-        """What was taken of the sound after it, where its end was found."""
+        """The sound received after its detected end."""
 
     @property
     def pid(self) -> int | None:
-        """The process that decodes, if one runs."""
+        """The id of the worker process, or None."""
         return None if self._worker is None else self._worker.pid
 
     async def start(self, wanted: Wanted) -> None:
-        """Start the worker, or have it listen for something else.
+        """Start the worker, or change its vocabulary.
 
         Raises:
-            SpeechUnavailable: the worker cannot run here, or no phrase can be pronounced.
+            SpeechUnavailable: the worker cannot run here, or no phrase has a pronunciation.
         """
         async with self._turn:
             self._wanted, self._closing = wanted, False
@@ -100,7 +100,7 @@ class Recogniser:
         """Decode one whole utterance (16 kHz mono s16le, at most 15 s).
 
         Raises:
-            SpeechUnavailable: the worker died over it twice, or cannot be started again.
+            SpeechUnavailable: the worker died twice, or cannot be restarted.
         """
         whole: asyncio.Queue[bytes] = asyncio.Queue()
         for chunk in (pcm[: 2 * RATE * LONGEST], b""):
@@ -114,18 +114,18 @@ class Recogniser:
         *,
         endpoint: bool = False,
     ) -> AcousticEvidence:
-        """Hear one utterance as it is spoken; an empty chunk ends it.
+        """Recognise one utterance as it is spoken; an empty chunk ends it.
 
-        If the worker dies over it, a new one is given all that was said so far, and it goes on.
-        Of what is longer than 15 s the rest is not heard.
+        If the worker dies, a new one gets all sound so far, and continues. Only the first 15 s are
+        decoded.
 
         Args:
             sound: chunks of 16 kHz mono s16le.
-            expecting: what is listened for.
-            endpoint: find where it begins and ends; what was taken after that is in `left`.
+            expecting: commands or answers.
+            endpoint: detect its beginning and end; the sound after it is in `left`.
 
         Raises:
-            SpeechUnavailable: the worker died over it twice, or cannot be started again.
+            SpeechUnavailable: the worker died twice, or cannot be restarted.
         """
         async with self._turn:
             said: list[bytes] = []
@@ -140,7 +140,7 @@ class Recogniser:
             raise AssertionError("not reached")
 
     async def pieces(self, pcm: bytes) -> list[bytes]:
-        """Return the utterances in a recording, cut at the pauses.
+        """Return the utterances in a recording, split at the pauses.
 
         Raises:
             SpeechUnavailable: as for `hear`.
@@ -157,7 +157,7 @@ class Recogniser:
         ]
 
     async def close(self) -> None:
-        """End the worker, whatever it is doing."""
+        """End the worker, even if it is busy."""
         self._closing, self._wanted = True, None
         if self._turn.locked() and self._worker is not None:
             self._worker.kill()
@@ -167,7 +167,7 @@ class Recogniser:
     async def _hear(
         self, sound: asyncio.Queue[bytes], said: list[bytes], expecting: Expecting, endpoint: bool
     ) -> AcousticEvidence:
-        """Send the worker the sound so far, and what follows."""
+        """Send the worker the sound so far, and the rest as it comes."""
         await self._ready()
         id, answer = self._expect()
         self._hearing = id
@@ -200,7 +200,7 @@ class Recogniser:
             if endpoint:
                 end = len(self.said) - max(0, sent - got["used"])
                 self.said, self.left = self.said[:end], self.said[end:]
-                # what came before it is nobody's business
+                # sound before the utterance is private
                 self.said = self.said[max(0, end - 2 * round(evidence.seconds * RATE)) :]
             return evidence
         finally:
@@ -223,11 +223,11 @@ class Recogniser:
     async def _ready(self) -> None:
         if self.pid is None:
             if self._worker is not None:
-                await self._worker.stopped(END_SECONDS)  # then it was told how it ended
+                await self._worker.stopped(END_SECONDS)  # so that its end has been reported
             await self._begin()
 
     async def _begin(self) -> None:
-        """Start a worker; one that has ended is cleared away."""
+        """Start a worker, after cleaning up an ended one."""
         await self._end()
         if self._wanted is None:
             raise SpeechUnavailable("Speech was not started yet.")
@@ -291,10 +291,10 @@ class Recogniser:
             ) from None
 
     async def _decoded(self, answer: asyncio.Future[dict[str, Any]]) -> dict[str, Any]:
-        """Wait for a decoded utterance; a worker that does nothing for it is ended.
+        """Wait for a decoded utterance; kill a worker without progress.
 
         Raises:
-            _WorkerDied: it was ended; the utterance can be decoded by another one.
+            _WorkerDied: it was killed; another worker can decode the utterance.
         """
         loop = asyncio.get_running_loop()
         begun = moved = loop.time()
@@ -310,10 +310,10 @@ class Recogniser:
         return await answer
 
     def _hear_of(self, said: dict[str, Any], _: bytes) -> bool:
-        """Report a partial result; return whether the line was one, and no answer."""
+        """Handle a partial result; return False if the line is an answer."""
         if "partial" not in said and "speaking" not in said:
             return False
-        if said.get("id") == self._hearing:  # else nobody waits for that utterance any more
+        if said.get("id") == self._hearing:  # else it belongs to an abandoned utterance
             if "partial" in said:
                 self.partial(str(said["partial"]))
             else:
@@ -342,7 +342,7 @@ def _answer(said: dict[str, Any]) -> dict[str, Any]:
 
 
 def cpu_seconds(pid: int | None) -> float | None:
-    """Return the CPU time in s of a process and of those it started; None where that is unknown."""
+    """Return the CPU time in s of a process and its children; None if unknown."""
     try:
         children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8").split()
     except OSError:
@@ -354,7 +354,7 @@ def cpu_seconds(pid: int | None) -> float | None:
 
 
 def _ticks(pid: int | None) -> int | None:
-    """Return the ticks of CPU time that a process has used; None if it is not there."""
+    """Return the clock ticks of CPU time of a process; None if it does not exist."""
     try:
         told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
         return int(told[11]) + int(told[12])
@@ -363,6 +363,6 @@ def _ticks(pid: int | None) -> int | None:
 
 
 def _forget(said: list[bytes]) -> None:
-    """Keep no more of a stream than an utterance can be long, and the worker can be behind."""
+    """Drop sound that is older than the longest utterance plus the worker's delay."""
     while sum(map(len, said)) > 2 * RATE * (LONGEST + BEHIND):
         said.pop(0)

@@ -1,8 +1,8 @@
-"""Recordings of teaching, kept with consent: a labelled set for practice.
+"""Recordings of teaching, stored with consent: a labelled data set for practice.
 
-Each utterance lies in the folder of what was verified, DATA/recordings/INTENT/TIME-N.wav, so that
-`tangy listen --bench DATA/recordings` reads it as it is. The label is what the teacher said yes to.
-Nothing else is kept: what nobody said yes to may be the talk of people who never agreed.
+Each utterance is in the folder of its verified command, DATA/recordings/INTENT/TIME-N.wav, which
+`tangy listen --bench DATA/recordings` reads. The label is the command that the teacher confirmed.
+Nothing else is stored, as it may be the speech of people who never agreed.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _OURS = re.compile(r"\d{8}T\d{6}-\d+\.wav")
 
 
 def consented(store: Store, teacher: str) -> bool:
-    """Return whether a teacher's consent to recording is still in force."""
+    """Return whether a teacher's consent to recording is in force."""
     agreed = False
     for event in store.events(RecordingConsent, RecordingsForgotten):
         match event.record:
@@ -56,15 +56,15 @@ def consented(store: Store, teacher: str) -> bool:
 
 
 def consent(store: Store, teacher: str, yes: bool) -> None:
-    """Note who agreed to be recorded, or did not."""
+    """Log whether a teacher agreed to be recorded."""
     store.append(RecordingConsent(who=teacher, yes=yes))
 
 
 def forget_recordings(store: Store) -> tuple[int, int]:
-    """Delete every recording, and take back all consent.
+    """Delete every recording, and withdraw all consent.
 
     Returns:
-        How many were deleted, and how many files and links were left, being something else.
+        The number of deleted recordings, and of other files and links that were left.
 
     Raises:
         StoreError: the log cannot be written.
@@ -86,16 +86,16 @@ def forget_recordings(store: Store) -> tuple[int, int]:
             else:
                 left += 1
         with suppress(OSError):
-            folder.rmdir()  # where something else lies in it, it stays
+            folder.rmdir()  # unless other files are in it
     with suppress(OSError):
         top.rmdir()
     return deleted, left
 
 
 class Recorder:
-    """Keeps utterances that were verified, and only those. Ask for consent before.
+    """Stores verified utterances only. Ask for consent first.
 
-    Give it every spoken command with `heard`, then all that follows with `follow`.
+    Pass every spoken command to `heard`, then the following events to `follow`.
     """
 
     def __init__(
@@ -109,24 +109,24 @@ class Recorder:
 
         Args:
             folder: the data folder.
-            teacher: whose voice it is; is not written down with the recordings.
-            now: the clock that they are named by.
+            teacher: the speaker, who is not stored with the recordings.
+            now: the clock for file names.
 
         Raises:
-            TangyError: the folder of recordings is a symbolic link, or cannot be closed to others.
+            TangyError: the folder of recordings is a symbolic link, or cannot be made private.
         """
         self.folder = folder / FOLDER
         self.teacher = teacher
         self.kept = 0
-        """How many recordings were kept."""
+        """How many recordings were stored."""
         self.tell: Callable[[str], None] = lambda why: None
-        """Is called with the folder and the reason if nothing can be kept any more."""
+        """Called with the folder and the reason when recording fails."""
         self._now = now
         self._pcm = b""  # of the command that is not verified yet
-        self._texts: frozenset[str] = frozenset()  # what it may be called in a question
-        self._named: frozenset[tuple[str, str | None]] = frozenset()  # what it may mean, for whom
+        self._texts: frozenset[str] = frozenset()  # possible texts in its question
+        self._named: frozenset[tuple[str, str | None]] = frozenset()  # possible meanings
         self._works = True
-        if self.folder.is_symlink():  # what is kept elsewhere would not be forgotten
+        if self.folder.is_symlink():  # a linked folder would not be deleted
             raise TangyError(
                 plain(f"{self.folder}: is a symbolic link; make it a folder to record into.")
             )
@@ -138,9 +138,9 @@ class Recorder:
                 raise TangyError(plain(f"{self.folder}: {why}; move it away to record.")) from None
 
     def heard(self, pcm: bytes, command: Say | StopCommand | Reply) -> None:
-        """Take note of a command, with its sound (16 kHz mono s16le; b"" if it was typed)."""
+        """Remember a command with its sound (16 kHz mono s16le; b"" if it was typed)."""
         if isinstance(command, Reply):
-            return  # the question that is answered is still about what was said before
+            return  # the answered question is still about the earlier utterance
         self._pcm = b""
         if isinstance(command, Say) and command.commands:
             self._pcm = pcm
@@ -157,18 +157,18 @@ class Recorder:
                     self.verified(step.behaviour, step.target)
                 case Rejected() | NotUnderstood() | Begun() | StepUndone() | RuleUndone():
                     self._pcm = b""
-                case Refused(heard=text) if text:  # without: the answer was, and the question stays
+                case Refused(heard=text) if text:  # without a text the question stays open
                     self._pcm = b""
                 case (Asked() | Offered()) as question if question.heard not in self._texts:
-                    self._pcm = b""  # it is about something typed meanwhile
+                    self._pcm = b""  # it is about other, typed text
                 case _:
                     pass
 
     def verified(self, behaviour: str, target: str | None) -> None:
-        """Keep the last utterance as that of a behaviour, and of the person if it named one.
+        """Store the last utterance labelled by a behaviour, and by the person if it named one.
 
-        Most behaviours are for somebody whom nobody named: whoever Tangy is with. One that the
-        utterance cannot mean was asked for otherwise.
+        Most behaviours are for the person Tangy is with, who was not named. A behaviour that the
+        utterance cannot mean was requested in another way.
         """
         pcm, self._pcm = self._pcm, b""
         if not pcm or not self._works or behaviour not in {meant for meant, _ in self._named}:
@@ -188,7 +188,7 @@ class Recorder:
             if place.is_symlink():
                 raise OSError(errno.ELOOP, "it is, or holds, a symbolic link")
             place.mkdir(mode=0o700, exist_ok=True)
-            place.chmod(0o700)  # it may have been there before
+            place.chmod(0o700)  # it may have existed before
         time = self._now().astimezone(UTC).strftime("%Y%m%dT%H%M%S")
         number = 1
         while (file := folder / f"{time}-{number}.wav").exists():

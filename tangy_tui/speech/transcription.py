@@ -30,18 +30,18 @@ def listen(
 ) -> list[Row]:
     """Decode WAV files: one row for each command in them, in order.
 
-    A row has file, heard, tier (sure, unsure, nothing, stop), behaviour (only of a sure one),
-    arguments, confidence, and choices, which may be meant, the likeliest first. A file is heard as
-    one command; if it is none for sure, or too long, and has pauses, what is between them.
+    A row has file, heard, tier (sure, unsure, nothing, stop), behaviour (if sure), arguments,
+    confidence, and choices, likeliest first. A file is decoded as one command; if the result is not
+    sure, or the file too long, it is split at its pauses.
 
     Args:
-        files: are looked at first, and then read one by one.
-        phrasebook: what can be said.
-        settings: how it is listened.
-        tell: is called after each file with how many are done, and the rows of this one.
+        files: the files; all are checked first.
+        phrasebook: the phrases.
+        settings: the recognition settings.
+        tell: called after each file with the number done, and its rows.
 
     Raises:
-        SoundError: a file is missing or cannot be read as sound; it is named.
+        SoundError: a file is missing or is no sound file; the message names it.
         SpeechUnavailable: the worker cannot run here.
     """
     for file in files:
@@ -50,22 +50,22 @@ def listen(
 
 
 def read_lines(file: Path, phrasebook: Phrasebook, settings: EvidenceSettings = USUAL) -> list[Row]:
-    """Understand words as if they had been heard, one row (see `listen`) for each line of a file.
+    """Understand each line of a file as if it had been spoken; one row (see `listen`) per line.
 
     Raises:
-        TangyError: the file is missing, too large, or no text; it is named.
+        TangyError: the file is missing, too large, or not text; the message names it.
     """
     lines = read_given_text(file, LARGEST_TEXT).split("\n")
-    if lines[-1] == "":  # the last line is ended like the others
+    if lines[-1] == "":  # after the final line break
         lines.pop()
     said = (understand(clearly_heard(line), phrasebook, settings) for line in lines)
     return [_row(file, one) for one in said]
 
 
 def _look_at(file: Path) -> None:
-    """Refuse a file that is no WAV file, before decoding any."""
+    """Reject a file that is no WAV file, before decoding any."""
     if not file.is_file() or not os.access(file, os.R_OK):
-        read_wav(file)  # which says what is wrong
+        read_wav(file)  # raises the error
     with file.open("rb") as opened:
         read_header(opened.read(HEADER), plain(str(file)))
 
@@ -100,7 +100,7 @@ async def _listen(
 
 
 def tier_of(said: Say | StopCommand) -> str:
-    """Return in one word what follows from an utterance: sure, unsure, nothing or stop."""
+    """Return the tier of a result: sure, unsure, nothing or stop."""
     if isinstance(said, StopCommand):
         return "stop"
     return "nothing" if not said.commands else "sure" if said.sure else "unsure"

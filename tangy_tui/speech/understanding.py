@@ -1,8 +1,8 @@
 """The meaning of spoken words in tiers: a question, up to three choices, or nothing.
 
-Three tiers: *sure* words are asked about at once, *unsure* ones are offered as choices (each of
-which is asked about in its turn), and of others it is only said what was heard. Words that stop the
-robot do so in every mode. In the paper's mode there is one tier: n-gram and keywords.
+*Sure* words are asked about at once. *Unsure* ones are offered as choices, each of which is asked
+about in turn. For others, only the words are shown. Words that stop the robot do so in every mode.
+The paper's mode has one tier: n-gram and keywords.
 """
 
 from __future__ import annotations
@@ -29,35 +29,35 @@ from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import AcousticEvidence, EvidenceSettings, Wanted
 from tangy_tui.speech.hearing_notes import HearingKind
 
-# How likely words are to be the command they come nearest to: a logistic over the confidence of
-# the phrasebook, over how many telling words it knows, and over how much better words explain the
-# sound than the grammar or any phones do. Fitted, and the limits set, by tests/bench/speech.py on
-# voices and sentences that no figure is quoted for.
+# Probability that words are the nearest command: a logistic regression over the phrasebook's
+# confidence, the number of known content words, and the margin of the words over the grammar or any
+# phones. Fitted, and the thresholds set, by tests/bench/speech.py on voices and sentences for which
+# no figure is quoted.
 CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 14.98, 0.39, 1.51, -12.98
 LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
 MOST_KNOWN = 3
 SURE = 0.6
 UNSURE = 0.35
 DOUBT_WEIGHT, DOUBTED = 4.5, 0.0
-"""How much less likely a paraphrase is, in logits a unit of the margin, below some margin."""
-NO_TALK = 0.9  # likelihood of a near phrase from which words are no other talk, whatever was learnt
-SMALL_MARGIN = -0.25  # below it a whole phrase explains the sound better than other words do
-SAME_SOUND = 0.75  # likeness of letters from which such words are taken for the phrase, misheard
+"""Reduction of a paraphrase's logit per unit of the margin, below some margin."""
+NO_TALK = 0.9  # probability of a near phrase that overrules the intent model's talk class
+SMALL_MARGIN = -0.25  # below it a whole phrase explains the sound better than other words
+SAME_SOUND = 0.75  # similarity of letters from which such words count as the phrase, misheard
 UNDERSTOOD = 0.35
-"""The confidence below which the paper's mode takes nothing for a command."""
+"""The confidence below which the paper's mode rejects a command."""
 
 OWN_NAME = {"tangy": ("T AE NG IY",)}
 LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
-"""The margins from which words are an answer: where the grammar finds it too, and where not."""
+"""The lowest margins of an answer: if the grammar finds it too, and if not."""
 
 BOTH_HEARD, ONE_HEARD = 0.95, 0.5
-"""How likely an answer of people is that both decoders hear, and one that only one of them hears.
+"""Probabilities of a person's answer that both decoders hear, and that only one hears.
 
-Chosen, not fitted: the first is judged, and the second is below what is judged.
+They are chosen, not fitted: the first is judged, the second is too low to be judged.
 """
 
 LEAST_STEERING = -0.6
-"""The margin from which words steer the program where the grammar does not find them, too."""
+"""The lowest margin of a steering request that the grammar does not find."""
 
 SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "eight"}
 
@@ -68,11 +68,11 @@ def wanted(
     """Return the vocabulary: phrases, stop commands, and answers.
 
     Args:
-        phrasebook: has the pronunciations, and all phrases as they are said.
-        settings: how it is listened.
-        phrases: those that can be told apart by their sound, if that is known.
+        phrasebook: the phrases and their pronunciations.
+        settings: the recognition settings.
+        phrases: the phrases that are distinguishable by sound, if known.
     """
-    learnt = settings.mode != "paper"  # which has phrases and keywords alone
+    learnt = settings.mode != "paper"  # the paper's mode has only phrases and keywords
     teaching, games = (
         steering_texts(ways) if learnt else () for ways in (WHILE_TEACHING, IN_GAMES)
     )
@@ -98,7 +98,7 @@ def sounds_of(phrasebook: Phrasebook) -> tuple[object, ...]:
 def understand(
     evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings
 ) -> Say | StopCommand:
-    """Return what an utterance commands: it may be several things, or (no commands) nothing."""
+    """Return the meaning of an utterance: one or more commands, none, or a stop."""
     if settings.mode == "paper":
         if stops(evidence.words, phrasebook.game):
             return StopCommand(evidence.words)
@@ -132,7 +132,7 @@ def understand(
 def _steers(
     text: str, evidence: AcousticEvidence, settings: EvidenceSettings, ways: Collection[Steering]
 ) -> bool:
-    """Say whether an utterance asks the program itself for something, by words and by sound."""
+    """Return whether an utterance steers the program, by words and by sound."""
     way = steering_of(text)
     least = LEAST_ANSWER if steering_of(evidence.phrase) == way else LEAST_STEERING
     return way in ways and evidence.margin - settings.shift >= least
@@ -155,7 +155,7 @@ def _said(text: str, confidence: float, commands: Sequence[Command]) -> Say:
 
 
 def clearly_heard(text: str) -> AcousticEvidence:
-    """Return the evidence of words that leave no doubt that they were said."""
+    """Return the evidence of words as if they had been recognised without doubt."""
     return AcousticEvidence(clean(text), "", MOST_MARGIN, 1.0)
 
 
@@ -179,9 +179,9 @@ def replied(
 ) -> tuple[Reply | Say | StopCommand | None, HearingKind | None]:
     """Return the answer of an utterance to a question, and a hearing note, if any.
 
-    Where no `answers` are taken, only what stops the robot counts, and what steers the program in
-    one of the ways of `steering`; `choices` are the words of what can be chosen instead, and
-    `people` what people may answer in a game, by how it is spoken.
+    Without `answers`, only stop commands and the requests in `steering` count. `choices` are the
+    words of the alternatives, and `people` the possible answers of people in a game, by spoken
+    form.
     """
     said = answer(evidence, settings, choices)
     if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):
@@ -196,10 +196,10 @@ def replied(
 def answered(
     evidence: AcousticEvidence, settings: EvidenceSettings, people: Mapping[str, str]
 ) -> Say | None:
-    """Return which of the possible answers of people an utterance is, and how sure that is.
+    """Return the possible answer of a person that an utterance is, with its probability.
 
-    The grammar knows whole answers only, so that its phrase counts where the words are another
-    answer or none; then the answer is never sure, and the person is asked again.
+    The grammar knows whole answers only, so its phrase is used if the words are another answer or
+    none; then the answer is not sure, and the question is repeated.
     """
     phrase, words = evidence.phrase, evidence.words
     text = words if words in people else phrase
@@ -212,9 +212,9 @@ def answered(
 def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str, float]:
     """Return the best words, and their margin (a log-likelihood per frame).
 
-    Mostly those are the words of the n-gram model. Where they end as a number sounds, and the
-    number makes a phrase of them, it was the number. Where they are no phrase, but sound like the
-    one that the grammar has found, and that explains the sound better, it was the phrase.
+    Usually these are the words of the n-gram model. If the last word sounds like a number that
+    makes them a phrase, the number is used. If they are no phrase, but sound like the one found by
+    the grammar, and that explains the sound better, the phrase is used.
     """
     words, phrase = evidence.words, evidence.phrase
     begun, _, last = words.rpartition(" ")
@@ -229,11 +229,11 @@ def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str,
 def answer(
     evidence: AcousticEvidence, settings: EvidenceSettings, choices: Sequence[str] = ()
 ) -> Reply | StopCommand | None:
-    """Return the answer to a question that an utterance gives, if it gives one.
+    """Return the answer to a question that an utterance gives, or None.
 
-    A yes moves the robot: the grammar, in which any phones can be said instead, has to find such
-    an answer as well, or the words to explain the sound nearly as well as any phones do. The
-    paper's mode has nothing that other speech could be, so it hears no answers.
+    A yes moves the robot: the grammar, with its garbage branch, has to find an answer too, or the
+    words must explain the sound nearly as well as any phones. The paper's mode has no model of
+    other speech, so it recognises no answers.
     """
     said = evidence.words
     if stops(said):
@@ -244,7 +244,7 @@ def answer(
     if evidence.stop and (reply is None or (reply == Reply(True) and phrase != reply)):
         return StopCommand(evidence.stop)  # a yes would move the robot
     if reply is None and phrase == Reply(False) and evidence.margin < SMALL_MARGIN:
-        reply = phrase  # a no that was misheard moves nothing
+        reply = phrase  # a misheard no moves nothing
     if reply is None:
         return None
     least = LEAST_ANSWER if phrase == reply else LEAST_ALONE if not evidence.phrase else math.inf
@@ -260,11 +260,11 @@ def _reply(said: str, choices: Sequence[str]) -> Reply | None:
 
 
 def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0) -> float:
-    """Return how likely words are to be the command they come nearest to, 0 to 1.
+    """Return the probability, 0 to 1, that words are the nearest command.
 
     Args:
-        confidence: of the phrasebook, 0 to 1.
-        known: how many telling words it knows.
+        confidence: the phrasebook's confidence, 0 to 1.
+        known: the number of known content words.
         margin: see `AcousticEvidence`.
         shift: see `EvidenceSettings`.
     """
@@ -274,10 +274,10 @@ def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0)
 
 
 def sounded(likelihood: float, margin: float, shift: float = 0.0) -> float:
-    """Return how likely words are meant so, where they may also have been misheard, 0 to 1.
+    """Return the probability, 0 to 1, of a meaning, given that words may be misheard.
 
     Args:
-        likelihood: of the meaning, if the words were said, 0 to 1.
+        likelihood: the probability of the meaning if the words were said, 0 to 1.
         margin: see `AcousticEvidence`.
         shift: see `EvidenceSettings`.
     """

@@ -7,20 +7,20 @@ from typing import Literal, TypeAlias
 
 from tangy_tui.speech.evidence import RATE
 
-LONGEST_TALK = 6.0  # s after which push-to-talk ends by itself
-MOST_TALK = LONGEST_TALK + 0.5  # s, by the clock: also where no more sound comes
-PIECE = 3_200  # bytes, 0.1 s: words are shown as they come if they come in pieces
-STALLED = 3.0  # s without any sound, after which what comes continues nothing
-QUIET = bytes(2 * RATE)  # 1 s: with it an utterance is over
-MOST_WAITING = 60  # s of a stream that wait for the decoder
+LONGEST_TALK = 6.0  # s after which push-to-talk ends
+MOST_TALK = LONGEST_TALK + 0.5  # s of wall-clock time: also if no more sound arrives
+PIECE = 3_200  # bytes, 0.1 s: small chunks give early partial results
+STALLED = 3.0  # s without any sound, after which a new utterance begins
+QUIET = bytes(2 * RATE)  # 1 s, which ends an utterance
+MOST_WAITING = 60  # s of a stream queued for the decoder
 
 
 State: TypeAlias = Literal["starting", "off", "listening", "speaking", "thinking", "shut", "over"]
-"""off: waiting for the key; listening: for an utterance to begin; speaking: somebody speaks."""
+"""off: waiting for the key; listening: waiting for speech; speaking: speech is in progress."""
 
 
 class _Chunks(asyncio.Queue[bytes]):
-    """Chunks that wait to be heard, and how many bytes they are."""
+    """A queue of chunks that knows its size in bytes."""
 
     held = 0
 
@@ -35,25 +35,25 @@ class _Chunks(asyncio.Queue[bytes]):
 
 
 class Utterance:
-    """The sound of an utterance as it comes, or of a stream in which one is to be found."""
+    """The sound of an utterance, or a stream in which one is to be detected."""
 
     def __init__(self, *, found: bool, begun: bytes = b"") -> None:
-        """Begin; `found` says that its end is to be found, `begun` is what is there already."""
+        """Begin; `found`: detect its end in a stream, `begun`: the sound so far."""
         self.chunks = _Chunks()
         self.over = False
         self.dropped = False
-        """It counts for nothing."""
+        """Whether the result is ignored."""
         self._found = found
-        self._came: float | None = None  # when the last chunk came
+        self._came: float | None = None  # when the last chunk arrived
         self._left = round(LONGEST_TALK * RATE) * 2
         self.add(begun)
 
     def add(self, chunk: bytes, came: float | None = None) -> None:
-        """Take the next chunk. Push-to-talk ends in time; of a stream the oldest is forgotten.
+        """Add a chunk. Push-to-talk ends at its limit; a stream drops its oldest chunks.
 
         Args:
             chunk: 16 kHz mono s16le.
-            came: when it came, in s by any clock. A stream that has stalled is parted by quiet.
+            came: its arrival time, in s of any clock. A gap in a stream becomes quiet.
         """
         if self.over or not chunk:
             return
@@ -72,12 +72,12 @@ class Utterance:
             self.end()
 
     def end(self, *, dropped: bool = False) -> None:
-        """Take no more of it."""
+        """End the utterance."""
         self.dropped = self.dropped or dropped
         if not self.over:
             self.over = True
             self.chunks.put_nowait(b"")
 
     def rest(self) -> bytes:
-        """Take out what nobody has heard yet."""
+        """Remove and return the chunks that were not decoded."""
         return b"".join(self.chunks.get_nowait() for _ in range(self.chunks.qsize()))

@@ -1,22 +1,22 @@
-"""The decoder's process: pocketsphinx holds the interpreter's lock, so it runs on its own.
+"""The decoder's process: pocketsphinx holds the GIL, so it runs on its own.
 
-Run as `python -m tangy_tui.speech.worker`, spoken to by JSON, one object a line:
+Run as `python -m tangy_tui.speech.worker`, with one JSON object per line:
 
-    {"id": 1, "wanted": {...}}                   what is to be heard (`evidence.Wanted`)
-    {"id": 1, "ready": true, "left_out": []}     words that nobody can pronounce
+    {"id": 1, "wanted": {...}}                   the vocabulary (`evidence.Wanted`)
+    {"id": 1, "ready": true, "left_out": []}     words without a pronunciation
     {"id": 2, "begin": "commands"}               an utterance begins, or the answer to a question;
-                                                 with "endpoint": true it is found in what comes
+                                                 with "endpoint": true it is detected
     {"pcm": "..."}                               base64 of 16 kHz mono s16le, in pieces of any size
-    {"id": 2, "speaking": true}                  where it is looked for: it has begun
+    {"id": 2, "speaking": true}                  a detected utterance has begun
     {"id": 2, "partial": "go to"}                the words so far, whenever they change
-    {"id": 2, "end": true}                       it is over; where it is looked for, at the latest
-    {"id": 2, "heard": {...}, "used": 64000}     `evidence.Evidence`, and how many bytes since it
-                                                 began are part of it or came before it
+    {"id": 2, "end": true}                       its end; a detected one may end before
+    {"id": 2, "heard": {...}, "used": 64000}     `AcousticEvidence`, and the bytes since "begin"
+                                                 that are part of it or came before it
     {"id": 3, "pieces": "..."}                   base64 of a whole recording
-    {"id": 3, "found": [[0.5, 1.7]]}             where utterances are in it, in s
+    {"id": 3, "found": [[0.5, 1.7]]}             the start and end of its utterances, in s
     {"id": 3, "error": "One sentence."}          instead of any answer
 
-What comes between two utterances is not heard. It ends when its input closes; what the C library
+Sound between two utterances is ignored. The process ends when its input closes; what the C library
 prints goes to standard error.
 """
 
@@ -37,21 +37,21 @@ from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
 from tangy_tui.speech.endpointing import Endpoints, Pauses, pieces
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
 
-_LOG = logging.getLogger("tangy_tui.speech.worker")  # also where it is run as a process
+_LOG = logging.getLogger("tangy_tui.speech.worker")  # __name__ is __main__ in the process
 
-LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
-SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it
-PAUSE = 0.2  # s of quiet in which what was said so far is decoded: mostly nothing follows
-STANDS = 0.5  # s for which urgent words have to stand alone where it is never quiet
-CLEAR = 0.12  # s for which they have to stand where no word after them can change what is meant
+LARGEST_PIECE = 0.25  # s; larger chunks get no partial results
+SILENCE = 8  # of 65,536: a smaller swing is silence, in which the decoder would find words
+PAUSE = 0.2  # s of quiet after which the words so far are decoded, as usually nothing follows
+STANDS = 0.5  # s for which urgent words must be stable if there is no quiet
+CLEAR = 0.12  # s for which they must be stable if no further word can change the meaning
 
 
 class RequestRefused(Exception):
-    """A request that cannot be answered; its text is the answer's error."""
+    """An invalid request; its text is the answer's error."""
 
 
 class Worker:
-    """Answers requests, one at a time; `write` takes the answers."""
+    """Handles requests, one at a time; `write` takes the answers."""
 
     def __init__(self, write: Callable[[dict[str, Any]], None]) -> None:
         self._write = write
@@ -61,18 +61,16 @@ class Worker:
         self._pcm = bytearray()
         self._endpoints: Endpoints | None = None
         self._pauses: Pauses | None = None
-        self._foreseen: AcousticEvidence | None = (
-            None  # what was said before a pause that still lasts
-        )
+        self._foreseen: AcousticEvidence | None = None  # the result decoded in the current pause
         self._shown = ""
-        self._stood = 0  # bytes since the words so far have changed
+        self._stood = 0  # bytes since the words so far changed
         self.urgent: frozenset[str] = frozenset()
 
     def take(self, request: Any) -> None:
-        """Take one request; what is wrong with it becomes the answer's error."""
+        """Handle one request; an error becomes its answer."""
         id = request.get("id") if isinstance(request, dict) else None
         if isinstance(request, dict) and "pcm" in request:
-            id = self._id  # whoever waits for the utterance is told what is wrong with its sound
+            id = self._id  # an error in the sound goes to the utterance's request
         try:
             self._take(id, request)
         except RequestRefused as reason:
@@ -84,7 +82,7 @@ class Worker:
             self._fail(id, f"The speech decoder failed: {said}.")
 
     def _fail(self, id: Any, sentence: str) -> None:
-        """Answer with an error; an utterance that it befell is over."""
+        """Answer with an error, which ends the current utterance."""
         if id is not None and id == self._id:
             self._id = None
         self._write({"id": id, "error": sentence})
@@ -136,7 +134,7 @@ class Worker:
 
     def _hear(self, sound: bytes) -> None:
         if self._id is None:
-            return  # nobody listens just now
+            return  # no utterance is in progress
         if self._endpoints is None:
             self._follow(sound)
             return
@@ -151,7 +149,7 @@ class Worker:
                 return
 
     def _follow(self, sound: bytes) -> None:
-        """Take the next piece of an utterance; it is over where its words so far are urgent."""
+        """Process the next chunk of an utterance, and end it if its words so far are urgent."""
         assert self._pauses is not None  # noqa: S101 - an utterance has begun
         shows = self._endpoints is not None or len(sound) <= 2 * RATE * LARGEST_PIECE
         spoke = self._pauses.feed(sound)
@@ -175,7 +173,7 @@ class Worker:
                 self._write({"id": self._id, "partial": words})
 
     def _stands_alone(self, quiet: float) -> bool:
-        """Whether the words so far are urgent, and nothing has followed them for a while."""
+        """Return whether the words so far are urgent and have been stable for a while."""
         if self._stood < 2 * RATE * CLEAR or not self._is_urgent(self._shown):
             return False
         waits = quiet < PAUSE and not stops_whatever_follows(self._shown)
@@ -189,7 +187,7 @@ class Worker:
         return AcousticEvidence(self._shown, "", 0.0, 1.0, len(self._pcm) / 2 / RATE)
 
     def _foresee(self, quiet: float, *, spoke: bool) -> None:
-        """Decode in a pause, so that the answer is there when the utterance is said to be over."""
+        """Decode in a pause, so that the result is ready when the utterance ends."""
         if self._foreseen is None and quiet >= PAUSE:
             self._foreseen = self._decode(self._said())
             if self._foreseen.stop or self._is_urgent(self._foreseen.words):
@@ -206,7 +204,7 @@ class Worker:
         return evidence
 
     def _said(self) -> bytes:
-        """Return the utterance; where it was found, with what lies around it."""
+        """Return the utterance, with the sound around it if it was detected."""
         return self._endpoints.utterance() if self._endpoints and self._pcm else bytes(self._pcm)
 
     def _end(self, heard: AcousticEvidence | None = None) -> None:
@@ -220,7 +218,7 @@ class Worker:
 
 
 def _sounds(pcm: bytes) -> bool:
-    """Whether there is more in this than the silence of a microphone that is off."""
+    """Return whether there is more than the silence of a muted microphone."""
     samples = memoryview(pcm).cast("h")
     return len(samples) > 0 and max(samples) - min(samples) > SILENCE
 
@@ -234,7 +232,7 @@ def _sound(encoded: str) -> bytes:
 
 
 def main() -> None:
-    """Answer requests until standard input closes."""
+    """Handle requests until standard input closes."""
     log_to_stderr()
     _LOG.info("the speech worker begins")
     answers = AnswerWriter()
