@@ -104,8 +104,13 @@ def stage_words(activity: Activity | None, stage: str) -> str:
     return activity.stage_words(stage) if isinstance(activity, DeclaredActivity) else stage
 
 
+def selector_words(selector: str) -> str:
+    """Say what a selector of an activity's file means."""
+    return SELECTORS.get(selector) or f"the person {selector}"
+
+
 def _any_of(selectors: tuple[str, ...]) -> str:
-    words = [SELECTORS.get(one, one) for one in selectors]
+    words = [selector_words(one) for one in selectors]
     more = ", as long as they are the same" if len(words) > 1 else ""
     return f"{' or '.join(words)}{more}"
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.declared.whom import addressee
 from tangy_tui.learning.policy import SURE
-from tangy_tui.text.activities import SELECTORS
+from tangy_tui.text.activities import selector_words
 from tangy_tui.text.numbers import listed
 from tangy_tui.text.votes import shown_here
 
@@ -89,7 +89,7 @@ def addressed_words(
         return ""
     ways = addressee(policy.whom, action.behaviour, state)
     because = (
-        SELECTORS[ways.selectors[0]].removeprefix("the person ")
+        selector_words(ways.selectors[0]).removeprefix("the person ")
         if len(action.behaviour.to) > 1
         else ""
     )

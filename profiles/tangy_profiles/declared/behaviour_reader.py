@@ -6,13 +6,12 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import cast
 
 from tangy_profiles.declared.conditions import Facts, Phrasing
 from tangy_profiles.declared.items import read_csv
 from tangy_profiles.declared.model import PAUSE_SECONDS, DeclaredBehaviour
 from tangy_profiles.declared.section import Section
-from tangy_profiles.declared.vocabulary import SELECTORS, SLOT, Selector
+from tangy_profiles.declared.vocabulary import SLOT, Selector
 from tangy_profiles.reading import nearest
 
 KEYS = (
@@ -73,7 +72,7 @@ def read_behaviours(
             name,
             effects,
             phrasing.conditions(one, "needs"),
-            _read_to(one),
+            _read_to(one, phrasing),
             texts,
             _read_phrases(one, name, said),
             one.text("question", name),
@@ -142,12 +141,9 @@ def _read_says(
     return {name: texts for name, texts in found.items() if texts}
 
 
-def _read_to(section: Section) -> tuple[Selector, ...]:
+def _read_to(section: Section, phrasing: Phrasing) -> tuple[Selector, ...]:
     named = section.texts("to", single=True)
-    for one in named:
-        if one not in SELECTORS:
-            section.wrong("to", f"{one!r} is not known; {nearest(one, SELECTORS)}", one)
-    return cast(tuple[Selector, ...], tuple(one for one in named if one in SELECTORS))
+    return tuple(found for one in named if (found := phrasing.selector(section, "to", one)))
 
 
 def _read_phrases(section: Section, name: str, said: dict[str, str]) -> tuple[str, ...]:

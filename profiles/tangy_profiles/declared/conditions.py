@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from typing import cast
 
 from tangy_profiles.declared.model import Effect, Fact, FactCondition
 from tangy_profiles.declared.section import Section
-from tangy_profiles.declared.vocabulary import DOES, Comparison, Does, Quantifier
+from tangy_profiles.declared.vocabulary import (
+    DOES,
+    SELECTORS,
+    WHOSE,
+    Comparison,
+    Does,
+    Quantifier,
+    Selector,
+)
 from tangy_profiles.reading import nearest
 
 Facts = Mapping[str, Fact]
@@ -16,6 +25,8 @@ _CONDITION = re.compile(
     r"\s*(?:(any|every|nobody|most)\s+)?(\S.*?)\s+(is\s+not|is|>=|<)\s+(\S.*?)\s*"
 )
 LARGEST = 9_999
+ALIKE = 0.8
+"""From this likeness on, a selector is one that is misspelt."""
 TAKES_FACT = ("set", "add", "clear", "start", "invite")
 
 
@@ -25,6 +36,8 @@ class Phrasing:
     def __init__(self, facts: Facts) -> None:
         """Take the facts that the file declares, with those that are built in."""
         self.facts = facts
+        self.whose: dict[Selector, FactCondition] = {}
+        """The conditions of the selectors read so far that have one."""
 
     def conditions(self, section: Section, key: str) -> tuple[FactCondition, ...]:
         """Read the conditions of a key, all of which have to hold."""
@@ -70,6 +83,33 @@ class Phrasing:
         if fact is None:
             section.wrong(key, f"{name!r} is not a fact; {nearest(name, self.facts)}", text)
         return fact
+
+    def selector(self, section: Section, key: str, text: str, quoted: str = "") -> Selector:
+        """Read the selector of a person; "" if it is none, and its problem is recorded.
+
+        Args:
+            section: where it stands.
+            key: the key there.
+            text: the selector.
+            quoted: the text that holds it, if it is only a part.
+        """
+        words = " ".join(text.split())
+        if words in SELECTORS:
+            return words
+        if not (words.startswith(WHOSE) and _CONDITION.fullmatch(words.removeprefix(WHOSE))):
+            meant = words.startswith(WHOSE) and not get_close_matches(words, SELECTORS, 1, ALIKE)
+            near = "write whose FACT is VALUE" if meant else nearest(words, SELECTORS)
+            section.wrong(key, f"{text!r} is not known; {near}", quoted or text)
+            return ""
+        condition = self.condition(section, key, words.removeprefix(WHOSE))
+        if condition is None:
+            return ""
+        if condition.quantifier or not self.facts[condition.fact].per_player:
+            problem = f"{text!r}: {condition.fact!r} must be a fact of each player"
+            section.wrong(key, problem, quoted or text)
+            return ""
+        self.whose[words] = condition
+        return words
 
     def effects(self, section: Section, key: str) -> tuple[Effect, ...]:
         """Read what a behaviour does, in order."""

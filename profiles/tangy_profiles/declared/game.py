@@ -176,6 +176,15 @@ class DeclaredGame:
                 return self.addressed if self.addressed in self.here else None
             case "beside":
                 return self.place if self.place in self.here else None
+            case _:
+                return self._whose(self.declaration.whose[selector])
+
+    def _whose(self, condition: FactCondition) -> str | None:
+        """Return the player for whom a condition holds, the first for whom it came to hold."""
+        fact = condition.fact
+        since = [player for name, player in self.values if name == fact]  # in order of change
+        able = [one for one in self.here if self._holds_for(condition, one)]
+        return min(able, key=lambda one: since.index(one) if one in since else -1, default=None)
 
     def stage(self) -> tuple[Stage, str | None]:
         """Return the present stage, and whom it is about."""
@@ -226,7 +235,7 @@ class DeclaredGame:
             value = judged(fact, self.declaration.items, self.row, raw, certainty)
             if value is None or value == self.value(name, who):
                 return False
-            self.values[_key(fact, who)] = value
+            self._assign_value(_key(fact, who), value)
         if who in self.acts:
             self.actor = who
             self.acts[who] += 1
@@ -310,9 +319,14 @@ class DeclaredGame:
             case "finish":
                 self.over = True
 
+    def _assign_value(self, key: Key, value: str) -> None:
+        """Set a value; what has changed last stands last."""
+        self.values.pop(key, None)
+        self.values[key] = value
+
     def _assign(self, effect: Effect, fact: Fact, key: Key) -> None:
         if effect.does == "set":
-            self.values[key] = effect.value
+            self._assign_value(key, effect.value)
         elif effect.does == "add":
             self.counts[key] = self.counts.get(key, 0.0) + effect.number
         elif effect.does == "start":

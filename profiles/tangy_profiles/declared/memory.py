@@ -22,7 +22,7 @@ class GameMemory:
     """Everything that the interpreter knows of a game; persons by id, "" for the group."""
 
     values: tuple[tuple[str, str, str], ...]
-    """Fact, whose, and value; facts with their first values are left out."""
+    """Fact, whose, and value, the last to change last; without facts that never changed."""
     counts: tuple[tuple[str, str, float], ...]
     """Fact, whose, and the number, or for a timer when it was started (s in the game)."""
     order: tuple[Count, ...]
@@ -47,7 +47,7 @@ class GameMemory:
 def memory_of(game: DeclaredGame) -> GameMemory:
     """Return what has to be kept of a game, so that it can go on."""
     return GameMemory(
-        values=tuple((*key, value) for key, value in sorted(game.values.items())),
+        values=tuple((*key, value) for key, value in game.values.items()),
         counts=tuple((*key, number) for key, number in sorted(game.counts.items())),
         order=game.order,
         round=game.round,

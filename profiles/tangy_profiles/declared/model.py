@@ -182,6 +182,8 @@ class Declaration:
     """For how many people it is, how long it takes, and what they need."""
     media: Mapping[str, MediaFile] = field(default_factory=dict)
     """The pictures and sounds, by the names of their files."""
+    whose: Mapping[Selector, FactCondition] = field(default_factory=dict)
+    """The conditions of the selectors that have one."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def bounds_of(self, fact: Fact) -> tuple[int, ...]:
@@ -232,7 +234,7 @@ class Declaration:
                 found += effect.conditions
         for habit in self.habits:
             found += habit.when
-        return tuple(found)
+        return (*found, *self.whose.values())
 
     @cached_property
     def reasons(

@@ -25,10 +25,8 @@ from tangy_profiles.declared.source import SourceText
 from tangy_profiles.declared.vocabulary import (
     ASKING,
     ORDERS,
-    SELECTORS,
     SLOT,
     Order,
-    Selector,
 )
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.given_file import lines_of, read_given
@@ -42,6 +40,7 @@ KEYS = (
     *("words", "summary"),
 )
 PLAIN = "plain"
+GROUP = "group"
 RESERVED = ("name", "n", "turn")
 """Slots that are not columns of the items."""
 HABIT_KEYS = ("while", "chance", "last")
@@ -81,6 +80,7 @@ def _read(top: Section, path: Path) -> Declaration:
         top, phrasing, tuple(strategies), plain_strategy, path.parent, items.columns, title
     )
     stages = _read_stages(top, phrasing)
+    expected = _read_expected(top, phrasing, stages, behaviours)
     return Declaration(
         name=name,
         title=title,
@@ -91,13 +91,14 @@ def _read(top: Section, path: Path) -> Declaration:
         items=items,
         teams=_read_teams(top),
         habits=_read_habits(top, phrasing),
-        expected=_read_expected(top, phrasing, stages, behaviours),
+        expected=expected,
         strategies=strategies,
         plain_strategy=plain_strategy,
         summary=top.text("summary", ""),
         patience=top.number("patience", 0.1, 600, 10.0),
         pronunciations=_read_pronunciations(top.table("pronunciations")),
         media=read_media(top, behaviours, items, path.parent),
+        whose=phrasing.whose,
     )
 
 
@@ -150,7 +151,8 @@ def _read_stages(top: Section, phrasing: Phrasing) -> tuple[Stage, ...]:
             section.wrong("when", "the last stage must have none, or a game could be in no stage")
         if not last and not section.texts("when"):
             section.wrong("name", f"no stage after {name!r} can be reached: give it 'when'", name)
-        about = cast(Selector, section.word("about", SELECTORS, "group"))
+        about = section.text("about", GROUP)
+        about = phrasing.selector(section, "about", about) or GROUP
         words = section.text("words", "")
         for slot in SLOT.findall(words):
             if slot != "name":
@@ -217,14 +219,11 @@ def _read_expected(
         if behaviour not in behaviours:
             near = nearest(behaviour, behaviours)
             top.wrong("expected", f"{behaviour!r} is not a behaviour; {near}", last)
-        if to and to not in SELECTORS:
-            top.wrong("expected", f"{to!r} is not known; {nearest(to, SELECTORS)}", last)
-        elif to and behaviour in behaviours and to not in behaviours[behaviour].to:
+        to = phrasing.selector(top, "expected", to, last) if to else ""
+        if to and behaviour in behaviours and to not in behaviours[behaviour].to:
             top.wrong("expected", f"{behaviour!r} lacks {to!r} among its 'to'", last)
-        chosen = cast(Selector, to) if to in SELECTORS else None
-        found.append(
-            Expectation(stage, phrasing.all_of(top, "expected", conditions), behaviour, chosen)
-        )
+        conditions_of = phrasing.all_of(top, "expected", conditions)
+        found.append(Expectation(stage, conditions_of, behaviour, to or None))
     return tuple(found)
 
 

@@ -18,13 +18,14 @@ from tangy_profiles.state import Situation
 
 NAME = "{name}"
 
+A_PERSON = "a person"
 ANYONE: dict[Selector, str] = {
     "group": "everybody",
-    "first asking": "a person",
+    "first asking": A_PERSON,
     "whose turn": "the player",
     "next in circle": "the next person",
     "quietest": "the quietest person",
-    "last to act": "a person",
+    "last to act": A_PERSON,
     "addressed": "the person",
     "beside": "the person",
 }
@@ -73,7 +74,7 @@ def stage_words(declaration: Declaration, name: str, who: str = "") -> str:
     stage = next((one for one in declaration.stages if one.name == name), None)
     if stage is None:
         return name
-    return (stage.words or _by_name(stage)).replace(NAME, who or ANYONE[stage.about])
+    return (stage.words or _by_name(stage)).replace(NAME, who or ANYONE.get(stage.about, A_PERSON))
 
 
 def value_words(fact: Fact, value: str) -> str:

@@ -43,6 +43,7 @@ def rough_key(game: DeclaredGame) -> Hashable:
         game.addressed if remembers else None,
         game.actor if "last to act" in game.declaration.selectors else None,
         after,
+        *(game.whom(selector) for selector in game.declaration.whose),
     )
     several = len(game.players) > 1
     for player, facts in zip(game.players, own, strict=True):
@@ -80,6 +81,12 @@ def state_key(game: DeclaredGame) -> Hashable:
     for fact, bounds in declaration.looked_at:
         for player in order if fact.per_player else ("",):
             facts.append(_kept(game, fact, bounds, player))
+    named = {condition.fact for condition in declaration.whose.values()}
+    since = tuple(
+        place[one]
+        for (name, one), value in game.values.items()
+        if name in named and one in place and value != declaration.facts[name].values[0]
+    )
     acts_of: tuple[int, ...] = ()
     if "quietest" in declaration.selectors:
         least = min(game.acts.values())
@@ -92,7 +99,7 @@ def state_key(game: DeclaredGame) -> Hashable:
         game.place if game.place == FRONT else place[game.place],
         place.get(game.addressed or "", -1) if declaration.remembers_addressed else -1,
         place.get(game.actor or "", -1) if "last to act" in declaration.selectors else -1,
-        acts_of,
+        (acts_of, since),
         game.over,
     )
 

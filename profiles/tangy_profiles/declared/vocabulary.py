@@ -35,7 +35,7 @@ Does = Literal[
 """Effects of a behaviour on the game."""
 DOES: tuple[Does, ...] = get_args(Does)
 
-Selector = Literal[
+Named = Literal[
     "group",
     "first asking",
     "whose turn",
@@ -45,8 +45,11 @@ Selector = Literal[
     "addressed",
     "beside",
 ]
-"""Selectors of the person of a behaviour or a stage."""
-SELECTORS: tuple[Selector, ...] = get_args(Selector)
+SELECTORS: tuple[Named, ...] = get_args(Named)
+Selector = str
+"""Selects the person of a behaviour or a stage: one of `SELECTORS`, or `whose CONDITION`."""
+WHOSE = "whose "
+"""Before the condition of a selector; of several persons, the first for whom it came to hold."""
 
 Order = Literal["given", "shuffled"]
 ORDERS: tuple[Order, ...] = get_args(Order)
