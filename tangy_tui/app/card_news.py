@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt
 from tangy_hw.robot_client.card_observations import CardObservations
+from tangy_profiles.game_records import StaffDeed
 from tangy_tui.interaction.game_events import GameBegun, ResumedGame
 from tangy_tui.monitoring.supervision import Event
 
@@ -16,12 +17,14 @@ BY = "tangy"
 
 @dataclass(frozen=True, slots=True)
 class CardNote:
-    """A note about cards for staff and for the event log, which names people by id.
+    """What there is to tell of cards: to staff, and to the log (see `StaffAction`).
 
     `news` is what Tangy learnt or doubts; None if staff know it already.
     """
 
-    note: str
+    did: StaffDeed
+    person: str = ""
+    detail: str = ""
     news: CardLearnt | CardDoubt | None = None
 
     @property
@@ -40,34 +43,23 @@ class CardNews:
             any(isinstance(event, GameBegun | ResumedGame) for event in events)
             and cards.dealt.given
         ):
-            notes.append(CardNote(dealt_note(cards.dealt.given)))
+            given = cards.dealt.given.items()
+            dealt = ", ".join(f"{person} {card}" for person, card in given)
+            notes.append(CardNote("cards dealt", detail=dealt))
         while cards.news:
             new = cards.news.popleft()
-            note = learnt_note(new) if isinstance(new, CardLearnt) else doubt_note(new)
-            notes.append(CardNote(note, new))
+            notes.append(_learnt(new) if isinstance(new, CardLearnt) else _doubted(new))
         return notes
 
 
-def dealt_note(given: Mapping[str, int]) -> str:
-    """Write for the log which cards were dealt."""
-    return f"cards: {', '.join(f'{person} has {card}' for person, card in given.items())}"
+def _learnt(learnt: CardLearnt) -> CardNote:
+    return CardNote("card learnt", learnt.person, str(learnt.card), learnt)
 
 
-def learnt_note(learnt: CardLearnt) -> str:
-    """Return the log note that a card is assigned to a person."""
-    return f"card {learnt.card} is taken for that of {learnt.person}"
-
-
-def doubt_note(doubt: CardDoubt) -> str:
-    """Write for the log why Tangy did not judge a card."""
+def _doubted(doubt: CardDoubt) -> CardNote:
+    """Keep for the log why a card was not judged, and which cards there were."""
     cards = ", ".join(map(str, doubt.cards))
-    why = {
-        "copies": "copies of a card",
-        "several cards": "several cards",
-        "another's card": f"a card of {doubt.owner}",
-        "other card": f"a card that is not theirs ({doubt.own})",
-    }[doubt.why]
-    return f"{why} before {doubt.person}: {cards}; not judged"
+    return CardNote("card doubted", doubt.person, f"{doubt.why}: {cards}", doubt)
 
 
 def doubt_document(doubt: CardDoubt, game: int) -> dict[str, object]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import threading
 from contextlib import suppress
+from typing import Any
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_records import StaffDeed
 from tangy_profiles.process_log import serving
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import TAKEN_OVER, StaffNote
@@ -23,8 +25,8 @@ class EndingGames:
     stopped: bool
     _turn: threading.RLock
 
-    def note(self, what: str, taken_back: int = 0, by: str = "") -> None:
-        """Log what staff did."""
+    def note(self, did: StaffDeed, *, by: str = "", **what: Any) -> None:
+        """Log what staff did (see `Supervision.note`)."""
         raise NotImplementedError
 
     def wait_for_turn(self, seconds: float) -> bool:
@@ -40,7 +42,7 @@ class EndingGames:
         self.robot.stop(ENDED)
 
     def _end(self) -> list[Result]:
-        self.note("staff ended the game")
+        self.note("ended")
         game = self.supervision
         asked = game.question is not None and game.question.fault != TAKEN_OVER
         events = game.give_up() if asked or game.halted is not None else game.leave()

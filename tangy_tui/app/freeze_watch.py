@@ -84,7 +84,7 @@ class FreezeGuard:
             return False
         self._control.apply(Pause())
         with suppress(TangyError):  # a full log must not prevent the report
-            self._control.supervision.note(f"the program stood still for {seconds:.0f} s", "")
+            self._control.supervision.note("program frozen", "", detail=f"{seconds:.0f}")
         self._told(seconds)
         return True
 

@@ -9,11 +9,12 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, TypeAlias, assert_never
+from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.whom import target_of
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_records import StaffDeed
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
 from tangy_tui.app.answers import Answers
@@ -258,7 +259,7 @@ class GameController(EndingGames):
                 return self._give_back()
             case SetAutonomy(level):
                 self.autonomy.turn(level)
-                self.note(f"autonomy: {level}")
+                self.note("autonomy", detail=level)
                 return [StaffNote("autonomy", level)]
             case Confirm(yes):
                 return self._confirm(yes=yes)
@@ -275,10 +276,10 @@ class GameController(EndingGames):
             case forgotten:
                 assert_never(forgotten)
 
-    def note(self, what: str, taken_back: int = 0, by: str = "") -> None:
-        """Log what staff did, unless the log is full."""
+    def note(self, did: StaffDeed, *, by: str = "", **what: Any) -> None:
+        """Log what staff did (see `Supervision.note`), unless the log is full."""
         with suppress(TangyError):
-            self.supervision.note(what, by or self.by, taken_back)
+            self.supervision.note(did, by or self.by, **what)
 
     @contextmanager
     def driving(self) -> Iterator[None]:
@@ -289,7 +290,7 @@ class GameController(EndingGames):
         finally:
             self.robot.driving = False
             self.going = going and not self.stopped
-            self.note("staff drove the robot by keys")
+            self.note("drove")
             self._tell_all()
 
     def _stop(self, by: str) -> list[Result]:
@@ -297,7 +298,7 @@ class GameController(EndingGames):
         self.supervision.stopped_by_staff()
         self.robot.stop()
         if by or not before:
-            self.note("the robot was stopped", by=by)
+            self.note("stopped", by=by)
         return [StaffNote("stopped")]
 
     def _go_on(self) -> list[Result]:
@@ -305,7 +306,7 @@ class GameController(EndingGames):
             if self.supervision.halted is None:
                 self.robot.release()
             self.stopped = False
-            self.note("the robot was let go on")
+            self.note("let go on")
         if self.supervision.over and self.robot.frozen:
             self.robot.release(everybody=True)
         self.going = True
@@ -322,7 +323,7 @@ class GameController(EndingGames):
             return [refused]
         self.taking_over = self.going = True
         self.autonomy.reset()
-        self.note("staff take over")
+        self.note("took over")
         return [StaffNote("takes over")]
 
     def _give_back(self) -> list[Result]:
@@ -344,7 +345,7 @@ class GameController(EndingGames):
         if not self._void(person):
             return StaffNote("nothing to void", person)
         self.supervision.persuasion.recall(person)
-        self.note(f"staff: the last response of {person} does not count")
+        self.note("response voided", person=person)
         return StaffNote("voided", person)
 
     def refuses(self, command: GameCommand) -> StaffNote | None:

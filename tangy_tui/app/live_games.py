@@ -100,7 +100,7 @@ class LiveGames:
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
         notes = self._cards.take(events, world.cards)
         for note in notes:
-            game.note(note.note, BY)
+            game.note(note.did, BY, person=note.person, detail=note.detail)
             if note.doubt is not None:
                 self.card_doubts.append(doubt_document(note.doubt, game.game.games))
         return [*notes, *self._seats.news(events, world.sitting)]

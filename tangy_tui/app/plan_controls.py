@@ -27,10 +27,6 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision
 
 
-SET_PACE = "staff set the pace"
-"""The beginning of the log's note on a new pace."""
-
-
 class GamePlanControls:
     """Changes the plan of supervised games; refuses each change if the game has no plan."""
 
@@ -82,7 +78,7 @@ class GamePlanControls:
             world.set_pace(pace)
         else:
             self._supervision.game.change("pace", seconds=pace, by=self._by)
-        self._note(f"{SET_PACE}: {pace:g} s")
+        self._note("pace", detail=f"{pace:g}")
         return StaffNote("pace", f"{pace:g}")
 
     def _take_back(self, world: PlannedGame, label: str) -> list[Result]:
@@ -95,7 +91,7 @@ class GamePlanControls:
             return [StaffNote("not called", label)]
         number = called[-1] if number is None else number
         changed = self._supervision.game.change("taken back", number=number, by=self._by)
-        self._note(f"staff took a call back: {deck.label(number)}", number)
+        self._note("took back", detail=deck.label(number), taken_back=number)
         return [StaffNote("call taken back", deck.label(number)), changed]
 
     def _claim(self, world: PlannedGame, card: int, person: str) -> list[Result]:
@@ -107,7 +103,7 @@ class GamePlanControls:
         pattern = present or next(iter(rules.patterns), None)
         words = rules.claim_right if wins else rules.claim_wrong
         holder = person or world.holder(card)
-        self._note(f"staff checked card {card}: {'right' if wins else 'wrong'}")
+        self._note("claim right" if wins else "claim wrong", person=holder or "", detail=str(card))
         world.announce(words.format(card=card, pattern=pattern.label if pattern else ""))
         told: list[Result] = [StaffNote("claim right" if wins else "claim wrong", str(card))]
         if wins and holder:
@@ -124,7 +120,7 @@ class GamePlanControls:
             world.choose(replace(world.game_plan, patterns=patterns))
         else:
             self._supervision.game.change("patterns chosen", patterns=patterns, by=self._by)
-        self._note(f"staff chose what is played for: {', '.join(patterns)}")
+        self._note("patterns", detail=", ".join(patterns))
         return [StaffNote("patterns", labels)]
 
     def _let_win(
@@ -147,7 +143,7 @@ class GamePlanControls:
         else:
             for what in changes:
                 self._supervision.game.change(what, by=self._by)
-        self._note(f"staff chose: {', '.join(changes)}")
+        self._note("rules", detail=", ".join(changes))
         return told
 
     def _move(self, command: ComesIn | GoesAway) -> StaffNote:
@@ -166,5 +162,5 @@ class GamePlanControls:
             gathering.choose(replace(changes.plan, absent=tuple(sorted(absent))))
         else:
             self._supervision.game.change("came" if here else "left", person=person, by=self._by)
-        self._note(f"staff: {person} {'is here' if here else 'has left'}")
+        self._note("came" if here else "left", person=person)
         return StaffNote("comes" if here else "goes", person)

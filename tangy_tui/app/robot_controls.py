@@ -96,7 +96,7 @@ class RobotControls:
         match command:
             case AskFor(person):
                 robot.requests.ask_for(person)
-                self._note(f"staff asked for help for {person}")
+                self._note("asked for", person=person)
                 return StaffNote("asked for", person)
             case Tell():
                 return self._tell(robot, command)
@@ -105,7 +105,7 @@ class RobotControls:
         if not robot.called:
             return StaffNote("nothing called")
         label = robot.activity.deck.label(robot.called[-1])
-        self._note("staff had the last number called again")
+        self._note("called again", detail=label)
         robot.call_again()
         return StaffNote("call again", label)
 
@@ -122,8 +122,8 @@ class RobotControls:
         sure = min(command.sure, UNCLEAR_SURE if unclear else 1.0)
         if not robot.tell(command.person, said, sure, command.source):
             return StaffNote("not told", words=", ".join(sayable(robot.game)))
-        teller = "a voice" if command.source == "speech" else "staff"
-        self._note(f"{teller} told of {command.person or 'the group'}: {said}")
+        heard = command.source == "speech"
+        self._note("heard" if heard else "told", person=command.person or "", detail=said)
         asked = robot.may_ask_again(command.person or about(robot.game))
         if unclear and not asked:  # then the game asks staff instead
             return StaffNote("not told", words=", ".join(sayable(robot.game)))
@@ -136,7 +136,7 @@ class RobotControls:
             return StaffNote("nothing to tell")
         if command.person not in (None, person) or not eyes.tell(said):
             return StaffNote("not told", words=", ".join(eyes.sayable))
-        self._note(f"staff told of {person}: {said}")
+        self._note("told", person=person, detail=said)
         return StaffNote("told", person, said)
 
     @property
@@ -157,7 +157,7 @@ class RobotControls:
         finally:
             robot.link.tell("drive", forward=0.0, turn=0.0)
             self.driving = False
-        self._note("staff drove the robot by hand")
+        self._note("drove")
         return StaffNote(
             "driven", robot.link.silent or robot.link.state.hazard or robot.link.state.held
         )

@@ -163,8 +163,11 @@ def _staff(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
     for moment in replay.moments:
         when = {"step": moment.step, "at": moment.at, "seconds": moment.seconds}
         match moment.what:
-            case Noted(what=what, by=by):
-                yield {**when, "kind": "note", "fault": None, "what": what, "by_person": bool(by)}
+            case Noted(did, by, person, detail):
+                yield {
+                    **when, "kind": "note", "fault": None, "what": did, "person": person or None,
+                    "detail": detail or None, "by_person": bool(by),
+                }  # fmt: skip
             case Unclear():
                 yield {
                     **when, "kind": "unclear", "fault": None, "what": "answer not clear",
@@ -207,7 +210,8 @@ TABLES = (
          "ladder", "moves", "status", "last_move_s"),
         _faults,
     ),
-    DataTable("staff", (*HEAD, "step", "at", "seconds", "kind", "fault", "what", "by_person"),
+    DataTable("staff", (*HEAD, "step", "at", "seconds", "kind", "fault", "what", "person", "detail",
+         "by_person"),
               _staff),
 )  # fmt: skip
 """The tables; `docs/data-dictionary.md` describes their columns."""

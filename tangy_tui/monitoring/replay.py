@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.codec import written
@@ -22,6 +22,7 @@ from tangy_profiles.game_records import (
     GameResumed,
     GameStep,
     StaffAction,
+    StaffDeed,
 )
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.state import ActivityState
@@ -33,9 +34,6 @@ IN_GAMES = (
     *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
     *(CallMade, GameResumed, GameChange, GameEnding, AnswerNotClear),
 )
-
-
-RESUMED = "the game went on after an interruption"
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +80,14 @@ class AnsweredRequest:
 
 @dataclass(frozen=True, slots=True)
 class Noted:
-    """Other events caused by people: stops, injected faults."""
+    """Other actions of people: stops, injected faults, a resumed game (see `StaffAction`)."""
 
-    what: str
+    did: StaffDeed | Literal["resumed"]
     by: str
+    person: str = ""
+    detail: str = ""
     taken_back: int = 0
-    """The number of a call that was taken back; 0 if none."""
+    """The number of a call that no longer counts; 0: none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,8 +148,10 @@ class Moment:
                 }
             case Diagnosed(fault):
                 return {"kind": "fault", **fault.document()}
-            case Noted(what, by):
-                return {"kind": "staff", "what": what, "by": by}
+            case Noted(did, by, person, detail):
+                return {
+                    "kind": "staff", "what": did, "person": person, "detail": detail, "by": by,
+                }  # fmt: skip
             case Moved(fault, move):
                 return {"kind": "recovery", "fault": fault.id, "move": written(move)}
             case Unclear(person, asked_again):
@@ -259,10 +261,11 @@ def _replay(
                 if what.what in ("visit", "won", "claimed"):
                     replay.unasked.add((step + 1, what.person))
             case GameResumed(by=by):
-                what = Noted(RESUMED, by)
-            case StaffAction(what=words, by=by, taken_back=taken, seconds=at):
-                acted = max(acted, at or 0.0)  # logged during a step that ends later
-                what = Noted(words, by, taken)
+                what = Noted("resumed", by)
+            case StaffAction() as action:
+                # while a step was carried out that comes later
+                acted = max(acted, action.seconds or 0.0)
+                what = Noted(action.did, action.by, action.person, action.detail, action.taken_back)
             case CallMade() as what:
                 pass
             case AnswerNotClear(asked_again=asked_again, source=source):

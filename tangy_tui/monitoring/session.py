@@ -10,6 +10,7 @@ from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.game_records import StaffDeed
 from tangy_profiles.persuading import PAPER
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
@@ -34,6 +35,14 @@ RESULTS = (
 
 SET_ASIDE = "set aside"
 """The remedy that leaves a person alone: staff should look after them."""
+
+
+INJECTED: tuple[StaffDeed | Literal["resumed"], ...] = (
+    "fault injected",
+    "fault lifted",
+    "faults planned",
+)
+"""Actions after which faults of a session came on purpose."""
 
 
 @dataclass
@@ -249,8 +258,8 @@ def read_session(
     notes = [SessionNote("unknown activity", name) for name in unknown]
     if not all(replay.timed for replay in replays):
         notes.append(SessionNote("no times"))
-    noted = [m.what.what for r in replays for m in r.moments if isinstance(m.what, Noted)]
-    on_purpose = dict.fromkeys(what for what in noted if "brought about" in what)
+    noted = [m.what for r in replays for m in r.moments if isinstance(m.what, Noted)]
+    on_purpose = dict.fromkeys(one.detail for one in noted if one.did in INJECTED)
     if on_purpose:
         notes.append(SessionNote("brought about", "; ".join(on_purpose)))
     titles = {activities[g.activity].title if g.activity in activities else g.activity

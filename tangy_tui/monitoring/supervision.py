@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.contacts import EXPERT
 from tangy_profiles.faults import Evidence, FaultBook
-from tangy_profiles.game_records import StaffAction
+from tangy_profiles.game_records import StaffAction, StaffDeed
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
 from tangy_profiles.robot import Robot
@@ -166,7 +166,7 @@ class Supervision:
         self._clearings.clear()
         self._idle = 0
         if self._to_come:
-            self.note(f"faults are to be brought about: {', '.join(self._to_come)}", "")
+            self.note("faults planned", "", detail=", ".join(self._to_come))
         return told
 
     def step(self) -> list[Event]:
@@ -289,12 +289,20 @@ class Supervision:
         told += self.recovery.halt_if_critical()
         return told + self._end_if_hopeless()
 
-    def note(self, what: str, by: str, taken_back: int = 0) -> None:
-        """Log another action of people in a game: a STOP, an injected fault."""
+    def note(
+        self, did: StaffDeed, by: str, *, person: str = "", detail: str = "", taken_back: int = 0
+    ) -> None:
+        """Log an action of staff in a game: a STOP, an injected fault (see `StaffAction`)."""
         if not self.over:
             now = max(self.seconds, self.game.log.seconds)  # later than the last step
             done = StaffAction(
-                game=self.game.game, what=what, by=by, seconds=now, taken_back=taken_back
+                game=self.game.game,
+                did=did,
+                by=by,
+                person=person,
+                detail=detail,
+                seconds=now,
+                taken_back=taken_back,
             )
             self._store.append(done)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -19,6 +18,7 @@ from tangy_tui.text.numbers import counted
 from tangy_tui.text.player_facts import HEADING, player_lines
 from tangy_tui.text.report import changes_lines
 from tangy_tui.text.sessions import note_words, status_words
+from tangy_tui.text.staff_actions import action_line
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 if TYPE_CHECKING:
@@ -27,10 +27,6 @@ if TYPE_CHECKING:
 
 MOST_TOLD = 30
 """Games that a report tells one by one; of more, only those in which something was the matter."""
-
-
-PERSON_ID = re.compile(r"\b[a-z]+\d+\b")
-"""As ids of people are made; a team's id is its name."""
 
 
 def game_words(game: Game, activity: Activity | None = None) -> str:
@@ -85,9 +81,8 @@ def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list
                 f"!  Fault, {kind}: {fault.name}. {fault.console}",
                 f"   Why: {fault.why}.",
             ]
-        case Noted(what, by):
-            what = PERSON_ID.sub(lambda found: name(found[0]), what)
-            return [f"*  {what}{f', by {by}' if by else ''}."]
+        case Noted() as noted:
+            return [f"*  {action_line(noted, name)}"]
         case Unclear(person, asked_again, silent):
             again = ": Tangy asks again" if asked_again else ", and Tangy has asked often enough"
             did = "said nothing" if silent else "did not answer clearly"

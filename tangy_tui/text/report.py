@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -10,7 +9,6 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.card_news import BY as TANGY
-from tangy_tui.app.plan_controls import SET_PACE
 from tangy_tui.monitoring.attention import Attention, Call
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
@@ -18,6 +16,7 @@ from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import Name
+from tangy_tui.text.staff_actions import action_words
 from tangy_tui.text.times import length, time_of_day
 
 WORLD_WORDS: Mapping[GameWorld, str] = {
@@ -141,30 +140,23 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
 def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str, str]]:
     """Return the actions of staff: the time on the clock, who, and what."""
     rows: list[tuple[str, str, str]] = []
+    last = ("", "")  # who did the last row, and whether it set the pace
     for replay in replays:
         for moment in replay.moments:
-            if (told := _staff_words(moment)) is not None:
+            if (told := _staff_words(moment, name)) is not None:
                 who, words = told
-                if rows and who == rows[-1][1] and _of_pace(words) and _of_pace(rows[-1][2]):
+                paced = isinstance(moment.what, Noted) and moment.what.did == "pace"
+                if paced and last == (who, "pace"):
                     rows.pop()  # keys change it step by step: the last one counts
-                rows.append((time_of_day(moment.at), who, with_names(words, replay, name)))
+                last = (who, "pace" if paced else "")
+                rows.append((time_of_day(moment.at), who, words))
     return rows
 
 
-def _of_pace(words: str) -> bool:
-    return words.startswith(SET_PACE)
-
-
-def with_names(words: str, replay: GameReplay, name: Name) -> str:
-    """Replace the ids of a game's people with their names."""
-    there = {person: name(person) for person in replay.game.people}
-    return re.sub(r"[\w-]+", lambda found: there.get(found[0], found[0]), words)
-
-
-def _staff_words(moment: Moment) -> tuple[str, str] | None:
+def _staff_words(moment: Moment, name: Name) -> tuple[str, str] | None:
     what = moment.what
     if isinstance(what, Noted):
-        return (what.by, what.what) if what.by not in ("", TANGY) else None
+        return (what.by, action_words(what, name)) if what.by not in ("", TANGY) else None
     move = getattr(what, "move", None)
     fault: Fault | None = getattr(what, "fault", None)
     if move is None or fault is None or not move.by or move.kind not in STAFF_MOVES:

@@ -32,7 +32,7 @@ def note_words(note: SessionNote) -> str:
         case "no times":
             return "An older Tangy kept no times within a game: those games are drawn by steps."
         case "brought about":
-            return f"Some of this was brought about: {note.about}."
+            return f"Some faults were injected on purpose: {note.about}."
         case forgotten:
             assert_never(forgotten)
 

@@ -375,11 +375,11 @@ class FaultConsole:
         if kind in world.present or kind in to_come:
             there = kind in world.present
             world.lift(kind)
-            self.supervision.note(f"a fault was lifted: {kind}", self._control.by)
+            self.supervision.note("fault lifted", self._control.by, detail=kind)
             self._asked_for.pop(kind, None)
             return injections.lifted_words(kind), there
         self._asked_for[kind] = len(world.came)
-        self.supervision.note(f"a fault was brought about: {kind}", self._control.by)
+        self.supervision.note("fault injected", self._control.by, detail=kind)
         world.inject(kind)
         if comes_later(kind):
             return injections.comes_later_words(kind), False

@@ -28,7 +28,9 @@ class Room:
         self.changes = GameChanges(self.world, self.store)
         game = SimpleNamespace(changes=self.changes, change=self.change)
         self.running = SimpleNamespace(over=False, game=game)
-        self.controls = GamePlanControls(cast(Supervision, self.running), lambda *_: None, "test")
+        self.controls = GamePlanControls(
+            cast(Supervision, self.running), lambda *_, **what: None, "test"
+        )
 
     def change(self, what: Any, **about: Any) -> object:
         return self.changes.make("g", 0, what, **about)

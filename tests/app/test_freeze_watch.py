@@ -62,5 +62,5 @@ def test_the_game_is_paused_and_the_log_says_why(workspace: Workspace, learnt: P
     assert guard.look() and not guard.look()
     assert (control.phase, told, control.next()) == ("paused", [42.0], [])
     (note,) = workspace.store.events(StaffAction)
-    assert "42 s" in note.record.what
+    assert (note.record.did, note.record.detail) == ("program frozen", "42")
     assert not note.record.by

@@ -136,7 +136,7 @@ def test_what_staff_did_is_told_with_names_and_the_pace_they_came_to(planned: Pl
     planned.play(calls=2)
     for _ in range(3):
         planned.do(ChangePace(-1))
-    planned.control.note("staff asked for help for user3")
+    planned.control.note("asked for", person="user3")
     store = planned.workspace.store
     (replay,) = read_session(store, read_games(store), {}, {}).replays
 
@@ -344,8 +344,9 @@ def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, 
     planned.play(calls=calls)
     assert planned.do(LetWin(several=True)) == ["several"]
     assert planned.do(LetWin(visits=True)) == ["visits"]
-    notes = [event.record.what for event in planned.workspace.store.events(StaffAction)]
-    assert notes[-1].endswith(": visits on") and not any("True" in note for note in notes)
+    notes = [event.record for event in planned.workspace.store.events(StaffAction)]
+    assert (notes[-1].did, notes[-1].detail) == ("rules", "visits on")
+    assert not any("True" in note.detail for note in notes)
     planned.do(GoesAway("user2"))
     planned.do(ComesIn("user3"))
     assert planned.do(SetPace(12)) == ["pace"]

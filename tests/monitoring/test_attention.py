@@ -28,7 +28,7 @@ from tangy_tui.monitoring.house import (
 )
 from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted
 from tangy_tui.pages.house import house_page, person_page
-from tangy_tui.text.report import with_names
+from tangy_tui.text.staff_actions import action_words
 from tests.support.games import play
 
 DICTIONARY = Path(__file__).parents[2] / "docs" / "data-dictionary.md"
@@ -129,10 +129,11 @@ def test_the_log_says_who_was_away_in_a_game(workspace: Workspace, learnt: Polic
 
 
 def test_names_stand_in_place_of_ids_whatever_stands_beside_them() -> None:
-    replay = replay_of(state(FRONT))
-    person = replay.game.people[0]
-    said = with_names(f"staff told of {person}: tired; x{person} is nobody", replay, str.upper)
-    assert said == f"staff told of {person.upper()}: tired; x{person} is nobody"
+    told = Noted("told", "Ada", person="user1", detail="tired")
+    assert action_words(told, {"user1": "Rosa"}.__getitem__) == "staff told Tangy of Rosa: tired"
+    older = Noted("noted", "Ada", detail="staff told of user1: tired; xuser1 is nobody")
+    said = action_words(older, lambda person: {"user1": "Rosa"}.get(person, person))
+    assert said == "staff told of Rosa: tired; xuser1 is nobody"
 
 
 def test_games_add_up() -> None:
@@ -150,7 +151,7 @@ def test_a_call_that_was_taken_back_stays_and_says_so() -> None:
             (number,),
         )  # fmt: skip
         replay.moments.append(Moment(1.0, 1, "", done))
-    replay.moments.append(Moment(1.0, 1, "", Noted("-", "Ada", taken_back=7)))
+    replay.moments.append(Moment(1.0, 1, "", Noted("took back", "Ada", taken_back=7)))
     assert [(c.number, c.taken_back) for c in calls_in(replay)] == [
         (7, False), (8, False), (7, True),
     ]  # fmt: skip

@@ -230,7 +230,7 @@ NEEDED = [
     ("fault", "criticality", ("log", "report", "all")),
     ("fault", "evidence", ("log", "list")),
     ("recovery", "kind", ("log", "report", "all")),
-    ("staff action", "what", ("log", "report", "all")),
+    ("staff action", "did", ("log", "report", "all")),
     ("strategy switched", "on", ("people", "list")),
     ("void", "of", ("people", "history", "user1")),
     ("effect accepted", "state", ("demonstrations", "accepted")),

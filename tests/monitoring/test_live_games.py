@@ -120,8 +120,11 @@ def test_what_is_not_judged_is_said_logged_and_counted(
     played.play(range(1), expert=False, tell=tell)
     told = [line for line in lines if "two cards in front of User 2: 7 and 9" in line]
     assert len(told) == 2  # the other one after the last number, when each person gets a visit
-    notes = [event.body["what"] for event in workspace.store.events(StaffAction)]
-    assert notes[:2] == ["cards: user2 has 7", "several cards before user2: 7, 9; not judged"]
+    notes = [event.record for event in workspace.store.events(StaffAction)]
+    assert [(note.did, note.detail) for note in notes[:2]] == [
+        ("cards dealt", "user2 7"),
+        ("card doubted", "several cards: 7, 9"),
+    ]
     doubts = played.document()["card_doubts"]
     told_of = [(doubt["game"], doubt["person"], doubt["cards"]) for doubt in doubts]
     assert told_of == [(1, "user2", [7, 9])] * 2

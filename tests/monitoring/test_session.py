@@ -371,16 +371,18 @@ def test_what_was_brought_about_on_purpose_is_told_as_that(
     game = workspace.supervision(learnt, 3, injections=["voice-dead@2"])
     game.begin()
     game.step()
-    game.note("STOP", "Ada")
+    game.note("stopped", "Ada")
     game.leave()
     played = read_games(workspace.store)[-1]
     activities = {workspace.activity.name: workspace.activity}
     (replay,) = read_replays(workspace.store, [played], activities, {})
     noted = [m.what for m in replay.moments if isinstance(m.what, Noted)]
-    assert [note.what for note in noted] == [
-        "faults are to be brought about: voice-dead@2",
-        "STOP",
+    assert [(note.did, note.detail) for note in noted] == [
+        ("faults planned", "voice-dead@2"),
+        ("stopped", ""),
     ]
-    assert "*  STOP, by Ada." in "\n".join(replay_lines(replay, workspace.activity, str))
+    assert "*  the robot was stopped, by Ada." in "\n".join(
+        replay_lines(replay, workspace.activity, str)
+    )
     session = read_session(workspace.store, [played], activities, {})
     assert any("voice-dead@2" in note.about for note in session.notes)

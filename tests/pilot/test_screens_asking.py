@@ -266,7 +266,7 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
         await pilot.press("ctrl+x")
         await pilot.pause()
         before = list(workspace.store.events())
-        assert before[-1].body["what"] == "the robot was stopped"
+        assert before[-1].body["did"] == "stopped"
         assert isinstance(pilot.app.screen, PlayScreen)
         assert "STOPPED" in screen_text(pilot.app)
         assert "press p to go on first" in screen_text(pilot.app)

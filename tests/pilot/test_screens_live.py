@@ -227,8 +227,8 @@ async def test_each_stop_is_logged_once_and_told_once(
         for count in (1, 2):
             await pilot.press("ctrl+x")
             await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
-            noted = [event.body["what"] for event in workspace.store.events(StaffAction)]
-            assert noted.count("the robot was stopped") == count
+            noted = [event.record.did for event in workspace.store.events(StaffAction)]
+            assert noted.count("stopped") == count
             await pilot.press("p", "y")
             await until_shown(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
         told = live(pilot).query_one(LogView).sentences
@@ -412,8 +412,8 @@ async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
         link.state = replace(link.state, frozen=5.0)
         await until_shown(pilot, lambda: "was frozen for 5 s" in screen_text(pilot.app))
         await pilot.pause(0.5)
-        noted = [event.body["what"] for event in workspace.store.events(StaffAction)]
-        assert noted.count("the robot process was frozen for 5.0 s") == 1
+        noted = [event.record.did for event in workspace.store.events(StaffAction)]
+        assert noted.count("robot frozen") == 1
 
 
 @pytest.mark.slow
@@ -452,9 +452,8 @@ async def test_a_call_is_said_again_and_taken_back(
         events = workspace.store.events
         await until_shown(pilot, lambda: len(list(events(StaffAction))) > 1)
         assert len(world.called) == count - 1
-        noted = [event.body["what"] for event in events(StaffAction)]
-        again = "staff had the last number called again"
-        assert noted == [again, f"staff took a call back: {label}"]
+        noted = [(event.record.did, event.record.detail) for event in events(StaffAction)]
+        assert noted == [("called again", label), ("took back", label)]
 
 
 @pytest.mark.slow

@@ -185,11 +185,15 @@ OLD = (
 )
 
 
+MOVED = {("staff action", "what"): "detail"}
+"""Where a later version keeps the value of a key."""
+
+
 @pytest.mark.parametrize("row", OLD, ids=[f"{json.loads(row)[0]}-{n}" for n, row in enumerate(OLD)])
 def test_what_was_logged_before_there_were_records_is_read_and_logged_alike(row: str) -> None:
     kind, person, strategy, body = json.loads(row)
     now = json.loads(json.dumps(read_record(kind, person, strategy, body).body))
-    assert {key: now.get(key, "is gone") for key in body} == body
+    assert {key: now.get(MOVED.get((kind, key), key), "is gone") for key in body} == body
 
 
 def test_every_kind_that_was_logged_before_is_known() -> None:

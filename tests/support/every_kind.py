@@ -99,7 +99,7 @@ def _play(workspace: Workspace) -> None:
         control.begin()
         while not game.over:
             go_on_by_script(control, expert=True)
-            game.note("stopped the robot", "Ada") if game.steps == 5 else None
+            game.note("stopped", "Ada") if game.steps == 5 else None
     fault = workspace.store.last(FaultDiagnosed)
     step = next(workspace.store.events("demonstration step"))
     assert fault is not None

@@ -346,7 +346,7 @@ class LiveScreen(PlayScreen):
             self.show_status()
         if state.frozen and not self._frozen:
             self._write(frozen_words(state.frozen), "bad")
-            self.control.note(f"the robot process was frozen for {state.frozen:.1f} s")
+            self.control.note("robot frozen", detail=f"{state.frozen:.1f}")
         self._frozen = state.frozen
         due = SLOW_TRACK_SECONDS if getattr(self.app, "slow_link", False) else 0.0
         if (now := monotonic()) - self._tracked >= due:

@@ -41,7 +41,7 @@ class LiveCards:
     def tell(self, events: Sequence[Event] = ()) -> None:
         """Show and log news at once."""
         for note in self._news.take(events, self._cards):
-            self._supervision.note(note.note, BY)
+            self._supervision.note(note.did, BY, person=note.person, detail=note.detail)
             if words := note_words(note, self._workspace.name):
                 self._write(f"{words} {KEY_HINT}", "warn" if note.doubt else "dim")
         self._ask()
@@ -78,5 +78,5 @@ class LiveCards:
             return
         dealt.give(whom, None if told == LEARN else int(told))
         whose = "another card" if told == LEARN else f"card {told}"
-        control.note(f"staff said that {whom} has {whose}")
+        control.note("card given", person=whom, detail="" if told == LEARN else told)
         self._write(f"{name(whom)} has {whose}.", "dim")

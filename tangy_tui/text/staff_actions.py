@@ -1,0 +1,89 @@
+"""Words for what staff, or the program beside its behaviours, did in a game."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, assert_never
+
+from tangy_tui.monitoring.replay import Noted
+
+if TYPE_CHECKING:
+    from tangy_tui.text.situations import Name
+
+PERSON_ID = re.compile(r"\b[a-z]+\d+\b")
+"""The ids of people in what an earlier version noted in words."""
+
+
+def action_line(noted: Noted, name: Name) -> str:
+    """Say what was done, and who did it, in a sentence."""
+    return f"{action_words(noted, name)}{f', by {noted.by}' if noted.by else ''}."
+
+
+def action_words(noted: Noted, name: Name) -> str:
+    """Say what was done, without a full stop."""
+    detail, person = noted.detail, name(noted.person) if noted.person else ""
+    match noted.did:
+        case "resumed":
+            return "the game went on after an interruption"
+        case "stopped":
+            return "the robot was stopped"
+        case "let go on":
+            return "the robot was released after a stop"
+        case "took over":
+            return "staff took over"
+        case "ended":
+            return "staff ended the game"
+        case "autonomy":
+            return f"autonomy: {detail}"
+        case "drove":
+            return "staff drove the robot"
+        case "called again":
+            return f"staff had the last number called again{f': {detail}' if detail else ''}"
+        case "asked for":
+            return f"staff asked for help for {person}"
+        case "told":
+            return f"staff told Tangy of {person or 'the group'}: {detail}"
+        case "heard":
+            return f"Tangy heard of {person or 'the group'}: {detail}"
+        case "pace":
+            return f"staff set the pace: {detail} s"
+        case "took back":
+            return f"staff took a call back: {detail}"
+        case "claim right" | "claim wrong":
+            return f"staff checked card {detail}: {noted.did.removeprefix('claim ')}"
+        case "patterns":
+            return f"staff chose what is played for: {detail}"
+        case "rules":
+            return f"staff chose: {detail}"
+        case "came":
+            return f"{person} came"
+        case "left":
+            return f"{person} left"
+        case "response voided":
+            return f"the last response of {person} does not count"
+        case "card given":
+            return f"{person} has {f'card {detail}' if detail else 'another card'}"
+        case "cards dealt":
+            return f"cards dealt: {_named(detail, name)}"
+        case "card learnt":
+            return f"Tangy takes card {detail} for that of {person}"
+        case "card doubted":
+            return f"Tangy did not judge what lies in front of {person} ({detail})"
+        case "robot frozen":
+            return f"the robot process was frozen for {detail} s"
+        case "program frozen":
+            return f"the program was frozen for {detail} s"
+        case "fault injected":
+            return f"a fault was injected: {detail}"
+        case "fault lifted":
+            return f"a fault was lifted: {detail}"
+        case "faults planned":
+            return f"faults will be injected: {detail}"
+        case "noted":
+            return _named(detail, name)
+        case forgotten:
+            assert_never(forgotten)
+
+
+def _named(words: str, name: Name) -> str:
+    return PERSON_ID.sub(lambda found: name(found[0]), words)
