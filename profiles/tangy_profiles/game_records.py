@@ -332,65 +332,6 @@ class AcceptanceTakenBack(EventRecord):
     number: int
 
 
-StaffDeed = Literal[
-    "stopped",
-    "let go on",
-    "took over",
-    "ended",
-    "autonomy",
-    "drove",
-    "called again",
-    "asked for",
-    "told",
-    "heard",
-    "pace",
-    "took back",
-    "claim right",
-    "claim wrong",
-    "patterns",
-    "rules",
-    "came",
-    "left",
-    "response voided",
-    "card given",
-    "cards dealt",
-    "card learnt",
-    "card doubted",
-    "robot frozen",
-    "program frozen",
-    "fault injected",
-    "fault lifted",
-    "faults planned",
-    "noted",
-]
-"""What staff, or the program beside its behaviours, did in a game."""
-
-
-def _staff_action(version: int, body: dict[str, Any]) -> dict[str, Any]:
-    """Keep the sentence of the first version as a note."""
-    kept = {key: value for key, value in body.items() if key != "what"}
-    return {**kept, "did": "noted", "detail": body.get("what")}
-
-
-@kind("staff action", version=2, older=_staff_action)
-class StaffAction(EventRecord):
-    """An action of staff other than behaviours and recoveries: a stop, an injected fault.
-
-    `person` is whom it concerns. `detail` depends on `did`: the pace in s, a card's number, the
-    label of a call, the names of patterns or rules, the kinds of faults, the level of autonomy, the
-    words that a person said, the seconds of a freeze, or a note in words. `seconds` is the time in
-    the game, `taken_back` the number of a call that no longer counts.
-    """
-
-    game: str
-    did: StaffDeed
-    by: str
-    person: Sparse[str] = ""
-    detail: Sparse[str] = ""
-    seconds: float | None = None
-    taken_back: Sparse[Count] = 0
-
-
 @kind("drill-round")
 class DrillAnswered(EventRecord):
     """A round of a drill was answered: the sheet so far, to resume an interrupted drill."""

@@ -14,15 +14,10 @@ from typing import Protocol
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import (
-    GameBeginning,
-    GameChange,
-    GameEnding,
-    GameStep,
-    StaffAction,
-)
+from tangy_profiles.game_records import GameBeginning, GameChange, GameEnding, GameStep
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import SIMULATED, GameWorld
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_profiles.store import Event, Store
 from tangy_profiles.tracker import Tracker

@@ -7,8 +7,8 @@ from contextlib import suppress
 from typing import Any
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import StaffDeed
 from tangy_profiles.process_log import serving
+from tangy_profiles.staff_records import StaffDeed
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import TAKEN_OVER, StaffNote
 from tangy_tui.app.robot_controls import ENDED, RobotControls

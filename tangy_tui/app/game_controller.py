@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.whom import target_of
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import StaffDeed
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
+from tangy_profiles.staff_records import StaffDeed
 from tangy_tui.app.answers import Answers
 from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.ending_games import EndingGames

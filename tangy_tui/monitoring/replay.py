@@ -21,10 +21,9 @@ from tangy_profiles.game_records import (
     GameEnding,
     GameResumed,
     GameStep,
-    StaffAction,
-    StaffDeed,
 )
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
+from tangy_profiles.staff_records import StaffAction, StaffDeed
 from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Event, Store
 from tangy_tui.monitoring.fault import Diagnosed, Fault, Moved, fold_faults

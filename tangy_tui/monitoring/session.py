@@ -10,8 +10,8 @@ from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, Beta
-from tangy_profiles.game_records import StaffDeed
 from tangy_profiles.persuading import PAPER
+from tangy_profiles.staff_records import StaffDeed
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import FeedbackEntry

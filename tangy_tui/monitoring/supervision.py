@@ -10,14 +10,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.contacts import EXPERT
 from tangy_profiles.faults import Evidence, FaultBook
-from tangy_profiles.game_records import StaffAction, StaffDeed
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
 from tangy_profiles.robot import Robot
+from tangy_profiles.staff_records import StaffAction, StaffDeed
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import MOST_STEPS, Facilitation
 from tangy_tui.interaction.game_events import DoneOnce, Taught, Unsure
@@ -289,21 +290,11 @@ class Supervision:
         told += self.recovery.halt_if_critical()
         return told + self._end_if_hopeless()
 
-    def note(
-        self, did: StaffDeed, by: str, *, person: str = "", detail: str = "", taken_back: int = 0
-    ) -> None:
+    def note(self, did: StaffDeed, by: str, **what: Any) -> None:
         """Log an action of staff in a game: a STOP, an injected fault (see `StaffAction`)."""
         if not self.over:
-            now = max(self.seconds, self.game.log.seconds)  # later than the last step
-            done = StaffAction(
-                game=self.game.game,
-                did=did,
-                by=by,
-                person=person,
-                detail=detail,
-                seconds=now,
-                taken_back=taken_back,
-            )
+            now = max(self.seconds, self.game.log.seconds)  # of a later moment than the last step
+            done = StaffAction(game=self.game.game, did=did, by=by, seconds=now, **what)
             self._store.append(done)
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:

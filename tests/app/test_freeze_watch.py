@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_profiles.game_records import StaffAction
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.freeze_watch import (
     FROZEN_SECONDS,
     WORKED_SECONDS,

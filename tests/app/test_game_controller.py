@@ -11,9 +11,9 @@ import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_profiles.game_records import StaffAction
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import (
     Accept,
     Acknowledge,

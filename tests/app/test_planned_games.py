@@ -10,10 +10,11 @@ from typing import cast
 import pytest
 
 from tangy_profiles.cards import winning_state
-from tangy_profiles.game_records import GameChange, GameStep, StaffAction
+from tangy_profiles.game_records import GameChange, GameStep
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import FRONT
 from tangy_profiles.tracker import Tracker
 from tangy_sim.worlds.world import SimulatedWorld

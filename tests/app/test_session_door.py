@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_profiles.game_records import StaffAction
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
 from tangy_tui.app.game_commands import GoOn
 from tangy_tui.app.game_controller import GameController

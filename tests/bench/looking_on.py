@@ -16,7 +16,8 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from tangy_profiles.game_records import GameBeginning, GameStep, StaffAction
+from tangy_profiles.game_records import GameBeginning, GameStep
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
 from tangy_tui.app.watching import Guest
 from tests.bench.kills import TANGY, lines_of, share, taught_folder

@@ -8,8 +8,8 @@ import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_profiles.game_records import StaffAction
 from tangy_profiles.past_game import interrupted_game
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.live_games import LiveGames, News
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import GameChanged, GameEnded

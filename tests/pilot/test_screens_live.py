@@ -13,8 +13,8 @@ from textual.app import App
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_profiles.game_records import StaffAction
 from tangy_profiles.health import OK, Reading
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import GoOn
 from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_profiles.game_records import StaffAction
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import GoOn, Pause
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy

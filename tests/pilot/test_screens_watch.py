@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_profiles.game_records import StaffAction
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
