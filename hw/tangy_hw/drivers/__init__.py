@@ -1,1 +1,1 @@
-"""Drivers: one module or folder for each kind, and their registry."""
+"""Device drivers: a module or group of modules for each kind, and their registry."""

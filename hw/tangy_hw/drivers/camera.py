@@ -1,7 +1,7 @@
-"""A camera as the program sees it: its newest picture, and what state it is in.
+"""A camera: its newest frame, and its state.
 
-It is read in a process of its own (see `camera_child`, which also documents how it is spoken to);
-here that is started, asked, watched, and ended and started again when it hangs or has died.
+A child process reads the camera (see `camera_child`, which documents the protocol). This module
+starts it, sends it requests, watches it, and kills and restarts it when it hangs or has died.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
 
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.drivers.camera_child")
-SILENT_SECONDS = 3.0  # without a heartbeat: the process itself hangs
-START_SECONDS = 20.0  # until its first: 0.1 s when nothing else runs
-READ_SECONDS = 2.5  # for one picture, which a stream gives up by itself before
-OPEN_SECONDS = 10.0  # some cameras take 4 s to begin
-AGAIN_SECONDS = 0.2  # until a process that ended is started again
-TICK_SECONDS = 0.1  # between two looks at what state it is in
+SILENT_SECONDS = 3.0  # without a heartbeat: the process hangs
+START_SECONDS = 20.0  # until the first heartbeat: .1 s on an idle machine
+READ_SECONDS = 2.5  # for one frame; a stream gives up by itself before
+OPEN_SECONDS = 10.0  # some cameras take 4 s to open
+AGAIN_SECONDS = 0.2  # until a dead process is restarted
+TICK_SECONDS = 0.1  # between two checks of the state
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A picture: which one it was, when it came (monotonic, s), and its pixels, BGR, row by row.
+    """A frame: its number, time of arrival (monotonic, s), and BGR pixels, row by row.
 
-    `sight` is what state the camera was in with it.
+    `sight` is the state of the camera at that time.
     """
 
     seq: int
@@ -48,20 +48,20 @@ class Frame:
     sight: Sight
 
     def image(self) -> Image:
-        """Return it as OpenCV has it, (rows, columns, 3) in BGR; it cannot be written to."""
+        """Return it as a read-only OpenCV image, (rows, columns, 3) in BGR."""
         import numpy as np
 
         return np.frombuffer(self.pixels, np.uint8).reshape(self.height, self.width, 3)
 
 
 def _nobody(*_: object) -> None:
-    """Tell nobody."""
+    """Ignore the event."""
 
 
 class Camera:
-    """Pictures of one source: `async for frame in camera` gives the newest each time.
+    """Frames of one source: `async for frame in camera` yields the newest each time.
 
-    Start it with `async with`, or with `start` and `close`.
+    Use it with `async with`, or call `start` and `close`.
     """
 
     def __init__(
@@ -72,29 +72,29 @@ class Camera:
         log: Path | None = None,
         limits: CameraLimits = USUAL,
     ) -> None:
-        """Prepare a camera.
+        """Prepare a camera; `start` opens it.
 
         Args:
-            source: where its pictures come from.
-            device: what the robot's profile calls it.
-            log: where its process's messages go; nowhere if not given.
-            limits: when it is in which state.
+            source: where its frames come from.
+            device: its name in the robot's profile.
+            log: file for the messages of its process; None: they are dropped.
+            limits: thresholds of its states.
         """
         self.source = source
         self.changed: Callable[[Sight], None] = _nobody
-        """Is called when its state has changed."""
+        """Called when the state has changed."""
         self._device = device
         self._log = log
         self._limits = limits
         self._watch = self._new_watch()
         self._shown: State = "OPENING"
         self._worker: WorkerProcess | None = None
-        self._began = 0.0  # when that was started
+        self._began = 0.0  # when the worker was started
         self._tasks: list[asyncio.Task[None]] = []
         self._asked: dict[int, tuple[dict[str, Any], asyncio.Future[Frame | None]]] = {}
         self._requests = 0
-        self._next = 0  # the number of the next picture
-        self._last = -1  # of the last one that was given
+        self._next = 0  # number of the next frame
+        self._last = -1  # number of the last returned frame
         self._error = ""
         self._closing = False
 
@@ -107,17 +107,17 @@ class Camera:
 
     @property
     def name(self) -> str:
-        """Its source, as it was named."""
+        """Name of its source."""
         return self.source.name
 
     @property
     def pid(self) -> int | None:
-        """The process that reads it, if one runs."""
+        """Id of the process that reads it, if one runs."""
         return None if self._worker is None else self._worker.pid
 
     @property
     def sight(self) -> Sight:
-        """The state it is in now, and the evidence for it."""
+        """Current state, and the evidence for it."""
         return self._watch.at(time.monotonic())
 
     @property
@@ -130,13 +130,13 @@ class Camera:
         return self.sight.reading(self._device)
 
     async def start(self) -> None:
-        """Begin to read it; that it cannot be read is a state, no error."""
+        """Start reading; a camera that cannot be read is a state, not an error."""
         self._closing = False
         self._watch = self._new_watch()
         self._tasks = [asyncio.create_task(self._run()), asyncio.create_task(self._tick())]
 
     async def close(self) -> None:
-        """End its process, whatever it is doing; waiting requests for a picture get none."""
+        """Kill its process; pending requests for a frame return None."""
         self._closing = True
         for task in self._tasks:
             task.cancel()
@@ -151,15 +151,15 @@ class Camera:
         wait: float | None = None,
         fit: tuple[int, int] | None = None,
     ) -> Frame | None:
-        """Return the newest picture, of a higher number than the last that was given.
+        """Return the newest frame whose number is higher than that of the last returned one.
 
         Args:
-            after: of a higher number than this instead.
-            wait: at most so many s.
-            fit: made as large as fits into so many columns and rows of pixels.
+            after: return a frame with a higher number than this instead.
+            wait: timeout in s; None: no timeout.
+            fit: scale the frame to fit into so many columns and rows of pixels.
 
         Returns:
-            None if there was none in that time, or there will be none any more.
+            None if no frame came in time, or the stream has ended.
 
         Raises:
             CameraError: a file or folder could not be read.
@@ -200,14 +200,14 @@ class Camera:
         return CameraWatch(time.monotonic(), self._limits, each=source.each, interval=interval)
 
     async def _tick(self) -> None:
-        """Tell of every change of state, also of those that come of nothing happening."""
+        """Report every change of state, also those caused by silence."""
         while True:
             self._look_after()
             self._tell()
             await asyncio.sleep(TICK_SECONDS)
 
     def _look_after(self) -> None:
-        """End a process that hangs as a whole."""
+        """Kill a process that hangs."""
         worker = self._worker
         if worker is None or worker.how:
             return
@@ -222,7 +222,7 @@ class Camera:
             self.changed(sight)
 
     async def _run(self) -> None:
-        """Keep a process that reads, until there is nothing left to read."""
+        """Keep a worker process running until the source has ended."""
         while not self.over:
             try:
                 worker = self._begin()
@@ -254,8 +254,8 @@ class Camera:
         return worker
 
     def _lose(self, why: str) -> None:
-        """Be done with the process that reads; another is begun."""
-        if self._drop():  # else it was known
+        """Record a failed process, and kill it; `_run` starts another."""
+        if self._drop():  # otherwise the failure is known already
             self._watch.lost(why)
 
     def _drop(self) -> bool:
@@ -266,7 +266,7 @@ class Camera:
 
     def _take(self, said: dict[str, Any], pixels: bytes) -> None:
         if self._worker is None:
-            return  # it was given up
+            return  # it was dropped
         match said:
             case {"alive": _, "busy": busy, "for": seconds}:
                 if seconds > {"read": READ_SECONDS, "open": OPEN_SECONDS}.get(busy, seconds):
@@ -289,7 +289,7 @@ class Camera:
                 self._drop()
 
     def _send(self, request: dict[str, Any]) -> None:
-        if self._worker is not None:  # else it is asked again when it runs
+        if self._worker is not None:  # otherwise it is sent when the process runs
             self._worker.tell(request)
 
     def _answer_all(self) -> None:

@@ -1,21 +1,21 @@
-"""The camera's process: reading a picture may block for ever, so it runs on its own.
+"""Worker process of a camera, because reading a frame may block forever.
 
-Run as `python -m tangy_hw.drivers.camera_child`, spoken to by JSON, one object a line:
+Run as `python -m tangy_hw.drivers.camera_child`; speaks JSON lines:
 
-    {"source": {...}, "first": 17}               what to read (`CameraSource`), and from which
-                                                 number on its pictures are counted
-    {"alive": 9.2, "busy": "read", "for": 0.03}  a few times a second, whatever else happens;
+    {"source": {...}, "first": 17}               what to read (`CameraSource`), and the number
+                                                 of its first frame
+    {"alive": 9.2, "busy": "read", "for": 0.03}  heartbeat, a few times a second;
                                                  busy: "open", "read", or "" while it waits
-    {"look": [...]}                              a picture's measures (`camera_look.Look`)
-    {"lost": "it stopped sending"}               it cannot be read, and is opened anew until it can
-    {"over": "", "sound": true}                  no picture will come any more; sound: it was read
-    {"frame": 3, "after": 16}                    asks for the newest picture, of a number above 16
-    {"frame": 4, "after": 16, "fit": [80, 45]}   as large as fits into so many columns and rows
+    {"look": [...]}                              measures of a frame (`camera_look.Look`)
+    {"lost": "it stopped sending"}               it cannot be read, and will be opened again
+    {"over": "", "sound": true}                  end of the source; sound: without an error
+    {"frame": 3, "after": 16}                    request for the newest frame above number 16
+    {"frame": 4, "after": 16, "fit": [80, 45]}   scaled to fit into so many columns and rows
     {"frame": 3, "seq": 18, "stamp": 9.1, "width": 1280, "height": 720, "bytes": 2764800}
-                                                 is followed by that many bytes, BGR
+                                                 answer, followed by so many bytes of BGR
     {"failed": "That line is no JSON object."}   instead of any answer
 
-It ends when its input closes; what C libraries print goes to standard error.
+It exits when its input closes. Output of C libraries goes to standard error.
 """
 
 from __future__ import annotations
@@ -38,37 +38,37 @@ from tangy_profiles.worker_lines import AnswerWriter, requests
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
 
-_LOG = logging.getLogger("tangy_hw.drivers.camera_child")  # also where it is run as a process
+_LOG = logging.getLogger("tangy_hw.drivers.camera_child")  # also if run as a script
 
 ALIVE_SECONDS = 0.25  # between two heartbeats
-AGAIN_SECONDS = 0.3  # until a source that has gone is opened anew
-LOOK_SECONDS = 0.09  # between two pictures that are measured
+AGAIN_SECONDS = 0.3  # until a lost source is opened again
+LOOK_SECONDS = 0.09  # between two measured frames
 PIPE_BYTES = 1 << 20
 
 
 class Child:
-    """Reads pictures on one thread, is asked for them on another, and beats on a third."""
+    """Reads frames on one thread, takes requests on another, and sends heartbeats on a third."""
 
     def __init__(self, answers: AnswerWriter) -> None:
         self._answers = answers
         self._begun = False
         self._changed = Condition()
         self._newest: tuple[int, float, Image] | None = None
-        # request -> the number above which it asks, and into what the picture is to fit
+        # request id -> the number above which it asks, and the size to fit
         self._asked: dict[int, tuple[int, Sequence[int] | None]] = {}
-        self._taken = True  # whether somebody has had the newest picture
+        self._taken = True  # whether the newest frame was requested
         self._over = False
         self._busy = ("", time.monotonic())
 
     def write(self, answer: dict[str, Any], image: Image | None = None) -> None:
-        """Send one answer, and the picture (BGR) that belongs to it."""
+        """Send an answer, with the image (BGR) that belongs to it."""
         if image is None:
             self._answers.write(answer)
         else:
             self._answers.write(answer, image.data if image.flags.c_contiguous else image.tobytes())
 
     def beat(self) -> None:
-        """Say for ever that this process is alive, and what it is busy with."""
+        """Send heartbeats forever, each with the current task."""
         while True:
             busy, since = self._busy
             now = time.monotonic()
@@ -76,7 +76,7 @@ class Child:
             time.sleep(ALIVE_SECONDS)
 
     def take(self, request: Any) -> None:
-        """Take the source, or a request for a picture."""
+        """Handle the source, or a request for a frame."""
         match request:
             case {"source": dict(source), "first": int(first)} if not self._begun:
                 try:
@@ -95,7 +95,7 @@ class Child:
                 self._answers.refuse("A line must hold source and first, once, or frame and after.")
 
     def _answer(self) -> None:
-        """Give the newest picture to all who have asked for it."""
+        """Send the newest frame to all requests that it satisfies."""
         with self._changed:
             newest = self._newest
             if newest is None:
@@ -125,16 +125,16 @@ class Child:
 
             traceback.print_exc()
             sys.stderr.flush()
-            os._exit(1)  # a new process begins anew
+            os._exit(1)  # the program starts a new process
 
     def grab(self, source: CameraSource, first: int) -> None:
-        """Read pictures until there are no more."""
+        """Read frames until there are no more."""
         import cv2
 
         from tangy_hw.drivers.camera_look import measure
 
         cv2.setNumThreads(1)
-        # Not before: while a library is loaded, no other thread may get a turn.
+        # Not earlier: while a library loads, no other thread gets to run.
         Thread(target=self.beat, daemon=True).start()
         grabber = make_grabber(source)
         seq, measured, due = first, 0.0, 0.0
@@ -172,7 +172,7 @@ class Child:
             due = self._wait(source, grabber, due)
 
     def _wait(self, source: CameraSource, grabber: Grabber, due: float) -> float:
-        """Wait until the next picture is read; return when that was to be."""
+        """Wait until the next frame is due, and return that time (monotonic, s)."""
         if source.each:
             with self._changed:
                 self._changed.wait_for(lambda: self._taken)
@@ -192,7 +192,7 @@ class Child:
 
 
 def _is_size(fit: Any) -> bool:
-    """Say whether a picture can be made to fit into this; None leaves it as it is."""
+    """Return whether a request's size is valid; None leaves the frame unscaled."""
     match fit:
         case None:
             return True
@@ -202,7 +202,7 @@ def _is_size(fit: Any) -> bool:
 
 
 def fitted(image: Image, columns: int, rows: int) -> Image:
-    """Return a picture (BGR) as large as fits, in its own proportions."""
+    """Return an image (BGR) scaled to fit, with its aspect ratio."""
     import cv2
 
     height, width = image.shape[:2]
@@ -214,7 +214,7 @@ def fitted(image: Image, columns: int, rows: int) -> Image:
 
 
 def main() -> None:
-    """Read what standard input names, until that closes."""
+    """Read the source named on standard input, until that closes."""
     log_to_stderr()
     answers = AnswerWriter()
     with suppress(ImportError, AttributeError, OSError):
@@ -224,7 +224,7 @@ def main() -> None:
     child = Child(answers)
     for request in requests(answers.refuse):
         child.take(request)
-    os._exit(0)  # a thread that hangs in a driver must not keep this process
+    os._exit(0)  # a thread that hangs in a driver must not keep this process alive
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Which cameras this machine has, as Linux lists them; nothing is opened."""
+"""Lists this machine's cameras from Linux's sysfs, without opening them."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ DEVICES = Path("/dev")
 
 
 def list_cameras(listed: Path = LISTED, devices: Path = DEVICES) -> list[tuple[str, str, bool]]:
-    """Return the name of each camera as it is opened, what it is called, and if we may use it.
+    """Return the device path and title of each camera, and whether this user may open it.
 
-    A camera may have several devices; only the first gives pictures.
+    A camera may have several devices; only the first delivers frames.
 
     Args:
-        listed: where the system lists them.
-        devices: where they are.
+        listed: folder in which the system lists video devices.
+        devices: folder of the device files.
     """
     found = []
     for folder in listed.glob("video*"):

@@ -1,4 +1,4 @@
-"""Reads pictures in the camera's process: from OpenCV's capture, or from files one by one."""
+"""Reads frames in the camera's process: with OpenCV's capture, or from image files."""
 
 from __future__ import annotations
 
@@ -15,42 +15,42 @@ if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
 
 OPEN_SECONDS = 1.5  # for a stream to answer
-READ_SECONDS = 1.5  # for its next picture
-FILE_RATE = 10.0  # pictures a second of a video that does not say
-MOST_PIXELS = 50_000_000  # of a picture in a folder
+READ_SECONDS = 1.5  # for its next frame
+FILE_RATE = 10.0  # frames a second of a video that does not say
+MOST_PIXELS = 50_000_000  # of an image in a folder
 LARGEST_FILE = 200_000_000  # bytes
-LOWEST, ALIKE = 8, 12  # rows, and of 255: marks the filling of a picture that came incomplete
+LOWEST, ALIKE = 8, 12  # rows, and grey levels of 255: signs of the padding of an incomplete frame
 ROS = ("ros://", "ros2://")
 UNUSABLE = "it holds no pictures that can be read"
 
 
 class Gone(Exception):
-    """No picture could be read; a few words say why. The source is opened again."""
+    """No frame could be read, with the reason in a few words. The source is opened again."""
 
 
 class Over(Exception):
-    """There are no more pictures; a few words say why, none if it simply is at its end."""
+    """There are no more frames, with the reason in a few words; "" at a regular end."""
 
 
 class Grabber(Protocol):
-    """Something that gives one picture after the other; `rate` is how many a second, or 0."""
+    """Delivers frames one by one; `rate` is the frame rate per second, or 0."""
 
     rate: float
 
     def open(self) -> None:
-        """Open it anew.
+        """Open the source again.
 
         Raises:
             Gone: it cannot be opened now.
-            Over: it never can.
+            Over: it can never be opened.
         """
 
     def read(self) -> Image:
-        """Return the next picture (BGR), as soon as there is one.
+        """Return the next frame (BGR) as soon as there is one.
 
         Raises:
-            Gone: it gives none any more and must be opened anew.
-            Over: that was the last.
+            Gone: it delivers no more frames, and must be opened again.
+            Over: that was the last frame.
         """
 
     def close(self) -> None:
@@ -58,7 +58,7 @@ class Grabber(Protocol):
 
 
 def make_grabber(source: CameraSource) -> Grabber:
-    """Return what reads a source; nothing is opened yet."""
+    """Return the grabber for a source, without opening it."""
     if source.target.lower().startswith(ROS):
         from tangy_hw.drivers.camera_ros import RosPictures
 
@@ -67,11 +67,11 @@ def make_grabber(source: CameraSource) -> Grabber:
 
 
 class Capture:
-    """Grabs from sources that OpenCV reads: cameras, streams and video files.
+    """Grabs frames from sources that OpenCV reads: cameras, streams and video files.
 
-    A handle that has failed or timed out never recovers, though it says that it is open: it is
-    dropped and made anew. The last picture of a stream that breaks off is given as if it were
-    whole, its lower part smeared.
+    A capture that has failed or timed out never recovers, although it claims to be open, so it is
+    replaced. OpenCV returns the last frame of a broken stream as if it were complete, with a
+    smeared lower part.
     """
 
     def __init__(self, source: CameraSource) -> None:
@@ -94,7 +94,7 @@ class Capture:
             ]  # fmt: skip
             self._capture = cv2.VideoCapture(source.target, cv2.CAP_FFMPEG, patience)
         elif source.kind == "file":
-            # A file may be a list of other files and addresses, which are none of our business.
+            # A file may be a playlist of other files and addresses, which must not be opened.
             os.environ["OPENCV_FFMPEG_CAPTURE_OPTIONS"] = "protocol_whitelist;file"
             self._capture = cv2.VideoCapture(source.target, cv2.CAP_FFMPEG)
         else:
@@ -115,24 +115,24 @@ class Capture:
         if not os.access(source.target, os.R_OK | os.W_OK):
             raise Gone("this user may not use it; join the group video")
         self._capture = cv2.VideoCapture(source.target, cv2.CAP_V4L2)
-        # Few cameras manage this size uncompressed; older pictures than the newest are no use.
+        # Few cameras manage this size uncompressed; only the newest frame is of use.
         self._capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*"MJPG"))
         self._capture.set(cv2.CAP_PROP_FRAME_WIDTH, source.width)
         self._capture.set(cv2.CAP_PROP_FRAME_HEIGHT, source.height)
         self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
 
     def read(self) -> Image:
-        """Return the next picture (BGR)."""
+        """Return the next frame (BGR)."""
         image = self._read() if self._held is None else self._held
         self._held = None
         if self._source.kind == "stream" and _perhaps_half(image):
-            self._held = self._read()  # a stream that goes on was not cut off there
+            self._held = self._read()  # if the stream goes on, the frame is complete
         return image
 
     def _read(self) -> Image:
         source = self._source
         if source.kind == "device" and not Path(source.target).exists():
-            raise Gone("it is unplugged")  # read() may go on to give the last picture
+            raise Gone("it is unplugged")  # read() may go on returning the last frame
         began = time.monotonic()
         done, image = self._capture.read()
         late = source.kind == "stream" and time.monotonic() - began > 0.9 * READ_SECONDS
@@ -151,7 +151,7 @@ class Capture:
 
 
 class Folder:
-    """A folder of pictures, or one; those that cannot be read are left out."""
+    """A folder of images, or a single one; unreadable images are skipped."""
 
     def __init__(self, source: CameraSource) -> None:
         self.rate = source.rate
@@ -168,7 +168,7 @@ class Folder:
             raise Over("the folder cannot be read any more") from None
 
     def read(self) -> Image:
-        """Return the next picture (BGR)."""
+        """Return the next image (BGR)."""
         while self._left:
             image = _read_picture(self._left.pop())
             if image is not None:
@@ -194,7 +194,7 @@ def _read_picture(path: Path) -> Image | None:
 
 
 def _perhaps_half(image: Image) -> bool:
-    """Say whether the lowest rows are all alike: filled in, or black bars, or nothing there."""
+    """Return whether the lowest rows are uniform: padding, black bars, or an empty scene."""
     import numpy as np
 
     lowest = image[-LOWEST:].reshape(-1, image.shape[2])

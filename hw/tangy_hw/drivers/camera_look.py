@@ -1,4 +1,4 @@
-"""Measures of a picture: brightness, contrast and sharpness, each from 0 to 1."""
+"""Measures an image: brightness, contrast and sharpness, each from 0 to 1."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ if TYPE_CHECKING:
 
     Image: TypeAlias = NDArray[np.uint8]
 
-SIDE = 640  # pixels across at which sharpness is measured: sensor noise is averaged away
-FINE, COARSE = 1.0, 4.0  # pixels: of the two blurs whose differences are compared
-EDGES = 0.99  # share of the picture that has weaker edges than those that are looked at
-NOISE = 3.0  # times the median that noise has at that share; 3.8 were it Gaussian, and alone
-WEAKEST = 6  # of 255: where the strongest edges are weaker, there are none
-SOFT = 5  # of 255: where what changes over a tenth of the picture is stronger, there should be
-SOFTEST = 4  # so many times smaller the picture is when that is looked for
-SMALLEST = 32  # pixels: nor of a picture that is smaller
+SIDE = 640  # pixels of width at which sharpness is measured: averages sensor noise out
+FINE, COARSE = 1.0, 4.0  # pixels: sigma of the two blurs that are compared
+EDGES = 0.99  # quantile of the differences that counts as the strongest edges
+NOISE = 3.0  # ratio of noise between this quantile and the median; 3.8 for pure Gaussian noise
+WEAKEST = 6  # of 255: below this, there are no edges
+SOFT = 5  # of 255: above this change over a tenth of the image, there should be edges
+SOFTEST = 4  # scale factor of the smaller image for this check
+SMALLEST = 32  # pixels: smaller images have no sharpness
 
 
 class Look(NamedTuple):
-    """One picture as it was measured.
+    """Measures of one frame.
 
-    `stamp` is of the monotonic clock, in s; `fingerprint` is the same for the very same picture.
-    `sharpness` is None if nothing in the picture could be sharp.
+    `stamp` is of the monotonic clock, in s; `fingerprint` is a checksum of the pixels. `sharpness`
+    is None if nothing in the frame could be sharp.
     """
 
     seq: int
@@ -39,7 +39,7 @@ class Look(NamedTuple):
 
 
 def measure(image: Image, seq: int, stamp: float) -> Look:
-    """Measure a picture (BGR or grey) taken at a time in s."""
+    """Measure an image (BGR or grey) taken at a time in s."""
     import zlib
 
     import cv2
@@ -63,10 +63,10 @@ def measure(image: Image, seq: int, stamp: float) -> Look:
 
 
 def _sharpness(grey: Any) -> float | None:
-    """Compare fine with coarse differences where they are largest: at the strongest edges.
+    """Compare fine with coarse differences at the strongest edges.
 
-    A share rather than a strength, so that it depends little on the scene; at strong edges, with
-    the noise subtracted, so that it depends little on noise.
+    A ratio depends little on the scene; measured at strong edges with the noise subtracted, it also
+    depends little on noise.
     """
     import cv2
 
@@ -74,7 +74,7 @@ def _sharpness(grey: Any) -> float | None:
         return None
     middle, fine = _differs(grey, FINE)
     _, coarse = _differs(grey, COARSE)
-    noise = NOISE * middle  # most of a picture is no edge
+    noise = NOISE * middle  # most of an image is not edges
     if coarse >= WEAKEST + noise:
         return min(1.0, math.sqrt(max(0.0, fine**2 - noise**2) / (coarse**2 - noise**2)))
     small = cv2.resize(grey, None, fx=1 / SOFTEST, fy=1 / SOFTEST, interpolation=cv2.INTER_AREA)
@@ -82,7 +82,7 @@ def _sharpness(grey: Any) -> float | None:
 
 
 def _differs(grey: Any, blur: float) -> tuple[float, float]:
-    """Return by how much a picture differs from itself blurred: at most places, at its edges."""
+    """Return the median and edge quantile of the differences between an image and its blur."""
     import cv2
     import numpy as np
 

@@ -1,11 +1,11 @@
-"""Records a camera's pictures to be labelled: a PNG each, with its known labels beside it.
+"""Records frames for labelling: a PNG for each, with a JSON file beside it.
 
     000001.png
     000001.json   {"file": "000001.png", "source", "taken", "stamp", "seq", "state", "why",
                    "evidence": {"age", "unchanged", "brightness", "contrast", "sharpness"},
-                   "seen": what a reader made of it, or null, "label": null}
+                   "seen": output of a reader, or null, "label": null}
 
-`label` is for a person to fill in. A folder that has pictures already is added to.
+A person fills in `label`. New frames are added to those already in a folder.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
 
 Reader = Callable[["Image"], Any]
-"""Returns the contents of a picture (BGR), as JSON."""
+"""Returns the contents of an image (BGR) as JSON."""
 
 
 async def capture(
@@ -39,15 +39,15 @@ async def capture(
     every: float = 0.0,
     reader: Reader | None = None,
 ) -> AsyncIterator[dict[str, Any]]:
-    """Record pictures of a started camera, and yield the labels written beside each.
+    """Record frames of a started camera, and yield the metadata written for each.
 
     Args:
-        camera: where they come from.
-        folder: where they go; it is made if need be.
-        count: at most so many; without an end otherwise.
-        seconds: for at most so long.
-        every: at least so many s between two.
-        reader: what else is to be said of each.
+        camera: source of the frames.
+        folder: destination; created if necessary.
+        count: maximum number of frames; None: no limit.
+        seconds: maximum duration; None: no limit.
+        every: minimum time between two frames in s.
+        reader: called with each frame for its `seen`.
 
     Raises:
         CameraError: the source cannot be read, or the folder cannot be written to.
@@ -69,7 +69,7 @@ async def capture(
 
 
 def _prepare(folder: Path) -> int:
-    """Make the folder, for its owner alone; return the highest number that is used in it."""
+    """Create the folder for its owner alone; return the highest number used in it."""
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         names = [path.stem for path in folder.iterdir()]

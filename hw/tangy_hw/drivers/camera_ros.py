@@ -1,7 +1,7 @@
-"""Pictures of a robot that speaks ROS: sensor_msgs/CompressedImage through a rosbridge server.
+"""Frames of a ROS robot: sensor_msgs/CompressedImage through a rosbridge server.
 
-A source is ros://HOST:PORT/TOPIC, or ros2://HOST:PORT/TOPIC where ROS 2 is spoken there. It runs in
-the camera's process, with a link of its own: pictures must not delay what the robot drives by.
+A source is ros://HOST:PORT/TOPIC, or ros2://HOST:PORT/TOPIC for ROS 2. It runs in the camera's
+process with a connection of its own, so that images do not delay driving.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ TYPES = {
 }
 PORT = 9090
 LARGEST = 16 << 20  # bytes of a message
-BETWEEN_MS = 60  # at least, from one picture to the next
+BETWEEN_MS = 60  # minimum between two frames
 
 
 class RosPictures:
-    """The newest picture of a topic, one after the other."""
+    """Newest frames of a topic."""
 
     rate = 0.0
 
     def __init__(self, source: CameraSource) -> None:
-        """Take a source whose target is as above."""
+        """Prepare a source with such a target."""
         parts = urlsplit(source.target)
         self._type = TYPES[parts.scheme.lower()]
         host = f"[{parts.hostname}]" if ":" in str(parts.hostname) else parts.hostname
@@ -50,7 +50,7 @@ class RosPictures:
         self._opened = ExitStack()
 
     def open(self) -> None:
-        """Connect, and ask for the topic."""
+        """Connect, and subscribe to the topic."""
         self.close()
         asks = {
             "op": "subscribe", "topic": self._topic, "type": self._type,
@@ -65,7 +65,7 @@ class RosPictures:
             raise Gone("nobody answers there") from None
 
     def read(self) -> Image:
-        """Return the newest picture (BGR), as soon as there is one."""
+        """Return the newest frame (BGR) as soon as there is one."""
         until = time.monotonic() + READ_SECONDS
         while (text := self._newest(until - time.monotonic())) is not None:
             image = decoded(text, self._topic)
@@ -74,7 +74,7 @@ class RosPictures:
         raise Gone("it sends no pictures")
 
     def _newest(self, seconds: float) -> str | bytes | None:
-        """Return the newest message, waiting for one at most so long; None: there was none."""
+        """Return the newest message within so many s; None after this timeout."""
         if self._link is None:
             raise Gone("it is not open")
         newest: str | bytes | None = None
@@ -88,13 +88,13 @@ class RosPictures:
             raise Gone("it stopped sending") from None
 
     def close(self) -> None:
-        """End the link."""
+        """Close the connection."""
         self._link = None
         self._opened.close()
 
 
 def decoded(text: str | bytes, topic: str) -> Image | None:
-    """Return the picture (BGR) in a message of rosbridge; None if it has none of that topic."""
+    """Return the image (BGR) in a rosbridge message; None if it has none of that topic."""
     import cv2
     import numpy as np
 
@@ -110,7 +110,7 @@ def decoded(text: str | bytes, topic: str) -> Image | None:
 
 
 def _bytes(message: Mapping[str, Any]) -> bytes:
-    """Return the data, which is base64 as a rule, and a list of numbers where it is not encoded."""
+    """Return the image data: base64, or a list of numbers if the bridge does not encode it."""
     data = message["data"]
     if isinstance(data, str):
         try:

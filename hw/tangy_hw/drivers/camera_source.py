@@ -1,10 +1,10 @@
-"""Where pictures come from, by name.
+"""Finds camera sources by name.
 
 0, /dev/video2         a camera of this machine (V4L2)
-http://..., rtsp://... a stream: MJPEG over HTTP, or what a network camera sends
+http://..., rtsp://... a stream: MJPEG over HTTP, or a network camera's
 ros://HOST:9090/TOPIC  a topic of a rosbridge server, sensor_msgs/CompressedImage; ros2:// for ROS 2
-FILE.avi               a recorded video, as fast as it was recorded
-DIR, FILE.png          a folder of pictures in the order of their names, or one of them
+FILE.avi               a recorded video, at its own frame rate
+DIR, FILE.png          a folder of images in the order of their names, or one image
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ Kind = Literal["device", "stream", "file", "folder"]
 SCHEMES = ("http", "https", "rtsp", "rtsps", "ros", "ros2")
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff", ".pgm", ".ppm")
 FOLDER_RATE = 5.0
-"""Default frame rate of a folder of pictures, per second."""
+"""Default frame rate of a folder of images, per second."""
 
 WIDTH, HEIGHT = 1280, 720
-"""Requested resolution; reading cards needs it."""
+"""Requested resolution; the card reader needs it."""
 
 
 class CameraError(TangyError):
-    """A camera gives no pictures that can be used; one sentence that names it."""
+    """A camera without usable frames; one sentence that names it."""
 
 
 @dataclass(frozen=True, slots=True)
 class CameraSource:
     """A camera, stream, file or folder.
 
-    `rate` is in pictures a second, 0 for its own; `loop`: it begins again when it is over.
-    `each`: no picture is left out, and the next is read when one was taken; otherwise pictures
-    come in their own time, whether anybody takes them or not.
+    `rate` is the frame rate per second, 0 for the source's own; `loop` restarts it at its end. With
+    `each` no frame is skipped, and the next one is read once the last one was taken; otherwise
+    frames come at their own rate, taken or not.
     """
 
     name: str
@@ -53,23 +53,23 @@ class CameraSource:
 
     @property
     def live(self) -> bool:
-        """Whether it is live, so that a lost source is waited for."""
+        """Whether it is live, so that a lost source is opened again."""
         return self.kind in ("device", "stream")
 
 
 def find_camera(
     name: str, *, rate: float = 0.0, loop: bool = False, each: bool = False
 ) -> CameraSource:
-    """Find a source by its name; a file is not opened yet.
+    """Find a source by its name, without opening it.
 
     Args:
         name: one of those above.
-        rate: pictures a second of a file or folder, 0 for its own.
-        loop: begin again when a file or folder is over.
-        each: give every picture of a file or folder, as fast as they are taken.
+        rate: frame rate per second of a file or folder, 0 for its own.
+        loop: restart a file or folder at its end.
+        each: deliver every frame of a file or folder, as fast as they are taken.
 
     Raises:
-        CameraError: there is no such thing; one sentence that says why.
+        CameraError: there is no such source; one sentence that says why.
     """
     shown = plain(name)
     if re.fullmatch(r"\d{1,3}", name):
@@ -77,7 +77,7 @@ def find_camera(
     if "://" in name:
         return CameraSource(_without_password(name), "stream", _stream(name))
     path = Path(name)
-    if re.match(r"/dev/(?!shm/)", name):  # in /dev/shm are files
+    if re.match(r"/dev/(?!shm/)", name):  # /dev/shm holds files
         return CameraSource(shown, "device", name)
     try:
         is_folder, is_file, there = path.is_dir(), path.is_file(), path.exists()
@@ -99,7 +99,7 @@ def find_camera(
 
 
 def pictures_in(path: Path) -> list[Path]:
-    """Return the pictures of a folder in the order of their names, 2 before 10; or the one.
+    """Return the images of a folder in natural order of their names, or the one image.
 
     Raises:
         CameraError: the folder cannot be read.

@@ -1,4 +1,4 @@
-"""The state of a camera, from the measures and times of its pictures."""
+"""Derives the state of a camera from the measures and times of its frames."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from tangy_profiles.health import STALE, WARN, DeviceState, Fact, Reading
 State = Literal[
     "OPENING", "OK", "DISCONNECTED", "FROZEN", "COVERED", "DARK", "BLURRED", "ENDED"
 ]  # fmt: skip
-LONGEST = 3600.0  # s: the robot's profile has no larger fact
+LONGEST = 3600.0  # s: maximum of this fact in robot profiles
 
 
 @dataclass(frozen=True, slots=True)
 class CameraLimits:
-    """When a camera is in which state; times in s, measures as in `camera_look`.
+    """Thresholds of the camera states; times in s, measures as in `camera_look`.
 
-    A flat picture without a sharp edge shows nothing: the lens is covered, by something dark or by
-    a napkin. `dark`, `flat` and `frozen` are also limits of the fault rules; `blurred` was set by
-    `tests/bench/cameras.py`. `clearly` is by how much a measure must be better than its limit for
-    the state to end.
+    A flat image without sharp edges shows nothing: the lens is covered, by something dark or by a
+    napkin. `dark`, `flat` and `frozen` are also thresholds of the fault rules; `blurred` was set by
+    `tests/bench/cameras.py`. `clearly` is the hysteresis: the factor by which a measure must exceed
+    its threshold to end the state.
     """
 
     gone: float = 1.5
@@ -43,11 +43,11 @@ USUAL = CameraLimits()
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """The state of a camera and the evidence for it; `why` is a sentence, "" when all is well.
+    """State of a camera and the evidence for it; `why` is a sentence, "" in state OK.
 
-    `age` is of the newest picture and `unchanged` since it first came, in s; `seconds` is for how
-    long the state has lasted. The measures are None before there was a picture. `rate` is how
-    many pictures come in a second, None if that cannot be told.
+    `age` is that of the newest frame and `unchanged` the time since its content first arrived, in
+    s; `seconds` is the duration of the state. The measures are None before the first frame. `rate`
+    is the frame rate per second, None if unknown.
     """
 
     state: State
@@ -61,7 +61,7 @@ class Sight:
     rate: float | None = None
 
     def evidence(self) -> dict[str, float | None]:
-        """Return the evidence (s, and shares of full light), rounded, as it is written down."""
+        """Return the evidence (s, and ratios of full brightness), rounded for recordings."""
         found = {
             "age": self.age,
             "unchanged": self.unchanged,
@@ -72,7 +72,7 @@ class Sight:
         return {key: None if one is None else round(one, 3) for key, one in found.items()}
 
     def reading(self, device: str) -> Reading:
-        """Return this camera's reading for the diagnosis."""
+        """Return the camera's reading for the diagnosis."""
         facts: dict[str, Fact] = {}
         if self.brightness is not None and self.contrast is not None:
             facts["brightness"] = self.brightness
@@ -89,13 +89,13 @@ class CameraWatch:
     def __init__(
         self, now: float, limits: CameraLimits = USUAL, *, each: bool = False, interval: float = 0.0
     ) -> None:
-        """Begin to watch.
+        """Start to watch.
 
         Args:
-            now: of the monotonic clock, in s, as all times here.
-            limits: when it is in which state.
-            each: pictures come on request: only their contents count, each by itself.
-            interval: s between two pictures, where it is known.
+            now: monotonic time in s, as all times here.
+            limits: thresholds of the states.
+            each: frames come on request: only their content counts, frame by frame.
+            interval: time between two frames in s, if known.
         """
         self._limits = limits
         self._each = each
@@ -104,8 +104,8 @@ class CameraWatch:
         self._look: Look | None = None
         self._arrivals = RateEstimator()
         self._first_alike = now
-        self._picture: State = "OK"  # what the pictures alone say
-        self._other_since: float | None = None  # since when they have said something else
+        self._picture: State = "OK"  # state by the frames alone
+        self._other_since: float | None = None  # since when they have indicated another state
         self._lost = ""
         self._over: str | None = None
         self._shown: State = "OPENING"
@@ -117,13 +117,13 @@ class CameraWatch:
         return self._over is not None
 
     def saw(self, look: Look) -> None:
-        """Take a picture's measures."""
+        """Update with the measures of a frame."""
         last = self._look
-        # Not every picture is looked at, but each has its number.
+        # Not every frame is measured, but every frame has a number.
         self._arrivals.count(look.stamp, 1 if last is None else max(1, look.seq - last.seq))
         other = last is None or last.fingerprint != look.fingerprint or self._each
         if other or self._lost or (last is not None and look.stamp - last.stamp > self._gone):
-            self._first_alike = look.stamp  # while it was away it was not frozen
+            self._first_alike = look.stamp  # not frozen while it was away
         self._look, self._lost = look, ""
         found = self._judge(look)
         if found == self._picture:
@@ -136,11 +136,11 @@ class CameraWatch:
             self._other_since = None
 
     def lost(self, why: str) -> None:
-        """Take note that it cannot be read, and why, in a few words."""
+        """Record that the camera cannot be read, and why, in a few words."""
         self._lost = why
 
     def ended(self, why: str) -> None:
-        """Take note that it is over for good, and why."""
+        """Record that the stream has ended for good, and why."""
         self._over = why
 
     def at(self, now: float) -> Sight:
@@ -164,7 +164,7 @@ class CameraWatch:
         )
 
     def _hold(self, found: State) -> float:
-        """Return for how long the pictures must say something until it is believed."""
+        """Return for how many s frames must indicate a state before it is accepted."""
         if self._each:
             return 0.0
         if found == "OK":
@@ -172,7 +172,7 @@ class CameraWatch:
         return self._limits.blurred_for if found == "BLURRED" else self._limits.dark_for
 
     def _judge(self, look: Look) -> State:
-        """Judge one picture, with hysteresis towards the previous state."""
+        """Judge one frame, with hysteresis towards the previous state."""
         limits, was = self._limits, self._picture
         blurred = limits.blurred * (limits.clearly if was == "BLURRED" else 1.0)
         flat = limits.flat * (limits.clearly if was == "COVERED" else 1.0)

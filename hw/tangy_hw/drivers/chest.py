@@ -1,7 +1,7 @@
-"""The screen on the robot's chest: a page that paired tablets show, told what by events.
+"""The screen on the robot's chest: a web page on paired tablets, updated by server-sent events.
 
-The page answers every event that it has drawn, so that it is known what people really see. It is
-served by a process of its own (`chest_child`): strangers can keep that busy, and nothing else.
+The page acknowledges each event that it has drawn, so Tangy knows what people really see. A child
+process (`chest_child`) serves it: strangers can overload that process, and nothing else.
 """
 
 from __future__ import annotations
@@ -28,28 +28,28 @@ _LOG = logging.getLogger(__name__)
 
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.drivers.chest_child")
 PORT = 8765
-SHOW_SECONDS = 1.0  # in which a page must draw a picture; they take 10 to 50 ms
-FILE_SECONDS = 10.0  # in which it must have loaded the file of one
-GONE_SECONDS = 3.0  # without an answer: a page that is not there any more
-START_SECONDS = 20.0  # until its process says whether it listens; 0.2 s when nothing else runs
-AGAIN_SECONDS = 1.0  # until a process that ended is started again
+SHOW_SECONDS = 1.0  # in which a page must draw a picture; it takes 10 to 50 ms
+FILE_SECONDS = 10.0  # in which it must have loaded a picture's file
+GONE_SECONDS = 3.0  # without an answer, after which a page counts as closed
+START_SECONDS = 20.0  # until its process reports a port; .2 s on an idle machine
+AGAIN_SECONDS = 1.0  # until a dead process is restarted
 END_SECONDS = 1.0
 NEVER = 3600.0
 
 
 @dataclass(eq=False, slots=True)
 class _Page:
-    """A page of a paired tablet: what it has drawn, and when it last said so."""
+    """A page on a paired tablet: the number it has drawn, and when it last answered."""
 
     seen: int = -1
     heard: float = -math.inf
 
 
 class WebChestScreen:
-    """A page in the network; every paired tablet that opens its address shows the same.
+    """A web page; every paired tablet that opens its address shows the same picture.
 
-    A page that opens later shows the current picture at once. It works in the machine's time, also
-    on a fast bench, because its pages do.
+    A page that opens later shows the current picture at once. It uses the machine's time even on an
+    accelerated bench, because its pages do.
     """
 
     def __init__(
@@ -63,16 +63,16 @@ class WebChestScreen:
         clock: Callable[[], float] = time.monotonic,
         stale_after: float = 1.0,
     ) -> None:
-        """Prepare the screen; nothing listens before `start`.
+        """Prepare the screen; `start` opens the port.
 
         Args:
-            host: where it listens: 127.0.0.1 for a screen of this machine, 0.0.0.0 for tablets.
-            port: 0 for one that is free.
-            name: what the robot's profile calls it.
-            names: by which tablets may call this machine, beside its addresses and its own name.
-            pairing: by which tablets are known; a new one where none is given.
-            clock: gives the time in s.
-            stale_after: s without an answer from any page after which nobody is thought to look.
+            host: address to listen at: 127.0.0.1 for a screen of this machine, 0.0.0.0 for tablets.
+            port: port to listen at; 0 for any free one.
+            name: its name in the robot's profile.
+            names: further host names of this machine that tablets may use.
+            pairing: secrets that identify tablets; None: new ones.
+            clock: returns the time in s.
+            stale_after: s without an answer after which a page counts as stale.
         """
         self.name = name
         self.host, self.port = host, port
@@ -87,7 +87,7 @@ class WebChestScreen:
         self._number = 0
         self._picture = Picture("")
         self.answered: tuple[str, ...] = ()
-        """The keys of the open calls that were answered at it."""
+        """Keys of the open calls that were answered at it."""
         self._calls: dict[str, str] = {}
         self._heard = -math.inf
         self._arrivals = RateEstimator()
@@ -96,22 +96,22 @@ class WebChestScreen:
 
     @property
     def url(self) -> str:
-        """The address of the page, as a tablet opens it."""
+        """Address of the page for tablets."""
         return f"http://{_reached_at(self.host)}:{self.port}/"
 
     @property
     def code(self) -> str:
-        """The code that is entered there once, as people read it."""
+        """Code that pairs a tablet, as people read it."""
         return self.pairing.shown
 
     @property
     def pid(self) -> int | None:
-        """The process that serves the page, if one runs."""
+        """Id of the process that serves the page, if one runs."""
         return None if self._worker is None else self._worker.pid
 
     @property
     def pages(self) -> int:
-        """How many pages are open on paired tablets, and answer."""
+        """Number of pages that are open on paired tablets, and answer."""
         since = self._clock() - GONE_SECONDS
         return sum(page.heard > since for page in self.windows.values())
 
@@ -126,7 +126,7 @@ class WebChestScreen:
         return "" if self.pages else f"{self.name}: no tablet shows {self.url} any more."
 
     async def start(self) -> None:
-        """Begin to listen; where the port is in use, as soon as it is free."""
+        """Start to listen; if the port is in use, as soon as it is free."""
         if self._task is not None:
             return
         self._begun.clear()
@@ -135,14 +135,14 @@ class WebChestScreen:
             await asyncio.wait_for(self._begun.wait(), START_SECONDS)
 
     async def close(self) -> None:
-        """End for good; pages say that the link is lost."""
+        """Close for good; pages show that the connection is lost."""
         task, self._task = self._task, None
         if task is not None:
             task.cancel()
             await asyncio.wait([task])
 
     async def show(self, picture: Picture) -> None:
-        """Show a picture until the next one; a page that opens later shows it, too.
+        """Show a picture until the next one, also on pages that open later.
 
         Raises:
             DeviceError: a page is open, and none has drawn it in time.
@@ -163,7 +163,7 @@ class WebChestScreen:
             raise DeviceError(f"{self.name}: no tablet has shown it in time.") from None
 
     def offer(self, calls: Mapping[str, str]) -> None:
-        """Show a button for each open call, and none for any other: who is called, by its key."""
+        """Show a button for each open call, and only for these: the called person's name by key."""
         self._calls = dict(calls)
         self.answered = tuple(key for key in self.answered if key in calls)
         self._send_calls()
@@ -171,7 +171,7 @@ class WebChestScreen:
     def reading(self) -> Reading:
         """Return its state, and the age of the newest answer of a page.
 
-        WARN: no paired page was ever open; STALE: none answers any more; ERROR: it cannot listen.
+        WARN: no paired page was ever open; STALE: none answers now; ERROR: it cannot listen.
         """
         now = self._clock()
         age, rate = min(max(0.0, now - self._heard), NEVER), self._arrivals.rate(now)
@@ -184,7 +184,7 @@ class WebChestScreen:
     # ------------------------------------------------------------------------- its process
 
     async def _run(self) -> None:
-        """Keep a process that serves the page."""
+        """Keep a process that serves the page running."""
         while True:
             try:
                 worker = self._begin()
@@ -243,12 +243,12 @@ class WebChestScreen:
 
 
 def _reached_at(host: str) -> str:
-    """Return the address by which others reach a server on all of this machine's addresses."""
+    """Return the address at which others reach a server that listens on all addresses."""
     if host not in ("", "0.0.0.0"):  # noqa: S104
         return host
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
-            # Nothing is sent: it only has the system choose the way out (RFC 5737).
+            # Nothing is sent: the system only chooses the outgoing interface (RFC 5737).
             probe.connect(("192.0.2.1", 9))
             return str(probe.getsockname()[0])
         except OSError:

@@ -1,19 +1,19 @@
-"""The process of the chest screen's page: what strangers do to it costs the robot nothing.
+"""Process that serves the chest screen's page, so that strangers cannot slow down the robot.
 
-Run as `python -m tangy_hw.drivers.chest_child`, spoken to by JSON, one object a line:
+Run as `python -m tangy_hw.drivers.chest_child`; speaks JSON lines:
 
-    {"host": "0.0.0.0", "port": 8765, "names": [], "pairing": {...}}   where, and who is paired
-    {"show": 7, "picture": {...}}              what pages show from now on, and its number
-    {"calls": {"staff": "Station 2"}}          for whom pages show a button from now on, by a key
+    {"host": "0.0.0.0", "port": 8765, "names": [], "pairing": {...}}   address, and pairing
+    {"show": 7, "picture": {...}}              picture to show, and its number
+    {"calls": {"staff": "Station 2"}}          open calls to show a button for, by key
     {"port": 8765}                             it listens there
-    {"error": "Address already in use"}        it cannot; it tries again every second
+    {"error": "Address already in use"}        it does not; it retries every second
     {"page": "17", "seen": 7}                  a page of a paired tablet has drawn it
-    {"gone": "17"}                             that page is not connected any more
-    {"answered": "staff"}                      somebody has pressed that button
-    {"failed": "That line is too long."}       a line cannot be heeded, and nothing comes of it
+    {"gone": "17"}                             that page has disconnected
+    {"answered": "staff"}                      a person has pressed that button
+    {"failed": "That line is too long."}       an invalid line was ignored
 
-The first comes once, the second any number of times; the others are what it says. It ends when its
-input closes.
+The program sends the first once, then `show` and `calls`; the process sends the others. It exits
+when its input closes.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from tangy_hw.drivers.chest_server import ChestServer, Said
 from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.worker_lines import AnswerWriter, Asked, LineError, coming, open_lines
 
-_LOG = logging.getLogger("tangy_hw.drivers.chest_child")  # also where it is run as a process
+_LOG = logging.getLogger("tangy_hw.drivers.chest_child")  # also if run as a script
 
-AGAIN_SECONDS = 1.0  # until a port that is in use is tried again
-NICER = 5  # than what drives the robot
+AGAIN_SECONDS = 1.0  # until a port in use is tried again
+NICER = 5  # added to the nice value, so that the robot process comes first
 
 
 class PageChild:
@@ -44,10 +44,10 @@ class PageChild:
         self._listening: asyncio.Task[None] | None = None
 
     def take(self, told: Asked) -> None:
-        """Take the setup, or what pages show or offer from now on.
+        """Handle the setup, or what pages show or offer.
 
         Raises:
-            LineError: it is neither.
+            LineError: the line is neither.
         """
         match told:
             case {
@@ -61,7 +61,7 @@ class PageChild:
                     self._server = ChestServer(host, port, pairing, self._say, names)
             case {"show": int(number), "picture": dict(picture)} if self._server is not None:
                 self._server.show(number, picture)
-                if self._listening is None:  # there is something to show from the first page on
+                if self._listening is None:  # the first page that opens has a picture to show
                     self._listening = asyncio.create_task(self._listen(self._server))
             case {"calls": dict(calls)} if self._server is not None:
                 self._server.offer(calls)
@@ -71,7 +71,7 @@ class PageChild:
                 )
 
     async def _listen(self, server: ChestServer) -> None:
-        """Begin to listen, as soon as that can be."""
+        """Start to listen, as soon as possible."""
         while True:
             try:
                 await server.start()
@@ -83,7 +83,7 @@ class PageChild:
                 return
 
     async def close(self) -> None:
-        """Serve no more."""
+        """Stop serving."""
         if self._listening is not None:
             self._listening.cancel()
         if self._server is not None:
@@ -91,7 +91,7 @@ class PageChild:
 
 
 async def run() -> None:
-    """Serve the page until there is nothing more to hear."""
+    """Serve the page until the input closes."""
     answers = AnswerWriter()
     lines, _ = await open_lines()
     child = PageChild(answers.write)
@@ -104,7 +104,7 @@ async def run() -> None:
 
 
 def main() -> None:
-    """Run it."""
+    """Run the process."""
     log_to_stderr()
     _LOG.info("the page of the chest screen is served")
     with suppress(OSError):

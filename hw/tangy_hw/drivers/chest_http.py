@@ -1,4 +1,4 @@
-"""As much of HTTP as a page on a tablet needs: short requests in, short answers out."""
+"""Minimal HTTP/1.1 server side for a page on a tablet: short requests and responses."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STATUSES = {
     503: "Service Unavailable",
 }
 
-# The page may load what comes from here, and nothing else from anywhere.
+# The page may load resources from this server, and nothing from elsewhere.
 SAFE = (
     "Content-Security-Policy: default-src 'none'; style-src 'self'; script-src 'self'; "
     "img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
@@ -32,14 +32,14 @@ SAFE = (
 
 
 class BadRequest(Exception):
-    """The request is not one that this server answers."""
+    """A request that this server does not answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
     """A browser's request: method, path, and query.
 
-    `headers` have lower-case names; `stays`: it will ask more over the same connection.
+    `headers` have lower-case names; `stays` says whether the connection is kept alive.
     """
 
     method: str
@@ -58,10 +58,10 @@ class Request:
         return ""
 
     def meant_for(self, names: Collection[str]) -> bool:
-        """Return whether its Host names this machine.
+        """Return whether its Host header names this machine.
 
-        A page of the wide web whose name is made to lead here (DNS rebinding) still says its own
-        name as Host, and a page of another address says that as Origin.
+        A page on the internet whose name resolves to this machine (DNS rebinding) still sends its
+        own name as Host, and a page of another address sends that as Origin.
         """
         host = self.headers.get("host", "")
         origin = self.headers.get("origin", "")
@@ -84,15 +84,15 @@ def _is_address(name: str) -> bool:
 
 
 async def read_request(reader: asyncio.StreamReader, seconds: float) -> Request | None:
-    """Read the next request; None: there is none any more.
+    """Read the next request; return None at the end of the connection.
 
     Args:
-        reader: where it comes from.
-        seconds: in which all of it has to be there, however slowly it comes.
+        reader: the connection's stream.
+        seconds: timeout for the whole request.
 
     Raises:
-        BadRequest: it is none, or too long.
-        TimeoutError: it did not come to its end in time.
+        BadRequest: the request is invalid or too long.
+        TimeoutError: it was not complete in time.
     """
     async with asyncio.timeout(seconds):
         try:
@@ -132,7 +132,7 @@ async def read_request(reader: asyncio.StreamReader, seconds: float) -> Request 
 def response(
     status: int, body: bytes = b"", kind: str = "text/plain; charset=utf-8", *, more: str = ""
 ) -> bytes:
-    """Write an answer with its body; `more` are whole lines of its head."""
+    """Return a response with its body; `more` are additional header lines."""
     return (
         f"HTTP/1.1 {status} {STATUSES[status]}\r\n{SAFE}{more}"
         f"Content-Type: {kind}\r\nContent-Length: {len(body)}\r\n\r\n"
@@ -140,18 +140,18 @@ def response(
 
 
 def cookie_line(name: str, value: str) -> str:
-    """Write the line that has a browser keep a cookie for as long as browsers do (400 days)."""
+    """Return a header line that sets a cookie for as long as browsers allow (400 days)."""
     kept = f"Max-Age={400 * 86_400}; Path=/; HttpOnly; SameSite=Strict"
     return f"Set-Cookie: {name}={value}; {kept}\r\n"
 
 
 def stream_head() -> bytes:
-    """Write the beginning of an answer in which events follow (server-sent events)."""
+    """Return the head of a response with server-sent events."""
     return (
         f"HTTP/1.1 200 OK\r\n{SAFE}Content-Type: text/event-stream\r\nConnection: close\r\n\r\n"
     ).encode()
 
 
 def event(kind: str, line: str) -> bytes:
-    """Write an event; its text has one line."""
+    """Return a server-sent event with one line of data."""
     return f"event: {kind}\ndata: {line}\n\n".encode()

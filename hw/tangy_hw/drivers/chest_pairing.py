@@ -1,7 +1,7 @@
-"""Pairing of tablets with the chest screen: a short code, once, for a token that the tablet keeps.
+"""Pairs tablets with the chest screen: a tablet exchanges a short code for a token that it keeps.
 
-The code stands on the console; who can read it is in charge of the robot. A token is signed with a
-key that stays in the data folder, so that it outlasts the robot process and needs no list.
+The console shows the code to the people in charge of the robot. A token is signed with a key that
+stays in the data folder, so it outlives the robot process and needs no list.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-DIGITS = 8  # of a code: at 500 a minute, all of them take months of trying
+DIGITS = 8  # of a code: at 500 guesses a minute, trying all takes months
 KEY_BYTES = 32
-MOST_WRONG, MOST_WRONG_OF_ALL = 5, 500  # codes, from one address and from all, in a window
+MOST_WRONG, MOST_WRONG_OF_ALL = 5, 500  # wrong codes per window, from one address and in total
 WINDOW_SECONDS = 60.0
-MOST_ADDRESSES = 256  # whose wrong codes are remembered
+MOST_ADDRESSES = 256  # for which wrong codes are remembered
 FILE = "tablets.json"
 LARGEST_FILE = 1000  # bytes
-VIEWER = "v"  # begins the token of a page that only looks on
+VIEWER = "v"  # prefix of the tokens of viewers
 _TOKEN = re.compile(rf"({VIEWER}?[0-9a-f]{{16}})\.([0-9a-f]{{64}})")
 
 
 class TooManyCodes(Exception):
-    """There were too many wrong codes: none is looked at for a while."""
+    """There were too many wrong codes: none is checked for a while."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pairing:
-    """The secrets of pairing: the key that signs tokens, and the code on the console."""
+    """Secrets of pairing: the key that signs tokens, and the code on the console."""
 
     key: bytes = field(default_factory=lambda: secrets.token_bytes(KEY_BYTES), repr=False)
     code: str = field(
@@ -45,41 +45,41 @@ class Pairing:
 
     @property
     def shown(self) -> str:
-        """The code as people read it: in two groups, that no line breaks between."""
+        """Code as people read it, in two groups."""
         return f"{self.code[: DIGITS // 2]}-{self.code[DIGITS // 2 :]}"
 
     @property
     def cookie(self) -> str:
-        """The name under which a tablet keeps its token; another key has another one."""
+        """Name of the cookie with a tablet's token; it depends on the key."""
         return f"tangy_{hashlib.sha256(self.key).hexdigest()[:8]}"
 
     def token(self, *, viewer: bool = False) -> str:
-        """Make a token for one more tablet of the robot, or for a `viewer` who only looks on."""
+        """Make a token for another tablet of the robot, or for a `viewer`."""
         name = (VIEWER if viewer else "") + secrets.token_hex(8)
         return f"{name}.{self._signed(name)}"
 
     def knows(self, token: str) -> bool:
-        """Say whether a token was made with this key."""
+        """Return whether a token was made with this key."""
         found = _TOKEN.fullmatch(token)
         return found is not None and hmac.compare_digest(self._signed(found[1]), found[2])
 
     def is_viewer(self, token: str) -> bool:
-        """Say whether a token was made for somebody who only looks on."""
+        """Return whether a token was made for a viewer."""
         return token.startswith(VIEWER) and self.knows(token)
 
     def _signed(self, name: str) -> str:
         return hmac.new(self.key, name.encode(), hashlib.sha256).hexdigest()
 
     def to_json(self) -> dict[str, str]:
-        """Return it as JSON keeps it."""
+        """Return it as JSON."""
         return {"key": self.key.hex(), "code": self.code}
 
     @classmethod
     def from_json(cls, body: Mapping[str, object]) -> Pairing:
-        """Read what `to_json` wrote.
+        """Read the output of `to_json`.
 
         Raises:
-            ValueError: it is no pairing.
+            ValueError: it is not a pairing.
         """
         key, code = body.get("key"), body.get("code")
         if not (isinstance(key, str) and isinstance(code, str)):
@@ -91,20 +91,20 @@ class Pairing:
 
 
 class CodeCheck:
-    """Looks at the codes that are entered, and at so many wrong ones only."""
+    """Checks entered codes, with a rate limit on wrong ones."""
 
     def __init__(self, code: str, clock: Callable[[], float] = time.monotonic) -> None:
-        """Prepare for a code; `clock` gives the time in s."""
+        """Prepare to check a code; `clock` returns the time in s."""
         self._code = code.encode()
         self._clock = clock
         self._wrong: dict[str, deque[float]] = {}
         self._all: deque[float] = deque(maxlen=MOST_WRONG_OF_ALL)
 
     def right(self, entered: str, address: str) -> bool:
-        """Say whether a code is the right one; blanks and hyphens in it do not count.
+        """Return whether a code is correct; spaces and hyphens are ignored.
 
         Raises:
-            TooManyCodes: too many wrong ones came within a minute, from this address or from all.
+            TooManyCodes: too many wrong codes in a minute, from this address or in total.
         """
         since = self._clock() - WINDOW_SECONDS
         mine = self._wrong.get(address, deque())
@@ -126,9 +126,9 @@ class CodeCheck:
 
 
 def keep_pairing(folder: Path) -> Pairing:
-    """Return the pairing of a data folder: the one that was kept, or a new one, which is kept.
+    """Return the pairing stored in a data folder, or create and store a new one.
 
-    Where nothing can be kept it is new each time. Deleting the file unpairs all tablets.
+    If it cannot be stored, it is a new one each time. Deleting the file unpairs all tablets.
     """
     path = folder / FILE
     if (kept := _read(path)) is not None:
@@ -142,11 +142,11 @@ def keep_pairing(folder: Path) -> Pairing:
         with os.fdopen(file, "w", encoding="utf-8") as writing:
             writing.write(json.dumps(made.to_json()) + "\n")
         try:
-            os.link(begun, path)  # another program may have been first: its pairing holds
+            os.link(begun, path)  # another process may have been first: its pairing wins
         except FileExistsError:
             if (kept := _read(path)) is not None:
                 return kept
-            begun.replace(path)  # it was damaged
+            begun.replace(path)  # the file was damaged
     except OSError:
         return made
     finally:
@@ -156,7 +156,7 @@ def keep_pairing(folder: Path) -> Pairing:
 
 
 def _read(path: Path) -> Pairing | None:
-    """Read a stored pairing; None if none can be read."""
+    """Read a stored pairing; None if there is no valid one."""
     try:
         file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:

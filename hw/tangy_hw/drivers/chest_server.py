@@ -1,12 +1,12 @@
-"""The server of the chest screen's page: who may see it, and how much strangers may ask of it.
+"""Server of the chest screen's page, with access control and limits on what strangers can use.
 
-It speaks with `chest.js`. A tablet is paired once (`POST /pair` with the code of the console) and
-keeps a token as a cookie. A paired page gets events, `show` (a number and a picture, as JSON) and
-`alive` (the number again), and answers both with `POST /seen?page=P&number=N`. What it is told to
-show can have a `file`, which a page asks for as `GET /file?n=N`. While staff are called, `calls`
-tells it which buttons to show; a press is `POST /answer?call=KEY`. Other browsers get only the page
-that asks for the code. A browser paired as a viewer shows the same, but only the robot's tablets
-count as a working chest screen.
+It talks to `chest.js`. A tablet is paired once (`POST /pair` with the code on the console) and
+keeps a token as a cookie. A paired page receives the events `show` (a number and a picture, as
+JSON) and `alive` (the number again), and acknowledges both with `POST /seen?page=P&number=N`. A
+picture can have a `file`, which a page requests with `GET /file?n=N`. While staff are called,
+`calls` lists the buttons to show; a press is `POST /answer?call=KEY`. Other browsers only get the
+page that asks for the code. A browser paired as a viewer shows the same page, but only the robot's
+tablets count as a working chest screen.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ from tangy_hw.drivers.chest_pairing import CodeCheck, Pairing, TooManyCodes
 from tangy_profiles.declared.media import read_picture
 from tangy_profiles.errors import ProfileError
 
-ALIVE_SECONDS = 0.4  # between two events, and so two answers of each page
-SEND_SECONDS = 2.0  # in which a page must take a message
-FILE_SECONDS = 20.0  # in which a paired tablet must take a picture's file of 4 MB at most
-ASK_SECONDS = 3.0  # in which a stranger's request must arrive, from its connection on
-IDLE_SECONDS = 30.0  # for which the connection of a paired tablet is kept between two requests
-GONE_SECONDS = 5.0  # without an answer: a page that makes room for another
+ALIVE_SECONDS = 0.4  # between two events, and so between two answers of a page
+SEND_SECONDS = 2.0  # timeout for sending a message to a page
+FILE_SECONDS = 20.0  # timeout for sending a picture's file (at most 4 MB) to a paired tablet
+ASK_SECONDS = 3.0  # timeout for a stranger's request, from the connection on
+IDLE_SECONDS = 30.0  # for which an idle connection of a paired tablet is kept
+GONE_SECONDS = 5.0  # without an answer, after which another page may replace it
 MOST_PAGES = 16
-LOOKS_ON = "viewer"  # after the code, where somebody only looks on
+LOOKS_ON = "viewer"  # after the code in a viewer's request to pair
 MOST_CONNECTIONS = 64
 
 FILES = {
@@ -57,21 +57,21 @@ Said = dict[str, Any]
 
 @dataclass(eq=False, slots=True)
 class _Connection:
-    """A connection: from where, and whether a paired tablet has spoken over it."""
+    """A connection: its address, and whether a paired tablet uses it."""
 
     writer: asyncio.StreamWriter
     task: asyncio.Task[None]
     address: str
     paired: bool = False
     viewer: bool = False
-    """Whether it is a viewer's, not that of a tablet of the robot."""
+    """Whether a viewer uses it, rather than one of the robot's tablets."""
     told: bool = False
-    """Whether it receives events; it no longer polls."""
+    """Whether it receives events, and so sends no more requests."""
 
 
 @dataclass(eq=False, slots=True)
 class _Page:
-    """A page that is open on a paired tablet, and when it last said what it has drawn."""
+    """A page that is open on a paired tablet, and when it last acknowledged an event."""
 
     heard: float
     changed: asyncio.Event = field(default_factory=asyncio.Event)
@@ -79,9 +79,9 @@ class _Page:
 
 
 class ChestServer:
-    """Serves the page; `tell` hears of what pages have drawn, and of those that have gone.
+    """Serves the page; calls `tell` with the events of pages.
 
-    It tells {"page": its name, "seen": the number}, {"gone": its name} and {"answered": a key}.
+    These are {"page": name, "seen": number}, {"gone": name} and {"answered": key}.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class ChestServer:
         tell: Callable[[Said], None],
         names: Sequence[str] = (),
     ) -> None:
-        """Prepare it; `names` are those by which tablets may call this machine, too."""
+        """Prepare the server; `names` are further host names that tablets may use."""
         self.host, self.port = host, port
         self._pairing = pairing
         self._codes = CodeCheck(pairing.code)
@@ -100,19 +100,19 @@ class ChestServer:
         own = socket.gethostname().lower()
         self._names = {host.lower(), "localhost", own, f"{own.partition('.')[0]}.local", *names}
         self._server: asyncio.Server | None = None
-        self._connections: dict[_Connection, None] = {}  # the oldest first
+        self._connections: dict[_Connection, None] = {}  # oldest first
         self.windows: dict[str, _Page] = {}
         self._number = -1
         self._file: tuple[bytes, str] | None = None
-        """What is shown with the picture's line, and its media type."""
+        """Content and media type of the current picture's file."""
         self.newest = b""
         self._calls: dict[str, str] = {}
 
     async def start(self) -> None:
-        """Begin to listen.
+        """Start to listen.
 
         Raises:
-            OSError, OverflowError, UnicodeError: it cannot, there.
+            OSError, OverflowError, UnicodeError: it cannot listen at this address.
         """
         self._server = await asyncio.start_server(
             self._serve, self.host, self.port, limit=LONGEST_HEAD
@@ -120,7 +120,7 @@ class ChestServer:
         self.port = self._server.sockets[0].getsockname()[1]
 
     async def close(self) -> None:
-        """End for good; pages say that the link is lost."""
+        """Close for good; pages show that the connection is lost."""
         server, self._server = self._server, None
         if server is not None:
             server.close()
@@ -131,7 +131,7 @@ class ChestServer:
             await asyncio.wait(tasks)
 
     def show(self, number: int, picture: Mapping[str, Any]) -> None:
-        """Show a picture on all pages, and on those that open later."""
+        """Show a picture on all pages, also on those that open later."""
         self._number = number
         self._file = _file_of(str(picture.get("file", "")))
         self.newest = event("show", json.dumps({"n": number, **picture, "file": bool(self._file)}))
@@ -139,14 +139,14 @@ class ChestServer:
             page.changed.set()
 
     def offer(self, calls: Mapping[str, str]) -> None:
-        """Show a button for each open call on all pages: who is called, by its key."""
+        """Show a button for each open call on all pages: name of the called person, by key."""
         self._calls = dict(calls)
         for page in self.windows.values():
             page.changed.set()
 
     @property
     def connections(self) -> int:
-        """How many connections are open."""
+        """Number of open connections."""
         return len(self._connections)
 
     # ------------------------------------------------------------------------- connections
@@ -163,24 +163,24 @@ class ChestServer:
         except BadRequest:
             writer.write(response(400, b"No request that is answered here.\n"))
         except (OSError, TimeoutError, asyncio.CancelledError):
-            pass  # it went, or was too slow, or made room, or we go
+            pass  # closed by the client, too slow, dropped for another, or shutting down
         finally:
             self._connections.pop(mine, None)
             with contextlib.suppress(OSError):
                 writer.close()
 
     def _make_room(self, newest: _Connection) -> None:
-        """Drop a connection where there are too many.
+        """Drop a connection if there are too many.
 
-        It is one of a stranger as long as there are any: the oldest from the address that has most
-        of them. A paired tablet gets in, then, however many strangers there are.
+        Strangers are dropped first: the oldest connection from the address with the most of them.
+        So a paired tablet gets in however many strangers there are.
         """
         if len(self._connections) <= MOST_CONNECTIONS:
             return
         strangers = [one for one in self._connections if not one.paired and one is not newest]
         if strangers:
             counts = Counter(one.address for one in strangers)
-            dropped = max(strangers, key=lambda one: counts[one.address])  # of equals the first
+            dropped = max(strangers, key=lambda one: counts[one.address])  # the oldest of equals
         else:
             asking = (one for one in self._connections if not one.told)
             dropped = next(asking, newest)
@@ -240,7 +240,7 @@ class ChestServer:
         return response(204, more=cookie_line(self._pairing.cookie, token))
 
     def _seen(self, request: Request, asker: _Connection) -> bytes:
-        """Take a paired page's answer to an event."""
+        """Handle a paired page's acknowledgement of an event."""
         name, number = request.query.get("page", ""), request.query.get("number", "")
         if not asker.paired:
             return response(403)
@@ -253,7 +253,7 @@ class ChestServer:
         return response(204)
 
     def _answered(self, request: Request, asker: _Connection) -> bytes:
-        """Take it from a paired page, a viewer's too, that somebody answers an open call."""
+        """Handle a paired page's answer to an open call; viewers may answer too."""
         if not asker.paired:
             return response(403)
         key = request.query.get("call", "")
@@ -265,7 +265,7 @@ class ChestServer:
     # ------------------------------------------------------------------------- events
 
     def _may_open(self, name: str) -> bool:
-        """Say whether there is room for a page; one that answers no more makes room."""
+        """Return whether there is room for a page; one that no longer answers is dropped."""
         if not (0 < len(name) <= 40):
             return False
         if len(self.windows) < MOST_PAGES or name in self.windows:
@@ -282,13 +282,13 @@ class ChestServer:
         page.changed.set()
 
     async def _tell_events(self, request: Request, writer: asyncio.StreamWriter) -> None:
-        """Send events to a page until it has gone."""
+        """Send events to a page until it disconnects."""
         name = request.query.get("page", "")
         if not self._may_open(name):
             writer.write(response(503, b"There are too many pages open.\n"))
             return
         page = _Page(time.monotonic())
-        if (before := self.windows.get(name)) is not None:  # the same page, after a lost link
+        if (before := self.windows.get(name)) is not None:  # the same page after a lost connection
             page.heard = before.heard
             self._end(name)
         self.windows[name] = page

@@ -1,6 +1,6 @@
 """Arms of Dynamixel servos (X series, protocol 2.0) on a serial port, without ROS.
 
-Robotis' own package speaks to the bus, in a thread of its own; it comes with the extra `dynamixel`.
+A thread talks to the bus through Robotis' package, which the extra `dynamixel` installs.
 """
 
 from __future__ import annotations
@@ -25,36 +25,36 @@ from tangy_profiles.robot import Limb
 
 _LOG = logging.getLogger(__name__)
 
-POLL_SECONDS = 0.1  # between two looks at where joints are
-ERRORS_EVERY = 5  # looks, at one of which servos are asked for errors as well
-AGAIN_SECONDS = 1.0  # until a port that is not there is tried again
-CENTRE = 180.0  # degrees of a servo at which a joint is at zero, unless the profile says otherwise
+POLL_SECONDS = 0.1  # between two reads of the positions
+ERRORS_EVERY = 5  # reads of the positions for each read of the hardware errors
+AGAIN_SECONDS = 1.0  # until a missing port is tried again
+CENTRE = 180.0  # default servo angle in degrees at which a joint is at zero
 
 
 class Servo(NamedTuple):
-    """The servo of a joint: its id on the bus, which way it turns, where the joint is at zero."""
+    """Servo of a joint: its id on the bus, its direction, and its angle at the joint's zero."""
 
     id: int
     turns: int = 1
     zero: float = CENTRE
 
     def angle(self, joint: float) -> float:
-        """Return the servo's angle in degrees for a joint's in radians."""
+        """Return the servo's angle in degrees for a joint's in rad."""
         return self.zero + self.turns * math.degrees(joint)
 
     def joint(self, angle: float) -> float:
-        """Return the joint's angle in radians for the servo's in degrees."""
+        """Return the joint's angle in rad for a servo's in degrees."""
         return math.radians(self.turns * (angle - self.zero))
 
 
 def servos_of(text: str) -> dict[str, Servo]:
-    """Read which servos joints have, as a profile says: "limb/joint = 12, other/joint = -7@175".
+    """Parse a profile's joints and servos: "limb/joint = 12, other/joint = -7@175".
 
-    An id, with a minus where the servo turns the other way; after @ its angle where the joint is
-    at zero, in degrees.
+    The number is the servo's id, with a minus if it turns the other way; after @ comes the servo's
+    angle in degrees at which the joint is at zero.
 
     Raises:
-        DeviceError: it is not of that form, or an id is there twice.
+        DeviceError: the text is invalid, or an id occurs twice.
     """
     servos: dict[str, Servo] = {}
     for part in filter(None, (part.strip() for part in text.split(","))):
@@ -73,7 +73,7 @@ def servos_of(text: str) -> dict[str, Servo]:
 
 
 class DynamixelArms:
-    """Limbs of servos that take postures; they hang until the first."""
+    """Limbs of servos that take poses; they are limp until the first one."""
 
     def __init__(
         self,
@@ -86,19 +86,19 @@ class DynamixelArms:
         clock: Callable[[], float] = time.monotonic,
         tolerance: float = TOLERANCE,
     ) -> None:
-        """Name the port and the servos; nothing is opened before `start`.
+        """Describe the port and the servos; `start` opens the port.
 
         Args:
-            port: of the bus, as /dev/ttyUSB0.
-            limbs: of the robot's profile, which name the joints and their limits.
-            servos: by "limb/joint"; a joint without one does nothing.
-            name: of the device, as in the profile of the robot.
-            baud: bits a second on the wire.
-            clock: gives the time, in s.
-            tolerance: degrees from where a joint should be, within which it is there.
+            port: path of the serial port, such as /dev/ttyUSB0.
+            limbs: the limbs of the robot's profile, with their joints and limits.
+            servos: the servos by "limb/joint"; a joint without one does not move.
+            name: its name in the robot's profile.
+            baud: bits a second on the bus.
+            clock: returns the time in s.
+            tolerance: position error in degrees within which a joint has arrived.
 
         Raises:
-            DeviceError: a servo is of no joint.
+            DeviceError: a servo belongs to no joint.
         """
         self.name = name
         self._port, self._baud, self._clock = port, baud, clock
@@ -111,19 +111,19 @@ class DynamixelArms:
         self._moves = JointMoves(name, math.radians(tolerance), clock)
         self._errors: dict[int, str] = {}
         self.bus: Bus | None = None
-        self._hangs = True  # as it is meant to: it has had no torque yet, or was let go
-        self.unsure = False  # a servo may have lost its torque, which is given again then
-        self._stands = False  # it was told to hold while the port was gone
+        self._hangs = True  # intentionally: it has had no torque yet, or was relaxed
+        self.unsure = False  # a servo may have lost its torque, which is switched on again then
+        self._stands = False  # told to hold while the port was missing
         self._thread: ThreadPoolExecutor | None = None
         self._task: asyncio.Task[None] | None = None
 
     @property
     def positions(self) -> Mapping[str, float]:
-        """The newest position of each joint, in rad."""
+        """Latest position of each joint in rad."""
         return self._moves.positions
 
     async def start(self) -> None:
-        """Begin to look where joints are; a port that is not there is tried again.
+        """Start polling positions; a missing port is tried again.
 
         Raises:
             DeviceError: the package for it is not installed.
@@ -135,7 +135,7 @@ class DynamixelArms:
             self._task = asyncio.create_task(self._live())
 
     async def close(self) -> None:
-        """Let the arms hang, and end."""
+        """Switch the torque off, and close the port."""
         task, self._task = self._task, None
         if task is None or self._thread is None:
             return
@@ -147,7 +147,7 @@ class DynamixelArms:
         self._thread = None
 
     def reading(self) -> Reading:
-        """Return how long ago all joints were heard of, and whether a servo reports an error."""
+        """Return the age of the last complete positions, and whether a servo reports an error."""
         broken = bool(self._errors)
         facts = {"hardware_error": broken}
         return self._newest.reading(self.name, ERROR if broken else OK, facts)
@@ -164,8 +164,8 @@ class DynamixelArms:
         """Move limbs to joint angles (degrees, by limb) within so many s, and wait for it.
 
         Raises:
-            DeviceError: there is no such limb, a servo reports an error or cannot turn so far,
-                other angles are wanted meanwhile, or it is not there in time.
+            DeviceError: there is no such limb, a servo reports an error or cannot reach the angle,
+                another pose replaces this one, or a joint does not arrive in time.
         """
         _LOG.info("poses %s within %.1f s", ", ".join(angles), seconds)
         goals: dict[str, float] = {}
@@ -193,7 +193,7 @@ class DynamixelArms:
             await arriving
         except BusError as error:
             self._hangs, self.unsure = self._hangs or was[0], self.unsure or was[1]
-            with suppress(BusError):  # a servo with an error is why
+            with suppress(BusError):  # a servo's error may be the cause
                 await self._do(partial(self._look, errors=True))
                 self._take()
             raise DeviceError(
@@ -207,14 +207,14 @@ class DynamixelArms:
             arriving.cancel()
 
     async def hold(self) -> None:
-        """Stop where it is now, with the torque that it has; never raises."""
+        """Stop at the current position with the current torque; never raises."""
         self._moves.end(f"{self.name} was told to hold.")
         if not self._hangs:
             with suppress(BusError):
                 await self._do(self._stand)
 
     async def relax(self) -> None:
-        """Let all of it hang without torque; never raises."""
+        """Switch the torque off; never raises."""
         self._moves.end(f"{self.name} was let hang.")
         self._hangs, self._stands = True, False
         with suppress(BusError):
@@ -224,7 +224,7 @@ class DynamixelArms:
         return self.bus is not None and not self._errors
 
     async def _do(self, work: Callable[[], object]) -> None:
-        """Do something in the thread of the bus, where one thing is done at a time."""
+        """Run something in the thread of the bus, which serialises all access."""
         if self._thread is not None:
             await asyncio.get_running_loop().run_in_executor(self._thread, work)
 
@@ -242,7 +242,7 @@ class DynamixelArms:
                 await asyncio.sleep(AGAIN_SECONDS)
 
     def _take(self) -> None:
-        """Take what the thread has found."""
+        """Process the results of the thread."""
         bus = self.bus
         if bus is None:
             return
@@ -257,7 +257,7 @@ class DynamixelArms:
         if len(found) == len(self._by_id):
             self._newest.take(None)
         else:
-            self.unsure = True  # one that was without power has forgotten its torque
+            self.unsure = True  # a servo that lost its power has lost its torque
 
     # ---------------------------------------------------------------- in the thread of the bus
 

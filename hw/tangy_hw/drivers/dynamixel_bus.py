@@ -1,4 +1,4 @@
-"""A bus of Dynamixel servos of the X series, by Robotis' package; blocking, for one thread.
+"""Bus of Dynamixel X-series servos through Robotis' package; blocking, for one thread.
 
 Addresses and units are those of the control table of the X series (XL330, XL430, XM, XH).
 """
@@ -12,15 +12,15 @@ from typing import Any
 
 from tangy_hw.device_protocols import DeviceError
 
-TICKS = 4096  # of a turn
-DRIVE_MODE, TORQUE, ERRORS = (10, 1), (64, 1), (70, 1)  # address and bytes
+TICKS = 4096  # per turn
+DRIVE_MODE, TORQUE, ERRORS = (10, 1), (64, 1), (70, 1)  # address, bytes
 SPEED, GOAL, POSITION = (112, 4), (116, 4), (132, 4)
-TIME_BASED = 4  # bit of the drive mode: the speed of a movement is the time that it takes, in ms
+TIME_BASED = 4  # bit of the drive mode: a movement's speed is its duration in ms
 SPEED_UNIT = 0.229 * 360 / 60  # degrees a second
-FASTEST = 32_767  # of either unit; 0 would be without a limit
+FASTEST = 32_767  # in either unit; 0 would mean no limit
 STAND_SECONDS = 0.05  # in which servos brake
-LISTEN_SECONDS = 0.005  # for which a read waits; Robotis' own spins until bytes come
-TRIES = 2  # at a read: a bit that is lost on the wire is no silence
+LISTEN_SECONDS = 0.005  # read timeout; Robotis' own loop spins until bytes come
+TRIES = 2  # of a read: a bit error on the wire is not a silent servo
 MEANINGS = {
     0: "a wrong voltage",
     2: "overheating",
@@ -35,35 +35,35 @@ class BusError(Exception):
 
 
 def meaning(bits: int) -> str:
-    """Say what the bits of a hardware error mean."""
+    """Return the meaning of the bits of a hardware error."""
     names = [what for bit, what in MEANINGS.items() if bits >> bit & 1]
     return " and ".join(names) or f"error {bits}"
 
 
 def speed(degrees: float, seconds: float, mode: int) -> int:
-    """Return the speed to write for a movement (rad, s), in the unit of the servo's drive mode."""
+    """Return the speed value for a movement (degrees, s) in the unit of the servo's drive mode."""
     if mode & TIME_BASED:
         return max(1, min(round(1000 * seconds), FASTEST))
     return max(1, min(round(degrees / max(seconds, 0.02) / SPEED_UNIT), FASTEST))
 
 
 class Bus:
-    """Servos on a serial port. Angles are degrees of the servo, by its id."""
+    """Servos on a serial port. Angles are in degrees of the servo, by its id."""
 
     def __init__(self, port: str, baud: int, servos: Sequence[int]) -> None:
-        """Open the port; servos that report an error are started anew, as nothing else ends it.
+        """Open the port, and reboot servos with a hardware error, which only a reboot clears.
 
         Raises:
-            BusError: the port is not there, or has another speed.
+            BusError: the port is missing, or does not support the baud rate.
         """
         sdk = self.check()
         self._sdk, self._port_name = sdk, port
         self._servos = tuple(servos)
         self._modes: dict[int, int] = {}
         self.angles: dict[int, float] = {}
-        """Where the servos that answered last are."""
+        """Angles of the servos that answered the last read."""
         self.errors: dict[int, int] = {}
-        """The bits of the hardware error of each servo that answered."""
+        """Hardware error bits of each servo that answered."""
         self._packets = sdk.Protocol2PacketHandler()
         self._port = sdk.PortHandler(port)
         self._port.baudrate = baud
@@ -97,12 +97,12 @@ class Bus:
         return dynamixel_sdk
 
     def close(self) -> None:
-        """Give the port back."""
+        """Close the port."""
         with suppress(Exception):  # a port that is gone cannot be closed
             self._port.closePort()
 
     def look(self, *, errors: bool) -> None:
-        """Ask all servos where they are, and whether they report an error.
+        """Read the positions of all servos, and optionally their hardware errors.
 
         Raises:
             BusError: the port is gone.
@@ -113,7 +113,7 @@ class Bus:
             self.errors = self._read(ERRORS)
 
     def hold(self) -> None:
-        """Give all servos torque, each where it is.
+        """Switch the torque of all servos on, at their current positions.
 
         Raises:
             BusError: the port is gone, or a servo does not answer.
@@ -125,21 +125,21 @@ class Bus:
         self.torque(on=True)
 
     def stand(self) -> None:
-        """Let all servos that answer stop where they are, with the torque that they have.
+        """Stop all servos that answer at their current positions, with their current torque.
 
         Raises:
             BusError: the port is gone.
         """
         here = self._read(POSITION)
-        # A servo keeps the time or speed of the movement it is on, which would carry it on.
+        # A servo keeps the duration or speed of its movement, which would delay the stop.
         self._write(SPEED, {n: speed(0.0, STAND_SECONDS, self._modes.get(n, 0)) for n in here})
         self._write(GOAL, {servo: value % (1 << 32) for servo, value in here.items()})
 
     def torque(self, *, on: bool) -> None:
-        """Give all servos torque, or take it, and look whether they have it.
+        """Switch the torque of all servos on or off, and verify it.
 
         Raises:
-            BusError: the port is gone, or a servo that answers does otherwise.
+            BusError: the port is gone, or a servo that answers did not switch.
         """
         for _ in range(TRIES):
             self._write(TORQUE, dict.fromkeys(self._servos, int(on)))
@@ -149,7 +149,7 @@ class Bus:
         raise BusError(f"servo {otherwise[0]} does not {'hold' if on else 'let go'}.")
 
     def move(self, goals: Mapping[int, float], seconds: float) -> None:
-        """Move servos to angles, so that they arrive after so many s.
+        """Move servos to angles in degrees, so that they arrive after so many s.
 
         Raises:
             BusError: the port is gone, or a servo does not answer.
@@ -169,7 +169,7 @@ class Bus:
         self._write(GOAL, {servo: round(goal * TICKS / 360) for servo, goal in goals.items()})
 
     def _read(self, item: tuple[int, int]) -> dict[int, int]:
-        """Read one item of all servos; of those that do not answer there is none."""
+        """Read one item of all servos; servos that do not answer are missing in the result."""
         address, size = item
         group = self._sdk.GroupSyncRead(self._port, self._packets, address, size)
         for servo in self._servos:
@@ -177,7 +177,7 @@ class Bus:
         for _ in range(TRIES):
             if self._asked(group.txRxPacket) == self._sdk.COMM_SUCCESS:
                 return {servo: group.getData(servo, address, size) for servo in self._servos}
-        # One that is silent spoils the answers of all that come after it.
+        # A silent servo spoils the answers of all after it, so read them one by one.
         read = {1: self._packets.read1ByteTxRx, 4: self._packets.read4ByteTxRx}[size]
         found: dict[int, int] = {}
         for servo in self._servos:
@@ -195,10 +195,10 @@ class Bus:
             raise BusError(f"{self._port_name} takes nothing.")
 
     def _asked(self, asks: Any) -> Any:
-        """Do something on the bus, where whatever fails below is that the port is gone."""
+        """Call something on the bus; any failure means that the port is gone."""
         try:
             return asks()
-        except Exception as error:  # OSError, termios.error, or whatever else a lost port makes
+        except Exception as error:  # OSError, termios.error, or anything else from a lost port
             self._port.is_using = False
             raise BusError(f"{self._port_name} is gone: {error}") from None
 

@@ -1,4 +1,4 @@
-"""The robot's voice, where its loudspeaker hangs on this machine: espeak-ng and a player."""
+"""The robot's voice on a loudspeaker of this machine: espeak-ng and a player."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _LOG = logging.getLogger(__name__)
 
 
 class SpokenVoice:
-    """Says one line after the other; that nothing is heard is an error of who wanted it said.
+    """Speaks one text after the other; text that cannot be heard raises an error for the caller.
 
-    What has failed stays so until it is closed and started anew: a player that lost its sound card
-    is not tried again.
+    A voice that has failed stays so until it is closed and started again: a player that lost its
+    sound card is not retried.
     """
 
     def __init__(
@@ -39,18 +39,18 @@ class SpokenVoice:
         on_begin: Callable[[], None] | None = None,
         on_end: Callable[[], None] | None = None,
     ) -> None:
-        """Prepare a voice; nothing is looked for before `start`.
+        """Prepare a voice; `start` looks for the programs.
 
         Args:
-            name: what the robot's profile calls it.
-            sink: what plays, as `open_player` has it: `auto`, a program, or `null`.
-            preference: how fast, and in which voice.
-            deck: whose calls are said as a caller says them.
-            folder: where spoken texts are kept; the user's cache folder if not given.
-            player: plays in place of a sink.
+            name: its name in the robot's profile.
+            sink: player, as `open_player` takes it: `auto`, a program, or `null`.
+            preference: speed and voice.
+            deck: deck whose calls are pronounced as a caller says them.
+            folder: cache for synthesised speech; None: the user's cache folder.
+            player: player to use instead of a sink.
             which: finds a program on the path.
-            on_begin: is called before sound comes out (a microphone is shut).
-            on_end: is called when no more comes (it is opened).
+            on_begin: called before sound starts (a microphone is muted).
+            on_end: called after sound has ended (a microphone is opened).
         """
         self.name = name
         self._sink, self._preference, self._deck = sink, preference, deck
@@ -69,9 +69,9 @@ class SpokenVoice:
         return self._dead or self._failed or trying
 
     async def start(self) -> None:
-        """Look for what speaks and what plays; a moment of silence is played to try it.
+        """Find a synthesiser and a player, and test them by playing a moment of silence.
 
-        It returns at once: what the trial finds is seen in the reading.
+        It returns at once; the reading shows the result of the test.
         """
         if self._voice is not None:
             return
@@ -98,7 +98,7 @@ class SpokenVoice:
             self._trying.add_done_callback(self._tried)
 
     async def close(self) -> None:
-        """Cut the current speech, and stop until it is started again."""
+        """Cut the current speech, and stay silent until the next start."""
         voice, self._voice = self._voice, None
         self._dead = f"{self.name} does not run."
         self._hushes += 1
@@ -110,7 +110,7 @@ class SpokenVoice:
             await voice.close()
 
     async def say(self, text: str) -> None:
-        """Say something, and wait until it was said, or was cut by `hush`.
+        """Speak, and wait until the speech has ended or `hush` has cut it.
 
         Cancelling the wait cuts the speech.
 
@@ -121,7 +121,7 @@ class SpokenVoice:
         await self._heard(lambda voice: voice.say(text))
 
     async def play(self, sound: Path) -> None:
-        """Play a WAV file, and wait until it was heard, or was cut by `hush`.
+        """Play a WAV file, and wait until it has ended or `hush` has cut it.
 
         Cancelling the wait cuts the sound.
 
@@ -149,15 +149,15 @@ class SpokenVoice:
         raise DeviceError(self._failed)
 
     async def hush(self) -> None:
-        """Be quiet now."""
+        """Stop speaking now."""
         self._hushes += 1
         if self._voice is not None:
             self._voice.hush()
 
     def reading(self) -> Reading:
-        """Return its state: ERROR while nothing can be heard, WARN when the last line was not.
+        """Return its state: ERROR if nothing can be heard, WARN if the last text was not.
 
-        It is WARN, too, while it is tried.
+        It is also WARN during the test.
         """
         return Reading(self.name, 0.0, ERROR if self._dead else WARN if self.why else OK)
 

@@ -1,4 +1,4 @@
-"""Movements of joints that are waited for, until each joint is where it should be."""
+"""Waits for joint movements until every joint has arrived."""
 
 from __future__ import annotations
 
@@ -9,40 +9,40 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.ros_newest import awaited
 from tangy_profiles.reading import plain
 
-TOLERANCE = 3.0  # degrees from where a joint should be, within which it is there
-GRACE_SECONDS = 2.0  # beyond half as long again as a movement should take, until it is too late
+TOLERANCE = 3.0  # degrees of position error within which a joint has arrived
+GRACE_SECONDS = 2.0  # after 1.5 times the planned duration, until a movement counts as late
 
 
 class JointMoves:
-    """The movements of one device that are under way; angles in radians, by the joint's name."""
+    """Movements of one device in progress; angles in rad, by joint name."""
 
     def __init__(self, name: str, tolerance: float, clock: Callable[[], float]) -> None:
-        """Begin at rest.
+        """Start without movements.
 
         Args:
-            name: of the device, for its errors.
-            tolerance: how far a joint may be from where it should be, and is there.
-            clock: gives the time, in s.
+            name: name of the device, for error messages.
+            tolerance: position error in rad within which a joint has arrived.
+            clock: returns the time in s.
         """
         self.positions: dict[str, float] = {}
-        """The newest position of each joint that was heard of."""
+        """Latest known position of each joint."""
         self._name, self._tolerance, self._clock = name, tolerance, clock
         self._moves: set[_Move] = set()
 
     async def arrive(
         self, goals: Mapping[str, float], seconds: float, goes_on: Callable[[], bool]
     ) -> None:
-        """Wait until joints that were just told to move are where they should be.
+        """Wait until joints that were just commanded have arrived.
 
-        A movement that shares a joint with this one ends: the newer counts.
+        A newer movement that shares a joint ends this one.
 
         Args:
-            goals: where the joints are to be, in degrees, by joint.
-            seconds: how long the movement should take.
-            goes_on: whether there is still a reason to wait.
+            goals: goal positions in rad, by joint.
+            seconds: planned duration of the movement.
+            goes_on: returns whether to go on waiting.
 
         Raises:
-            DeviceError: a joint is not there in time, or the movement was ended.
+            DeviceError: a joint did not arrive in time, or the movement was ended.
         """
         move = _Move(goals)
         for other in self._moves:
@@ -62,7 +62,7 @@ class JointMoves:
         move.over.result()
 
     def hear(self, positions: Mapping[str, float]) -> None:
-        """Take new positions, in rad."""
+        """Update with new positions in rad."""
         self.positions.update(positions)
         for move in self._moves:
             move.heard |= positions.keys() & move.goals.keys()
@@ -72,7 +72,7 @@ class JointMoves:
                 move.end()
 
     def end(self, why: str) -> None:
-        """End all of them with an error."""
+        """End all movements with an error."""
         for move in self._moves:
             move.end(why)
 
@@ -82,7 +82,7 @@ class JointMoves:
 
 
 class _Move:
-    """A movement; each of its joints must be heard of since it began."""
+    """A movement; every joint must report since its start."""
 
     def __init__(self, goals: Mapping[str, float]) -> None:
         self.goals = goals

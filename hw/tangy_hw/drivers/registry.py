@@ -1,6 +1,6 @@
-"""The kinds of drivers: which there are, for which devices, and which settings each takes.
+"""The kinds of drivers, the devices that each serves, and the settings that it takes.
 
-Devices that share a link (a rosbridge server) share one connection.
+Devices on the same link (a rosbridge server) share one connection.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tangy_profiles.robot import Robot
 
 
 class DriverSettings:
-    """The settings of one driver, taken one by one; what nobody took is refused."""
+    """Settings of one driver; `close` rejects those that no driver took."""
 
     def __init__(self, device: str, kind: str, values: Mapping[str, Setting]) -> None:
         self.device = device
@@ -47,7 +47,7 @@ class DriverSettings:
         return float(value)
 
     def joints(self, key: str) -> dict[str, str]:
-        """Take how joints are named elsewhere, as the drivers of ROS have it."""
+        """Take the robot's own names of joints, as the ROS drivers use them."""
         from tangy_hw.drivers.ros_messages import joined_names
 
         try:
@@ -56,7 +56,7 @@ class DriverSettings:
             raise self.wrong(f"{key}: {error}") from None
 
     def pose(self, key: str) -> Pose:
-        """Take a pose as "X, Y, HEADING" in metres and radians; all are 0 if it is left out."""
+        """Take a pose "X, Y, HEADING" in m and rad; the default is 0, 0, 0."""
         try:
             x, y, heading = map(float, self.text(key, "0, 0, 0").split(","))
         except ValueError:
@@ -66,7 +66,7 @@ class DriverSettings:
         return Pose(x, y, heading)
 
     def flag(self, key: str, default: bool) -> bool:
-        """Take true or false."""
+        """Take a boolean."""
         value = self._take(key, default)
         if not isinstance(value, bool):
             raise self.wrong(f"{key} must be true or false.")
@@ -79,22 +79,22 @@ class DriverSettings:
         return value
 
     def close(self) -> None:
-        """Refuse what nobody took.
+        """Reject settings that were not taken.
 
         Raises:
-            DeviceError: there is something.
+            DeviceError: there are some.
         """
         for key in self._values:
             raise self.wrong(f"{key} is no setting of it.")
 
     def wrong(self, problem: str) -> DeviceError:
-        """Make the error for a driver that is set wrongly."""
+        """Return an error about the driver's settings."""
         return DeviceError(plain(f"drivers.{self.device} ({self.kind}): {problem}"))
 
 
 @dataclass
 class Wiring:
-    """Shared by the drivers of one robot: its clock, its connections, their messages."""
+    """Shared by the drivers of one robot: its clock, connections and diagnostics."""
 
     robot: Robot
     activity: Activity
@@ -102,10 +102,10 @@ class Wiring:
     links: dict[str, Rosbridge] = field(default_factory=dict)
     diagnosing: dict[str, RosDiagnostics] = field(default_factory=dict)
     pairing: Mapping[str, str] = field(default_factory=dict)
-    """The file of paired tablets (see `chest_pairing`); empty: a temporary one."""
+    """Contents of the file of paired tablets (see `chest_pairing`); empty: a temporary pairing."""
 
     def link(self, at: str, ros: int, device: str) -> Rosbridge:
-        """Return the link to a rosbridge server, one for all devices that ask for it."""
+        """Return the link to a rosbridge server, shared by all its devices."""
         drives = device in DRIVES_BY
         if at not in self.links:
             self.links[at] = Rosbridge(at, clock=self.clock.now, ros=ros)
@@ -114,7 +114,7 @@ class Wiring:
         return self.links[at]
 
     def diagnostics(self, at: str) -> RosDiagnostics:
-        """Return what a link's server says of its devices, one for all who ask for it."""
+        """Return the diagnostics of a link's server, shared by all its devices."""
         if at not in self.diagnosing:
             self.diagnosing[at] = RosDiagnostics(self.links[at])
         return self.diagnosing[at]
@@ -188,7 +188,7 @@ def _ros_base(
     from tangy_hw.drivers.ros_base import LIVES_SECONDS, MOST_SECONDS, REPEAT_SECONDS, RosBase
     from tangy_hw.drivers.velocity_watchdog import VelocityWatchdog
 
-    # A fast bench uses its own time; the machine's would make runs differ.
+    # An accelerated bench has its own time; the machine's time would make runs differ.
     stepped = isinstance(wiring.clock, SteppedClock)
     drive, stamped = settings.text("drive", "/cmd_vel"), settings.flag("stamped", False)
     lives = settings.number("lives", LIVES_SECONDS)
@@ -266,7 +266,7 @@ def _dynamixel(wiring: Wiring, settings: DriverSettings) -> Device:
 
 
 class DriverKind(NamedTuple):
-    """A kind of driver: for which devices of a robot it is, and what opens it.
+    """A kind of driver: the devices that it serves, and its factory.
 
     `opens(wiring, settings)` returns a device (see `device_protocols`) that is not started yet.
     """
@@ -284,14 +284,14 @@ DRIVERS: Mapping[str, DriverKind] = {
     "spoken": DriverKind(("voice",), _spoken),
     "dynamixel": DriverKind(("arms",), _dynamixel),
 }
-"""The kinds of drivers that are ours; others come by the entry points `tangy.drivers`."""
+"""Tangy's own kinds of drivers; other packages add theirs by the entry points `tangy.drivers`."""
 
 
 def driver_kind(extension: Extension) -> DriverKind:
     """Return the kind of driver that another package adds.
 
     Raises:
-        ProfileError: it cannot be loaded, or is no kind of driver.
+        ProfileError: it cannot be loaded, or is not a `DriverKind`.
     """
     kind = extension.load()
     if not isinstance(kind, DriverKind):
@@ -300,20 +300,20 @@ def driver_kind(extension: Extension) -> DriverKind:
 
 
 def known_drivers() -> dict[str, DriverKind]:
-    """Return all kinds of drivers; those of other packages that cannot be loaded are left out."""
+    """Return all kinds of drivers that can be loaded, with those of other packages."""
     known = dict(DRIVERS)
     for name, extension in extensions("drivers").items():
         if name not in known:
-            with suppress(ProfileError):  # `tangy doctor` says why
+            with suppress(ProfileError):  # `tangy doctor` reports why
                 known[name] = driver_kind(extension)
     return known
 
 
 def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> Device:
-    """Open the driver of a device; it is not started yet.
+    """Create the driver of a device, without starting it.
 
     Raises:
-        DeviceError: there is no such kind, or it is set wrongly.
+        DeviceError: there is no such kind, or its settings are invalid.
     """
     kind = str(values.get("kind", ""))
     drivers = DRIVERS if kind in DRIVERS else known_drivers()

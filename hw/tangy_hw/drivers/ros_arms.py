@@ -1,4 +1,4 @@
-"""Arms and head behind ROS: trajectory_msgs/JointTrajectory out, sensor_msgs/JointState in."""
+"""Arms and head through ROS: publishes JointTrajectory, subscribes to JointState."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from tangy_profiles.robot import Limb
 
 _LOG = logging.getLogger(__name__)
 
-HOLD_SECONDS = 0.1  # in which joints are back where they were when they were told to hold
-KNOWN_SECONDS = 0.5  # for which it holds where a joint was; back to where it was before is no hold
+HOLD_SECONDS = 0.1  # in which joints return to where they were at the command to hold
+KNOWN_SECONDS = 0.5  # age of positions up to which holding them makes sense
 
 
 class RosArms:
-    """Limbs that take postures. A joint's name is "limb/joint", unless the profile says another."""
+    """Limbs that take poses. Joints are called "limb/joint", unless the profile names them."""
 
     def __init__(
         self,
@@ -39,18 +39,18 @@ class RosArms:
         tolerance: float = TOLERANCE,
         diagnostics: RosDiagnostics | None = None,
     ) -> None:
-        """Name its topics.
+        """Set its topics.
 
         Args:
             bridge: the link to the robot.
-            limbs: of the robot's profile, which name the joints.
-            name: of the device, as in the profile of the robot.
-            trajectory: the topic that takes movements.
-            states: the topic on which the joints are told.
-            torque: takes std_msgs/Bool, whether the servos hold.
-            names: what the robot calls joints that it calls otherwise, by "limb/joint".
-            tolerance: degrees from where a joint should be, within which it is there.
-            diagnostics: what its server says of its devices, if it does.
+            limbs: the limbs of the robot's profile, with their joints.
+            name: its name in the robot's profile.
+            trajectory: topic for movements.
+            states: topic of the joint states.
+            torque: topic for std_msgs/Bool, whether the servos hold.
+            names: the robot's own names of joints, by "limb/joint".
+            tolerance: position error in degrees within which a joint has arrived.
+            diagnostics: diagnostics of the robot, if it publishes any.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics
@@ -70,11 +70,11 @@ class RosArms:
 
     @property
     def positions(self) -> Mapping[str, float]:
-        """The newest position of each joint, in radians, by the robot's own name of it."""
+        """Latest position of each joint in rad, by the robot's own names."""
         return self._moves.positions
 
     async def start(self) -> None:
-        """Begin to hear where joints are."""
+        """Subscribe to the joint states."""
         await self._bridge.start()
         if not self._begun:
             self._begun = True
@@ -84,12 +84,12 @@ class RosArms:
             self._bridge.subscribe(self._states, "sensor_msgs/JointState", self._hear)
 
     async def close(self) -> None:
-        """End; the arms stay as they are."""
+        """Unsubscribe; the arms stay as they are."""
         self._begun = False
         self._bridge.unsubscribe(self._states, self._hear)
 
     def reading(self) -> Reading:
-        """Return how long ago joints were heard of, and whether a servo reports an error."""
+        """Return the age of the joint states, and whether a servo reports an error."""
         state = state_told(self._diagnostics, self.name)
         return self._newest.reading(self.name, state, {"hardware_error": state == ERROR})
 
@@ -97,8 +97,8 @@ class RosArms:
         """Move limbs to joint angles (degrees, by limb) within so many s, and wait for it.
 
         Raises:
-            DeviceError: there is no such limb, no link, a servo reports an error, other angles are
-                wanted meanwhile, or it is not there in time.
+            DeviceError: there is no such limb or no link, a servo reports an error, another pose
+                replaces this one, or a joint does not arrive in time.
         """
         _LOG.info("poses %s within %.1f s", ", ".join(angles), seconds)
         goals: dict[str, float] = {}
@@ -114,7 +114,7 @@ class RosArms:
             self._limp = False
         message = trajectory_message(goals, max(seconds, 0.0), self._bridge.ros)
         self._bridge.publish(self._trajectory, message)
-        self._fail_on_error()  # the other joints move all the same: a head can still look
+        self._fail_on_error()  # the other joints move anyway: a head can still look
         try:
             await self._moves.arrive(goals, seconds, self._well)
         except DeviceError:
@@ -124,11 +124,11 @@ class RosArms:
             raise
 
     async def hold(self) -> None:
-        """Stop where it is now, with the torque that it has.
+        """Stop at the current position with the current torque.
 
-        A trajectory to where joints are takes the place of the one under way. In ROS 1 an empty
-        one follows, by which its joint_trajectory_controller brakes and holds, from what it knows
-        itself of its joints; ROS 2's refuses an empty one, or goes on as it was.
+        A trajectory to the current positions replaces the current one. In ROS 1 an empty one
+        follows, at which joint_trajectory_controller brakes and holds by its own knowledge of the
+        joints; in ROS 2 an empty trajectory is rejected, or ignored.
         """
         self._moves.end(f"{self.name} was told to hold.")
         if self._limp:
@@ -144,7 +144,7 @@ class RosArms:
                 self._bridge.publish(self._trajectory, empty)
 
     async def relax(self) -> None:
-        """Let all of it hang without torque."""
+        """Switch the torque of all joints off."""
         self._moves.end(f"{self.name} was let hang.")
         self._limp = True
         with suppress(DeviceError):

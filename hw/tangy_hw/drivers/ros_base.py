@@ -1,4 +1,4 @@
-"""Wheels behind ROS: geometry_msgs/Twist out, nav_msgs/Odometry in."""
+"""A base through ROS: publishes geometry_msgs/Twist, subscribes to nav_msgs/Odometry."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from tangy_profiles.health import Reading
 _LOG = logging.getLogger(__name__)
 
 LIVES_SECONDS = 0.2  # a command's time to live; see docs/decisions/faults.md
-MOST_SECONDS = 1.0  # that it may be set to
-REPEAT_SECONDS = 0.1  # between two of the same command; bases want 10 a second
+MOST_SECONDS = 1.0  # upper bound of this setting
+REPEAT_SECONDS = 0.1  # between repetitions of a command; bases expect 10 Hz
 
 
 class RosBase:
-    """A base that drives as the newest command says; every command goes ahead of all else."""
+    """A base that drives by the latest command; velocity commands precede all other messages."""
 
     def __init__(
         self,
@@ -39,18 +39,18 @@ class RosBase:
         watchdog: VelocityWatchdog | None = None,
         diagnostics: RosDiagnostics | None = None,
     ) -> None:
-        """Name its topics.
+        """Set its topics.
 
         Args:
             bridge: the link to the robot.
-            name: of the device, as in the profile of the robot.
-            drive: the topic that takes how fast it is to drive.
-            odometry: the topic on which it tells how far it has driven.
-            stamped: it takes geometry_msgs/TwistStamped, as some of ROS 2 do.
-            lives: a command's time to live in s.
+            name: its name in the robot's profile.
+            drive: topic for velocity commands.
+            odometry: topic of its odometry.
+            stamped: it takes geometry_msgs/TwistStamped, as some ROS 2 bases do.
+            lives: time to live of a command in s.
             repeat: s between repetitions of a command that still lives; 0: the caller repeats.
-            watchdog: stops the base if this process does not.
-            diagnostics: the server's reports about its devices, if it sends any.
+            watchdog: stops the base if this process hangs.
+            diagnostics: diagnostics of the robot, if it publishes any.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics
@@ -65,11 +65,11 @@ class RosBase:
 
     @property
     def odometry(self) -> Stamped[Odometry] | None:
-        """The newest odometry; None: there was none yet."""
+        """Newest odometry; None before the first."""
         return self._newest.stamped
 
     async def start(self) -> None:
-        """Subscribe to odometry; the base stands still until a command to drive."""
+        """Subscribe to odometry; the base stands still until the first command."""
         await self._bridge.start()
         if self._repeating is None:
             self._newest.restart()
@@ -80,7 +80,7 @@ class RosBase:
             self._repeating = asyncio.create_task(self._repeat_on())
 
     async def close(self) -> None:
-        """Stand still, and end."""
+        """Stop the base, and unsubscribe."""
         await self.stop()
         task, self._repeating = self._repeating, None
         if task is not None:
@@ -91,14 +91,14 @@ class RosBase:
             await self._watchdog.close()
 
     def reading(self) -> Reading:
-        """Return the age of the odometry, and what the diagnostics say of the base."""
+        """Return the age of the odometry, and the state of the base in the diagnostics."""
         return self._newest.reading(self.name, state_told(self._diagnostics, self.name))
 
     async def drive(self, twist: Twist) -> None:
-        """Drive so until the next command, or until this one has expired.
+        """Drive at a twist until the next command, or until this one has expired.
 
         Raises:
-            DeviceError: there is no link, or it is no twist.
+            DeviceError: there is no link, or the twist is not finite.
         """
         if not all(map(math.isfinite, twist)):
             raise DeviceError(f"{self.name} cannot drive {twist}.")

@@ -1,4 +1,4 @@
-"""A robot's battery behind ROS: sensor_msgs/BatteryState."""
+"""A robot's battery through ROS: sensor_msgs/BatteryState."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ CHARGING, FULL = 1, 4  # of power_supply_status
 
 
 class RosBattery:
-    """Says how full the battery is, and whether it is being charged."""
+    """Reports the charge of the battery, and whether it is charging."""
 
     def __init__(
         self, bridge: Rosbridge, *, name: str = "battery", topic: str = "/battery_state"
     ) -> None:
-        """Name its topic.
+        """Set its topic.
 
         Args:
             bridge: the link to the robot.
-            name: of the device, as in the profile of the robot.
-            topic: its name.
+            name: its name in the robot's profile.
+            topic: name of the topic.
         """
         self.name = name
         self._bridge, self._topic = bridge, topic
@@ -29,7 +29,7 @@ class RosBattery:
         self._begun = self._to_hundred = False
 
     async def start(self) -> None:
-        """Begin to hear it."""
+        """Subscribe to its topic."""
         await self._bridge.start()
         if not self._begun:
             self._begun = True
@@ -37,30 +37,30 @@ class RosBattery:
             self._bridge.subscribe(self._topic, "sensor_msgs/BatteryState", self._hear)
 
     async def close(self) -> None:
-        """End."""
+        """Unsubscribe."""
         self._begun = False
         self._bridge.unsubscribe(self._topic, self._hear)
 
     def reading(self) -> Reading:
-        """Return `charge` from 0 to 1 and `charging`, and how old they are."""
+        """Return `charge` from 0 to 1 and `charging`, with their age."""
         stamped = self._newest.stamped
         return self._newest.reading(self.name, OK, {} if stamped is None else stamped.value)
 
     def _hear(self, message: Message) -> None:
         status = message["power_supply_status"]
-        self._to_hundred |= (message["percentage"] or 0.0) > 1.0  # or 1 % would read as full
+        self._to_hundred |= (message["percentage"] or 0.0) > 1.0  # otherwise 1 % would read as full
         charge = charge_of(message, to_hundred=self._to_hundred)
         self._newest.take({"charge": charge, "charging": status in (CHARGING, FULL)})
 
 
 def charge_of(message: Message, *, to_hundred: bool = False) -> float:
-    """Return how full a battery is, from 0 to 1.
+    """Return the charge of a battery from 0 to 1.
 
-    Values that are not measured are NaN, null in JSON: then it is charge by capacity. Some robots
-    count `percentage` to 100: those that sent more than 1, or are known to (`to_hundred`).
+    Unmeasured values are NaN, null in JSON; without a `percentage`, use charge by capacity. Some
+    robots send percentages up to 100: those that have sent more than 1 (`to_hundred`).
 
     Raises:
-        ValueError, KeyError, TypeError: the message does not tell.
+        ValueError, KeyError, TypeError: the message has no usable values.
     """
     share = message["percentage"]
     if share is None:

@@ -1,4 +1,4 @@
-"""A laser scanner behind ROS: sensor_msgs/LaserScan."""
+"""A laser scanner through ROS: sensor_msgs/LaserScan."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import Fact, Reading
 
-NEAR = 0.15  # m, a hand's breadth: beams that end within it see what covers the scanner
-WINDOW = 1.0  # s within which beams change, unless the scanner is covered
-SEEN = 0.8  # share of that time after which it can be told
+NEAR = 0.15  # m, a hand's breadth: nearer returns come from an object that covers the scanner
+WINDOW = 1.0  # s in which ranges change, unless the scanner is covered
+SEEN = 0.8  # share of that time that scans must span before the change is reported
 
 
 class RosLaser:
-    """A scanner that measures as ROS tells; what it tells of itself is as `ScipLaser` does."""
+    """A scanner of a ROS robot; its reading has the same facts as that of `ScipLaser`."""
 
     def __init__(
         self,
@@ -31,14 +31,14 @@ class RosLaser:
         turned: float = 0.0,
         diagnostics: RosDiagnostics | None = None,
     ) -> None:
-        """Name its topic, and by how many rad the scanner is turned.
+        """Set its topic and mounting.
 
         Args:
             bridge: the link to the robot.
-            name: of the device, as in the profile of the robot.
-            topic: its name.
-            turned: by how much it looks to the left of where the robot faces, in radians.
-            diagnostics: what its server says of its devices, if it does.
+            name: its name in the robot's profile.
+            topic: name of the topic.
+            turned: rotation of the scanner to the left of the robot's front, in rad.
+            diagnostics: diagnostics of the robot, if it publishes any.
         """
         self.name = name
         self._bridge, self._topic, self._turned = bridge, topic, turned
@@ -49,11 +49,11 @@ class RosLaser:
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """The newest scan; None: there was none yet."""
+        """Newest scan; None before the first."""
         return self._newest.stamped
 
     async def start(self) -> None:
-        """Begin to hear scans."""
+        """Subscribe to its topic."""
         await self._bridge.start()
         if not self._begun:
             self._begun = True
@@ -62,7 +62,7 @@ class RosLaser:
             self._bridge.subscribe(self._topic, "sensor_msgs/LaserScan", self._hear)
 
     async def close(self) -> None:
-        """End."""
+        """Unsubscribe."""
         self._begun = False
         self._bridge.unsubscribe(self._topic, self._hear)
 
@@ -70,7 +70,7 @@ class RosLaser:
         """Return the age of the newest scan, and the facts about its view.
 
         `near_share` is the share of beams that end within a hand's breadth; `variety` the share
-        that changed within a second, told when a second was seen.
+        that changed within a second, once a second was seen.
         """
         facts: dict[str, Fact] = {}
         if self._seen:
@@ -84,7 +84,7 @@ class RosLaser:
         self._newest.take(scan)
         now = self._bridge.clock()
         if self._seen and len(self._seen[-1][1]) != len(raw):
-            self._seen.clear()  # it was set up anew
+            self._seen.clear()  # its settings have changed
         self._seen.append((now, raw))
         while now - self._seen[0][0] > WINDOW:
             self._seen.popleft()

@@ -1,7 +1,7 @@
-"""ROS messages as rosbridge sends them, and what they mean here; pure functions.
+"""Conversion between rosbridge's ROS messages and Tangy's values; pure functions.
 
-Times are {"secs", "nsecs"} in ROS 1 and {"sec", "nanosec"} in ROS 2; parsing accepts both.
-Other messages raise KeyError, TypeError or ValueError, which `Rosbridge` reports.
+Times are {"secs", "nsecs"} in ROS 1 and {"sec", "nanosec"} in ROS 2; parsing accepts both. Other
+messages raise KeyError, TypeError or ValueError, which `Rosbridge` reports.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState
 Message = Mapping[str, Any]
 
 LEVELS: tuple[DeviceState, ...] = (OK, WARN, ERROR, STALE)
-"""As diagnostic_msgs/DiagnosticStatus numbers them."""
+"""By their number in diagnostic_msgs/DiagnosticStatus."""
 
 
 def number(value: object) -> float:
@@ -30,37 +30,37 @@ def number(value: object) -> float:
 
 
 def time_message(seconds: float, ros: int) -> dict[str, int]:
-    """Return a time or duration in s as this ROS spells it."""
+    """Return a time or duration in s in the form of this ROS version."""
     whole = math.floor(seconds)
     rest = min(round((seconds - whole) * 1e9), 999_999_999)
     return {"secs": whole, "nsecs": rest} if ros == 1 else {"sec": whole, "nanosec": rest}
 
 
 def seconds_of(message: Message) -> float:
-    """Return a time or duration in s, however it is spelled."""
+    """Return a time or duration of either form in s."""
     whole = message["secs"] if "secs" in message else message["sec"]
     rest = message["nsecs"] if "nsecs" in message else message["nanosec"]
     return number(whole) + number(rest) / 1e9
 
 
 def header(frame: str, ros: int) -> dict[str, Any]:
-    """Return a header without a time, which means now."""
+    """Return a header with time 0, which means now."""
     return {"stamp": time_message(0, ros), "frame_id": frame}
 
 
 def heading_of(quaternion: Message) -> float:
-    """Return the heading (rad) of an orientation; all zeros were not filled in, and mean 0."""
+    """Return the heading (rad) of a quaternion; all zeros (not filled in) mean 0."""
     x, y, z, w = (number(quaternion[axis]) for axis in "xyzw")
     return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
 def quaternion_message(heading: float) -> dict[str, float]:
-    """Return a heading in rad as an orientation."""
+    """Return a heading in rad as a quaternion."""
     return {"x": 0.0, "y": 0.0, "z": math.sin(heading / 2), "w": math.cos(heading / 2)}
 
 
 def pose_of(message: Message) -> Pose:
-    """Return a geometry_msgs/Pose, seen from above."""
+    """Return a geometry_msgs/Pose as a planar pose."""
     place = message["position"]
     return Pose(number(place["x"]), number(place["y"]), heading_of(message["orientation"]))
 
@@ -79,7 +79,7 @@ def twist_of(message: Message) -> Twist:
 
 
 def twist_message(twist: Twist) -> dict[str, Any]:
-    """Return how fast to drive as geometry_msgs/Twist."""
+    """Return a twist as geometry_msgs/Twist."""
     return {
         "linear": {"x": twist.forward, "y": 0.0, "z": 0.0},
         "angular": {"x": 0.0, "y": 0.0, "z": twist.turn},
@@ -92,14 +92,14 @@ def odometry_of(message: Message) -> Odometry:
 
 
 def scan_of(message: Message, turned: float = 0.0) -> tuple[Scan, NDArray[np.float64]]:
-    """Return a sensor_msgs/LaserScan, and its ranges as they came: (n,) in m.
+    """Return a sensor_msgs/LaserScan, and its raw ranges (n,) in m.
 
-    What a scanner measures below its least or beyond its greatest range, or not at all (null, as
-    rosbridge writes infinity), is inf in the scan.
+    Ranges outside the scanner's limits, and missing ones (null, as rosbridge writes infinity), are
+    inf in the scan.
 
     Args:
-        message: what came.
-        turned: by how much it looks to the left of where the robot faces, in radians.
+        message: the message.
+        turned: rotation of the scanner to the left of the robot's front, in rad.
     """
     raw = np.array(message["ranges"], float)
     first, step = number(message["angle_min"]), number(message["angle_increment"])
@@ -114,7 +114,7 @@ def scan_of(message: Message, turned: float = 0.0) -> tuple[Scan, NDArray[np.flo
 def joints_of(message: Message) -> dict[str, float]:
     """Return the positions of a sensor_msgs/JointState by joint, in rad."""
     names, positions = message["name"], message["position"]
-    if not positions:  # some publish only how fast joints move, or how hard
+    if not positions:  # some messages have only velocities or efforts
         return {}
     return {str(name): number(position) for name, position in zip(names, positions, strict=True)}
 
@@ -123,8 +123,8 @@ def trajectory_message(joints: Mapping[str, float], seconds: float, ros: int) ->
     """Return a trajectory_msgs/JointTrajectory to one point.
 
     Args:
-        joints: where to, in radians, by joint.
-        seconds: when to be there.
+        joints: goal positions in rad, by joint.
+        seconds: duration of the movement.
         ros: 1 or 2.
     """
     point = {
@@ -138,11 +138,11 @@ def trajectory_message(joints: Mapping[str, float], seconds: float, ros: int) ->
 
 
 def statuses_of(message: Message) -> list[tuple[str, DeviceState, str, dict[str, str]]]:
-    """Return a diagnostic_msgs/DiagnosticArray: name, state, what it says, and its values."""
+    """Return name, state, message and values of each status in a DiagnosticArray."""
     found: list[tuple[str, DeviceState, str, dict[str, str]]] = []
     for status in message["status"]:
         level = status["level"]
-        if isinstance(level, str) and len(level) == 1:  # a byte, as some bridges write it
+        if isinstance(level, str) and len(level) == 1:  # a byte as a string, from some bridges
             level = ord(level) if level < " " else int(level)
         if isinstance(level, bool) or not isinstance(level, int) or not 0 <= level < len(LEVELS):
             raise ValueError(f"{level!r:.40} is no level of a diagnosis")
@@ -153,7 +153,7 @@ def statuses_of(message: Message) -> list[tuple[str, DeviceState, str, dict[str,
 
 
 def within(pose: Pose, origin: Pose) -> Pose:
-    """Return a pose of a frame as one of the frame in which `origin` is that frame's place."""
+    """Transform a pose from the frame of `origin` into its parent frame."""
     cos, sin = math.cos(origin.heading), math.sin(origin.heading)
     return Pose(
         origin.x + cos * pose.x - sin * pose.y,
@@ -163,17 +163,17 @@ def within(pose: Pose, origin: Pose) -> Pose:
 
 
 def seen_from(pose: Pose, origin: Pose) -> Pose:
-    """Return a pose as it is seen from `origin`; undoes `within`."""
+    """Transform a pose into the frame of `origin`; the inverse of `within`."""
     cos, sin = math.cos(origin.heading), math.sin(origin.heading)
     x, y = pose.x - origin.x, pose.y - origin.y
     return Pose(cos * x + sin * y, cos * y - sin * x, _wrapped(pose.heading - origin.heading))
 
 
 def joined_names(text: str) -> dict[str, str]:
-    """Read "limb/joint = robot's name, ..." as robots' profiles name joints otherwise.
+    """Parse "limb/joint = robot's name, ..." of a robot's profile.
 
     Raises:
-        ValueError: it is not of that form.
+        ValueError: the text is invalid.
     """
     names: dict[str, str] = {}
     for part in filter(None, (part.strip() for part in text.split(","))):
@@ -185,13 +185,13 @@ def joined_names(text: str) -> dict[str, str]:
 
 
 def near_share(raw: NDArray[np.float64], near: float) -> float:
-    """Return the share of beams (n,) that end within so many m; 0 is a beam that met nothing."""
+    """Return the share of beams (n,) that end within so many m; a range of 0 is no return."""
     with np.errstate(invalid="ignore"):
         return float(np.mean((raw > 0) & (raw < near)))
 
 
 def changed_share(scans: Sequence[NDArray[np.float64]]) -> float:
-    """Return the share of beams that changed over some scans, each (n,)."""
+    """Return the share of beams that changed between scans (n,)."""
     ranges = np.nan_to_num(np.stack(scans), nan=np.inf)
     return float(np.mean(ranges.min(0) != ranges.max(0)))
 

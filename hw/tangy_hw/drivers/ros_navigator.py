@@ -1,4 +1,4 @@
-"""Robots that find their way themselves: move_base in ROS 1, Nav2's NavigateToPose in ROS 2."""
+"""The robot's own navigation: move_base in ROS 1, Nav2's NavigateToPose in ROS 2."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from tangy_profiles.health import OK, STALE, DeviceState, Reading
 from tangy_profiles.reading import plain
 
 DRIVE_SECONDS = 180.0
-TAKEN_SECONDS = 3.0  # in which a goal has been taken, or nobody takes goals there
-AGAIN_SECONDS = 0.5  # until a goal that nobody took is sent again: topics of ROS 1 begin late
-CANCEL_SECONDS = 2.0  # for which the end of what was cancelled is waited for
+TAKEN_SECONDS = 3.0  # until a goal must be accepted
+AGAIN_SECONDS = 0.5  # until an unaccepted goal is sent again: ROS 1 topics connect late
+CANCEL_SECONDS = 2.0  # timeout for the end of a cancelled goal
 
-TOLD = (0.25, *(0.0,) * 6, 0.25, *(0.0,) * 27, 0.07)  # m2 and rad2, (6, 6): how sure staff are
+TOLD = (0.25, *(0.0,) * 6, 0.25, *(0.0,) * 27, 0.07)  # m2, rad2 (6, 6): of staff's poses
 
-OURS = "tangy-"  # with which the id of a goal of ROS 1 begins
-UNDER_WAY = (0, 1)  # as actionlib_msgs/GoalStatus numbers them
+OURS = "tangy-"  # prefix of the ids of ROS 1 goals
+UNDER_WAY = (0, 1)  # by their number in actionlib_msgs/GoalStatus
 SUCCEEDED = 3
 OVER = {2: "was cancelled", 4: "found no way", 5: "refused", 8: "was cancelled", 9: "lost the goal"}
 
@@ -44,7 +44,7 @@ Path = Literal["clear", "replanned", "none"]
 
 
 class RosNavigator:
-    """Drives to poses by the robot's own navigation; one at a time, the newest counts."""
+    """Drives to poses with the robot's own navigation; a new goal replaces the previous one."""
 
     def __init__(
         self,
@@ -57,16 +57,16 @@ class RosNavigator:
         place: str = "/amcl_pose",
         initial: str = "/initialpose",
     ) -> None:
-        """Name its action and topics.
+        """Set its action and topics.
 
         Args:
             bridge: the link to the robot.
-            name: of the device, as in the profile of the robot.
-            action: "" is /move_base in ROS 1, and /navigate_to_pose in ROS 2.
-            frame: of the robot's map.
-            origin: where in the robot's map the room's frame is.
-            place: where the robot says by geometry_msgs/PoseWithCovarianceStamped that it is.
-            initial: the topic for the initial pose.
+            name: its name in the robot's profile.
+            action: name of the action; "": /move_base in ROS 1, /navigate_to_pose in ROS 2.
+            frame: frame of the robot's map.
+            origin: pose of the room's frame in the robot's map.
+            place: topic of the robot's pose, geometry_msgs/PoseWithCovarianceStamped.
+            initial: topic for the initial pose.
         """
         self.name = name
         self.state: State = "idle"
@@ -76,7 +76,7 @@ class RosNavigator:
         self._newest: Newest[None] = Newest(bridge.clock)
         self._pose: Newest[Pose] = Newest(bridge.clock)
         self._spread = 0.0
-        self._since = bridge.clock()  # when the newest drive began
+        self._since = bridge.clock()  # start of the latest drive
         self._path: Path = "clear"
         self._mark, self._numbers = f"{OURS}{secrets.token_hex(4)}", count(1)
         self._drive: _Drive | None = None
@@ -90,7 +90,8 @@ class RosNavigator:
                 lambda message: self._feed(message["feedback"]),
             ),
         }
-        # A bridge may hear nothing else of a link on which a goal is under way: not even a stop.
+        # Some bridges process no other message of a link while it has an active goal, not even a
+        # stop.
         self._goals = (
             bridge if bridge.ros == 1 else Rosbridge(bridge.url, clock=bridge.clock, ros=2)
         )
@@ -99,11 +100,11 @@ class RosNavigator:
 
     @property
     def pose(self) -> Stamped[Pose] | None:
-        """Where in the room the robot says that it is; None: it did not say so yet."""
+        """Pose in the room that the robot reports; None before the first."""
         return self._pose.stamped
 
     async def start(self) -> None:
-        """Begin to hear how driving goes."""
+        """Subscribe to the progress of driving."""
         await self._bridge.start()
         await self._goals.start()
         if self._begun:
@@ -122,7 +123,7 @@ class RosNavigator:
                 self._bridge.subscribe(topic, kind, hears)
 
     async def close(self) -> None:
-        """Stand still, and end."""
+        """Cancel the goal, and unsubscribe."""
         await self.cancel()
         self._begun = False
         self._bridge.unsubscribe(self._place, self._hear_place)
@@ -133,9 +134,9 @@ class RosNavigator:
             await self._goals.close()
 
     def reading(self) -> Reading:
-        """Return how long ago it was heard of, and how the way there is.
+        """Return the age of the newest message, and the state of the path.
 
-        Where navigation says nothing while it has nothing to do (ROS 2), its age is the link's.
+        ROS 2 navigation is silent without a goal; its age is then that of the link.
         """
         age = self._newest.age
         if self._bridge.ros == 2:
@@ -145,10 +146,10 @@ class RosNavigator:
         return self._newest.reading(self.name, OK, {"path": self._path})
 
     def localisation(self) -> Reading:
-        """Return how long ago the robot said where it is, and how sure it is of that.
+        """Return the age of the pose, and its uncertainty.
 
-        It may say so only as it moves: while it is to stand, the age is the link's. How well the
-        room fits it does not say: it does, until several places are thought possible.
+        The robot may report its pose only while it moves, so at rest the age is that of the link.
+        The fit is not reported: it is 1, or 0 if several places are possible.
         """
         age, link = self._pose.age, self._bridge.reading().age
         age = min(age, self._bridge.clock() - self._since if self.state == "driving" else link)
@@ -158,7 +159,7 @@ class RosNavigator:
         return Reading("localisation", age, state, facts, self._pose.rate)
 
     def place(self, pose: Pose) -> None:
-        """Tell the robot that it is there, within some 50 cm.
+        """Send the robot its pose, with an uncertainty of some 50 cm.
 
         Raises:
             DeviceError: there is no link.
@@ -168,11 +169,11 @@ class RosNavigator:
         self._bridge.publish(self._initial, {"header": head, "pose": there})
 
     async def go(self, goal: Pose, seconds: float = DRIVE_SECONDS) -> None:
-        """Drive to a place, and wait (for s at most) until it is there; cancelling cancels that.
+        """Drive to a pose, and wait for at most so many s; cancelling the wait cancels the goal.
 
         Raises:
-            DeviceError: nobody takes goals, there is no way, it took longer, another goal came, or
-                the link was lost (the goal is cancelled when it is back).
+            DeviceError: no server accepts goals, there is no path, a timeout, a new goal, or a lost
+                link (the goal is cancelled when it is back).
         """
         await self.cancel(wait=False)
         place = within(goal, self._origin)
@@ -180,7 +181,7 @@ class RosNavigator:
         drive = self._drive = _Drive(f"{self._mark}-{next(self._numbers)}")
         self._known[drive.key] = drive
         self.state, self._path, self._since = "driving", "clear", self._bridge.clock()
-        if self._bridge.ros == 2:  # it speaks while it drives alone; what it said before is old
+        if self._bridge.ros == 2:  # it is silent without a goal, so earlier messages are old
             self._newest.restart()
         try:
             if self._bridge.ros == 1:
@@ -208,7 +209,7 @@ class RosNavigator:
                 self._drive = None
 
     async def cancel(self, *, wait: bool = True) -> None:
-        """Give up where it drives to, and wait a moment until it has; never raises."""
+        """Cancel the goal, and wait a moment for its end; never raises."""
         drive, self._drive = self._drive, None
         if drive is None:
             return
@@ -223,7 +224,7 @@ class RosNavigator:
         return self._bridge.connected
 
     async def _send(self, drive: _Drive, target: Message) -> None:
-        """Publish a goal until it is taken; one that came twice is the same to actionlib."""
+        """Publish a goal until it is accepted; actionlib ignores duplicates."""
         ros, clock = self._bridge.ros, self._bridge.clock
         stamp = time_message(0, ros)
         goal = {
@@ -240,9 +241,9 @@ class RosNavigator:
             raise DeviceError(f"{self.name}: nobody takes goals at {self._action}.")
 
     async def _seek(self, drive: _Drive, target: Message) -> None:
-        """Send a goal as an action, over a link of its own."""
+        """Send a goal as a ROS 2 action, over a separate link."""
         await self._goals.wait_connected(TAKEN_SECONDS)
-        if drive.given_up:  # while it was waited for
+        if drive.given_up:  # while waiting
             return
         goal = self._goals.send_goal(
             self._action,
@@ -262,9 +263,9 @@ class RosNavigator:
         goal.over.add_done_callback(over)
 
     def _give_up(self, drive: _Drive) -> None:
-        """Cancel at the robot; what cannot be cancelled now is as soon as there is a link.
+        """Cancel a goal at the robot, or as soon as there is a link.
 
-        Where it is lost it is said again, when the goal is heard of.
+        A lost cancellation is repeated when the goal is reported again.
         """
         drive.given_up = True
         if drive.over.done() and not drive.lost:
@@ -297,10 +298,10 @@ class RosNavigator:
         self._told(message["status"])
 
     def _told(self, status: Message) -> None:
-        """Hear what became of a goal; those of others are none of our business.
+        """Handle the status of a goal; ignore goals of other clients.
 
-        A goal of ours that nobody wants is given up again: a cancellation can be lost, and a
-        process of ours that was killed could say none.
+        A goal of ours that is no longer wanted is cancelled again, because a cancellation can be
+        lost, and a killed process cannot cancel its goals.
         """
         key, code = status["goal_id"]["id"], status["status"]
         drive = self._known.get(key)
@@ -320,7 +321,7 @@ class RosNavigator:
                 self._path = "none"
 
     def _fed(self, drive: _Drive, values: Message) -> None:
-        """Hear of a drive in ROS 2."""
+        """Handle feedback on a goal of ROS 2."""
         now = self._bridge.clock()
         if not drive.given_up:
             self._feed(values)
@@ -329,7 +330,7 @@ class RosNavigator:
             self._bridge.cancel_goal(drive.goal)
 
     def _feed(self, values: Message) -> None:
-        """Hear where the robot is on its way."""
+        """Handle the robot's progress."""
         self._newest.take(None)
         if number(values.get("number_of_recoveries", 0)) > 0:
             self._path = "replanned"
@@ -343,13 +344,13 @@ class RosNavigator:
 
 
 class _Drive:
-    """A goal on its way: whether it was taken, and what became of it."""
+    """A goal in progress: whether it was accepted, and its result."""
 
     def __init__(self, key: str) -> None:
         self.key = key
         self.goal: Goal | None = None
         self.lost = self.given_up = False
-        self.told = -math.inf  # when it was said again that it is given up
+        self.told = -math.inf  # time of the last repeated cancellation
         loop = asyncio.get_running_loop()
         self.taken: asyncio.Future[None] = loop.create_future()
         self.over: asyncio.Future[None] = loop.create_future()

@@ -1,4 +1,4 @@
-"""The newest of what a topic brought, and how old it is."""
+"""The newest value from a topic, and its age."""
 
 from __future__ import annotations
 
@@ -13,46 +13,46 @@ from tangy_profiles.health import OK, STALE, DeviceState, Fact, Reading
 
 Value = TypeVar("Value")
 NOTHING: Mapping[str, Fact] = MappingProxyType({})
-LOOK_SECONDS = 0.1  # of the machine's time, after which a clock that is not its own is looked at
+LOOK_SECONDS = 0.1  # of real time, after which a simulated clock is checked
 
 
 class Newest(Generic[Value]):
-    """A value with its number and the time at which it arrived."""
+    """A value with its number and time of arrival."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
-        """Begin without one; its age counts from now."""
+        """Start without a value; the age counts from now."""
         self.stamped: Stamped[Value] | None = None
-        """The newest value; None: there was none yet."""
+        """Newest value; None before the first."""
         self._clock = clock
         self._arrivals = RateEstimator()
         self._since = clock()
 
     def take(self, value: Value) -> None:
-        """Take a new one."""
+        """Store a new value."""
         number = 1 if self.stamped is None else self.stamped.seq + 1
         self.stamped = Stamped(value, self._clock(), number)
         self._arrivals.count(self.stamped.stamp)
 
     def restart(self) -> None:
-        """Forget what came, so that only new data counts."""
+        """Forget the value, so that only new data counts."""
         self.stamped, self._since = None, self._clock()
         self._arrivals.restart()
 
     @property
     def age(self) -> float:
-        """How long ago it came, in s; before there was any, since when it is waited for."""
+        """Age of the value in s; before the first, the waiting time."""
         since = self._since if self.stamped is None else self.stamped.stamp
         return max(self._clock() - since, 0.0)
 
     @property
     def rate(self) -> float | None:
-        """How often a second one comes; None: that cannot be told yet."""
+        """Rate of values per second; None: unknown yet."""
         return self._arrivals.rate(self._clock())
 
     def reading(
         self, device: str, state: DeviceState = OK, facts: Mapping[str, Fact] = NOTHING
     ) -> Reading:
-        """Return the reading for the diagnosis: stale before the first message, else `state`."""
+        """Return the reading for the diagnosis: stale before the first value, otherwise `state`."""
         said: DeviceState = STALE if self.stamped is None else state
         return Reading(device, self.age, said, facts, self.rate)
 
@@ -63,13 +63,13 @@ async def awaited(
     clock: Callable[[], float],
     goes_on: Callable[[], bool] = lambda: True,
 ) -> bool:
-    """Wait for something until a time of a clock; say whether it was there by then.
+    """Wait for a future until a time of a clock; return whether it is done.
 
     Args:
-        future: the future to wait for.
-        until: the latest time on the clock, in s.
-        clock: gives the time, in s.
-        goes_on: whether there is still a reason to wait.
+        future: the future.
+        until: latest time on the clock, in s.
+        clock: returns the time in s.
+        goes_on: returns whether to go on waiting.
     """
     while not future.done() and goes_on() and (left := until - clock()) > 0:
         await asyncio.wait({future}, timeout=min(left, LOOK_SECONDS))

@@ -1,4 +1,4 @@
-"""Status of a robot behind ROS: its diagnostics, and its emergency stop."""
+"""Status of a robot through ROS: its diagnostics, and its emergency stop."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Reading
 
-HOLDS_SECONDS = 5.0  # for which a diagnosis holds; ROS tells one a second
-NAMES = 500  # diagnoses that are kept
+HOLDS_SECONDS = 5.0  # for which a status is valid; ROS publishes one a second
+NAMES = 500  # statuses kept per message
 WORSE = (OK, WARN, STALE, ERROR)
 
 
 class DeviceStatus(NamedTuple):
-    """The status of a device: its state, a sentence, values, and when it arrived."""
+    """Status of a device: its state, a sentence, values, and time of arrival."""
 
     state: DeviceState
     says: str
@@ -25,10 +25,10 @@ class DeviceStatus(NamedTuple):
 
 
 class RosDiagnostics:
-    """The newest diagnosis of each device, from diagnostic_msgs/DiagnosticArray.
+    """Latest status of each device, from diagnostic_msgs/DiagnosticArray.
 
-    A diagnosis is of the device whose name is the last part of its own, before a colon:
-    "/robot/Stop Button: state" is of stop_button.
+    A status belongs to the device named by the last part of its name, up to a colon: "/robot/Stop
+    Button: state" belongs to stop_button.
     """
 
     def __init__(
@@ -39,13 +39,13 @@ class RosDiagnostics:
         topic: str = "/diagnostics",
         names: Mapping[str, str] | None = None,
     ) -> None:
-        """Name the topic.
+        """Set the topic.
 
         Args:
             bridge: the link to the robot.
-            name: of the device, as in the profile of the robot.
-            topic: its name.
-            names: devices by how their diagnoses are named, where that is otherwise.
+            name: its name in the robot's profile.
+            topic: name of the topic.
+            names: devices by the names of their statuses, if these follow another scheme.
         """
         self.name = name
         self._bridge, self._topic = bridge, topic
@@ -55,35 +55,35 @@ class RosDiagnostics:
         self._begun = False
 
     async def start(self) -> None:
-        """Begin to hear them."""
+        """Subscribe to the topic."""
         await self._bridge.start()
         if not self._begun:
             self._begun = True
             self._bridge.subscribe(self._topic, "diagnostic_msgs/DiagnosticArray", self._hear)
 
     async def close(self) -> None:
-        """End."""
+        """Unsubscribe."""
         self._begun = False
         self._bridge.unsubscribe(self._topic, self._hear)
 
     def reading(self) -> Reading:
-        """Return the age of the newest of them."""
+        """Return the age of the newest message."""
         return self._newest.reading(self.name)
 
     def of(self, device: str) -> DeviceStatus | None:
-        """Return the worst that is said of a device now; None: nothing is, or not any more."""
+        """Return the worst current status of a device; None if there is none."""
         now = self._bridge.clock()
         said = self._said.get(device, {}).values()
         held = [one for one in said if now - one.stamp <= HOLDS_SECONDS]
         return max(held, key=lambda one: WORSE.index(one.state), default=None)
 
     def age(self, device: str) -> float | None:
-        """Return how long ago anything was said of a device, in s; None: never."""
+        """Return the age of a device's newest status in s; None if there was none."""
         stamps = [one.stamp for one in self._said.get(device, {}).values()]
         return max(self._bridge.clock() - max(stamps), 0.0) if stamps else None
 
     def device(self, name: str) -> str:
-        """Return which device a diagnosis of some name is of."""
+        """Return the device that a status belongs to, by the name of the status."""
         if name in self._names:
             return self._names[name]
         return name.split(":")[0].rstrip("/").split("/")[-1].strip().lower().replace(" ", "_")
@@ -97,13 +97,13 @@ class RosDiagnostics:
 
 
 def state_told(diagnostics: RosDiagnostics | None, device: str) -> DeviceState:
-    """Return the state that diagnostics give a device; OK where they say nothing of it."""
+    """Return the state of a device by the diagnostics; OK if they do not mention it."""
     diagnosis = None if diagnostics is None else diagnostics.of(device)
     return OK if diagnosis is None else diagnosis.state
 
 
 class RosStopButton:
-    """An emergency stop that says on std_msgs/Bool whether it is pressed, again and again."""
+    """An emergency stop that keeps publishing on std_msgs/Bool whether it is pressed."""
 
     def __init__(
         self,
@@ -114,14 +114,14 @@ class RosStopButton:
         pressed: bool = True,
         changes_only: bool = False,
     ) -> None:
-        """Name its topic.
+        """Set its topic.
 
         Args:
             bridge: the link to the robot.
-            name: of the device, as in the profile of the robot.
-            topic: its name.
-            pressed: what it says when it is pressed; some say that they are not.
-            changes_only: it speaks when it changes alone, so its age is that of the link.
+            name: its name in the robot's profile.
+            topic: name of the topic.
+            pressed: value that means pressed; some publish False.
+            changes_only: it publishes changes only, so its age is that of the link.
         """
         self.name = name
         self._bridge, self._topic = bridge, topic
@@ -135,7 +135,7 @@ class RosStopButton:
         return self._newest.stamped is not None and self._newest.stamped.value
 
     async def start(self) -> None:
-        """Begin to hear it."""
+        """Subscribe to the topic."""
         await self._bridge.start()
         if not self._begun:
             self._begun = True
@@ -143,12 +143,12 @@ class RosStopButton:
             self._bridge.subscribe(self._topic, "std_msgs/Bool", self._hear)
 
     async def close(self) -> None:
-        """End."""
+        """Unsubscribe."""
         self._begun = False
         self._bridge.unsubscribe(self._topic, self._hear)
 
     def reading(self) -> Reading:
-        """Return whether it is pressed, and how long ago it said so."""
+        """Return whether it is pressed, with the age of that message."""
         reading = self._newest.reading(self.name, OK, {"latched": self.latched})
         if self._changes_only and self._newest.stamped is not None:
             reading = reading._replace(age=min(reading.age, self._bridge.reading().age))

@@ -1,4 +1,4 @@
-"""The topic on which a base behind ROS takes velocity commands."""
+"""Topic on which a base takes velocity commands through ROS."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 
 
 class VelocityTopic:
-    """Publishes geometry_msgs/Twist, or TwistStamped as some of ROS 2 want it."""
+    """Publishes geometry_msgs/Twist, or TwistStamped for some ROS 2 bases."""
 
     def __init__(
         self, bridge: Rosbridge, topic: str = "/cmd_vel", *, stamped: bool = False
@@ -16,12 +16,12 @@ class VelocityTopic:
         self._bridge, self._topic, self._stamped = bridge, topic, stamped
 
     def advertise(self) -> None:
-        """Announce the topic, now and at every new connection."""
+        """Advertise the topic, now and at every new connection."""
         kind = "geometry_msgs/TwistStamped" if self._stamped else "geometry_msgs/Twist"
         self._bridge.advertise(self._topic, kind)
 
     def say(self, twist: Twist) -> None:
-        """Publish a command ahead of all else.
+        """Publish a command ahead of all other messages.
 
         Raises:
             DeviceError: there is no connection.

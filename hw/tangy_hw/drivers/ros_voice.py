@@ -1,4 +1,4 @@
-"""A voice behind ROS: text to say on one std_msgs/String, spoken text on another."""
+"""A voice through ROS: one std_msgs/String topic takes text, another reports spoken text."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from tangy_profiles.wav_length import wav_seconds
 
 _LOG = logging.getLogger(__name__)
 
-PATIENCE_SECONDS = 5.0  # beyond what a sentence takes, until the voice is taken to be dead
-CHARACTER_SECONDS = 0.15  # twice what slow speech takes
+PATIENCE_SECONDS = 5.0  # beyond the expected duration, until the voice counts as dead
+CHARACTER_SECONDS = 0.15  # per character: twice that of slow speech
 
 
 class RosVoice:
-    """The robot's own voice; each sentence is acknowledged when it was said.
+    """The robot's own voice; it acknowledges each text that it has spoken.
 
-    It is acknowledged by its own text. With `with_id` it is sent as JSON, {"id": 7, "text": ...},
-    and acknowledged by the id, alone or as JSON: for robots that normalise what they are told.
-    With a topic for sounds it takes the path of a WAV file, and acknowledges that in the same way.
+    It acknowledges by the text itself. With `with_id`, texts are sent as JSON, {"id": 7, "text":
+    ...}, and acknowledged by the id, alone or in JSON: for robots that normalise text. A topic for
+    sounds takes the path of a WAV file, and acknowledges it in the same way.
     """
 
     def __init__(
@@ -45,18 +45,18 @@ class RosVoice:
         patience: float = PATIENCE_SECONDS,
         diagnostics: RosDiagnostics | None = None,
     ) -> None:
-        """Name its topics.
+        """Set its topics.
 
         Args:
             bridge: the link to the robot.
-            name: of the device, as in the profile of the robot.
-            say: the topic that takes the text to speak.
-            said: the topic that reports the end of each text.
-            hush: takes std_msgs/Empty, upon which it is quiet.
-            play: the topic that takes the path of a WAV file to play ("": it plays none).
-            with_id: whether sentences are sent with an id.
-            patience: s beyond what a sentence takes, until the voice is taken to be dead.
-            diagnostics: what its server says of its devices, if it does.
+            name: its name in the robot's profile.
+            say: topic for text to speak.
+            said: topic that reports the end of each text.
+            hush: topic for std_msgs/Empty, which silences the voice.
+            play: topic for the path of a WAV file to play; "": it plays none.
+            with_id: whether texts are sent with an id.
+            patience: s beyond the expected duration, until the voice counts as dead.
+            diagnostics: diagnostics of the robot, if it publishes any.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics
@@ -67,7 +67,7 @@ class RosVoice:
         self._dead = self._begun = False
 
     async def start(self) -> None:
-        """Subscribe to spoken texts; a voice considered dead is tried again."""
+        """Subscribe to spoken texts; a voice that counts as dead is tried again."""
         await self._bridge.start()
         self._dead = False
         if not self._begun:
@@ -79,15 +79,15 @@ class RosVoice:
             self._bridge.subscribe(self._said, "std_msgs/String", self._hear)
 
     async def close(self) -> None:
-        """Be quiet, and end."""
+        """Silence the voice, and unsubscribe."""
         await self.hush()
         self._begun = False
         self._bridge.unsubscribe(self._said, self._hear)
 
     def reading(self) -> Reading:
-        """Return its state: an error from a sentence that was not said until one that is.
+        """Return its state: ERROR from an unacknowledged text until the next acknowledged one.
 
-        A voice says nothing of itself unless its diagnosis comes: its age is that of the diagnosis,
+        A voice reports its own state only through diagnostics: its age is that of its status there,
         or else that of the link.
         """
         link = self._bridge.reading()
@@ -100,10 +100,10 @@ class RosVoice:
         return Reading(self.name, link.age if age is None else age, state)
 
     async def say(self, text: str) -> None:
-        """Say something, and wait until it was said, or until `hush`.
+        """Speak, and wait until the voice has spoken, or until `hush`.
 
         Raises:
-            DeviceError: there is no link, or nobody says it.
+            DeviceError: there is no link, or no acknowledgement.
         """
         text = " ".join(text.split())
         if text:
@@ -111,10 +111,10 @@ class RosVoice:
             await self._acknowledged(self._say, text, CHARACTER_SECONDS * len(text))
 
     async def play(self, sound: Path) -> None:
-        """Play a WAV file, and wait until it was played, or until `hush`.
+        """Play a WAV file, and wait until it has ended, or until `hush`.
 
         Raises:
-            DeviceError: there is no link, it plays no sounds, or nobody plays it.
+            DeviceError: there is no link, no topic for sounds, or no acknowledgement.
         """
         if not self._play:
             raise DeviceError(f"{self.name} plays no sounds: name its topic in 'play'.")
@@ -122,7 +122,7 @@ class RosVoice:
         await self._acknowledged(self._play, str(sound), wav_seconds(sound))
 
     async def _acknowledged(self, topic: str, text: str, seconds: float) -> None:
-        """Send a text, and wait for its end, which may take so many s."""
+        """Send a text, and wait for its acknowledgement; it should take so many s."""
         key = str(next(self._numbers)) if self._with_id else text
         data = json.dumps({"id": int(key), "text": text}) if self._with_id else text
         self._bridge.publish(topic, {"data": data})
@@ -139,7 +139,7 @@ class RosVoice:
             raise DeviceError(plain(f"{self.name} did not say {text[:60]!r}."))
 
     async def hush(self) -> None:
-        """Be quiet now; the current text counts as spoken."""
+        """Silence the voice now; the current text counts as spoken."""
         for over in list(self._waiting):
             if not over.done():
                 over.set_result(None)

@@ -1,7 +1,7 @@
-"""The link to a robot by rosbridge v2: JSON over WebSocket, ROS 1 and ROS 2 alike.
+"""Link to a robot through rosbridge v2: JSON over WebSocket, for ROS 1 and ROS 2.
 
-It connects by itself and again whenever it was lost. A connection says little: with a frozen bridge
-it stands for ever. What counts is the age of the newest data, which `reading` and each device tell.
+It connects and reconnects by itself. A connection alone proves little: that of a frozen bridge
+stays open. What counts is the age of the newest data, which `reading` and each device report.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ Message = Mapping[str, Any]
 Hears = Callable[[Message], None]
 Tells = Callable[[str], None]
 
-LARGEST = 16 << 20  # bytes of a message that is taken
-FIRST_WAIT, LONGEST_WAIT = 0.25, 2.0  # s between two attempts to connect; they grow
-OPENING_SECONDS = 3.0  # for which a handshake is waited for
-PING_SECONDS, PONG_SECONDS = 5.0, 10.0  # after which a cable that was pulled is noticed
-CLOSING_SECONDS = 0.2  # for which last words and goodbyes are waited for
-QUEUED = 2_000  # texts that wait to be sent, at most
-SAYINGS = 50  # different things that are told of one link at most
+LARGEST = 16 << 20  # bytes of a received message
+FIRST_WAIT, LONGEST_WAIT = 0.25, 2.0  # s between two attempts to connect, with backoff
+OPENING_SECONDS = 3.0  # timeout of the handshake
+PING_SECONDS, PONG_SECONDS = 5.0, 10.0  # after which an unplugged cable is noticed
+CLOSING_SECONDS = 0.2  # timeout for the last messages and the closing handshake
+QUEUED = 2_000  # maximum of queued messages
+SAYINGS = 50  # maximum of different sentences reported for one link
 
 
 class Rosbridge:
-    """A rosbridge server's topics, services and actions; one connection, which devices share."""
+    """Topics, services and actions of a rosbridge server, over one connection shared by devices."""
 
     name = "link"
 
@@ -52,16 +52,16 @@ class Rosbridge:
         tell: Tells = lambda _: None,
         ros: int = 1,
     ) -> None:
-        """Name the server.
+        """Describe the server.
 
         Args:
-            url: where its server is, as ws://HOST:PORT.
-            clock: the time by which ages are told.
-            tell: called with a sentence for each event of interest to people.
-            ros: 1 or 2, how types and times are spelled.
+            url: address of the server, ws://HOST:PORT.
+            clock: clock for the ages of data, in s.
+            tell: called with a sentence for each event that people should know.
+            ros: 1 or 2: how types and times are spelled.
 
         Raises:
-            DeviceError: the address is none.
+            DeviceError: the address is invalid.
         """
         try:
             parts = urlsplit(url)
@@ -74,7 +74,7 @@ class Rosbridge:
             raise DeviceError(f"{plain(url)}: ros must be 1 or 2.")
         self.url, self.ros = url, ros
         self.drives = True
-        """Whether driving needs this link: without it the robot must stand still."""
+        """Whether driving needs this link: without it the robot must stop."""
         self.clock = clock
         self._tell = tell
         self._told: set[str] = set()
@@ -95,22 +95,22 @@ class Rosbridge:
 
     @property
     def connected(self) -> bool:
-        """Whether the connection stands, which a frozen robot's does too."""
+        """Whether the connection is open, as that of a frozen robot is too."""
         return self._connected.is_set()
 
     @property
     def heard(self) -> float | None:
-        """When the newest message of any kind came, in s of the clock; None: never."""
+        """Arrival of the newest message of any kind, in s of the clock; None: never."""
         return self._heard
 
     async def start(self) -> None:
-        """Begin to connect, and go on with it until `close`."""
+        """Keep connecting until `close`."""
         if self._task is None:
             self._began = self.clock()
             self._task = asyncio.create_task(self._live())
 
     async def close(self) -> None:
-        """Send the remaining messages, and close for good."""
+        """Send the queued messages, and close for good."""
         task, self._task = self._task, None
         if task is not None:
             with suppress(TimeoutError):
@@ -119,32 +119,32 @@ class Rosbridge:
             await asyncio.gather(task, return_exceptions=True)
 
     async def wait_connected(self, seconds: float) -> bool:
-        """Wait for a connection, for so many s at most; say whether there is one."""
+        """Wait up to so many s for a connection; return whether there is one."""
         with suppress(TimeoutError):
             await asyncio.wait_for(self._connected.wait(), seconds)
         return self.connected
 
     def reading(self) -> Reading:
-        """Return the age of the newest message of any kind: the last that says the robot lives."""
+        """Return the age of the newest message of any kind, the last sign of life."""
         since = self._began if self._heard is None else self._heard
         state: DeviceState = OK if self.connected and self._heard is not None else STALE
         now = self.clock()
         return Reading(self.name, max(now - since, 0.0), state, rate=self._arrivals.rate(now))
 
     def on_connect(self, does: Callable[[], None]) -> None:
-        """Have something done at each new connection, before anything else is said."""
+        """Add a callback for each new connection, called before anything is sent."""
         self._on_connect.append(does)
         if self.connected:
             does()
 
     def subscribe(self, topic: str, kind: str, hears: Hears, *, throttle: float = 0) -> None:
-        """Have something called with each message of a topic, from now on and after every loss.
+        """Subscribe to a topic with a callback, also after reconnecting.
 
         Args:
-            topic: its name in ROS.
-            kind: the type, as ROS 1 spells it.
-            hears: is called with each message.
-            throttle: s between two messages at least; the newest counts, none are queued.
+            topic: name of the topic.
+            kind: message type, as ROS 1 spells it.
+            hears: called with each message.
+            throttle: minimum time between two messages in s; only the newest is sent.
         """
         topic = _full(topic)
         self._hears.setdefault(topic, []).append(hears)
@@ -153,7 +153,7 @@ class Rosbridge:
         self._greet(f"subscribe {topic}", {**wire, **wish})
 
     def unsubscribe(self, topic: str, hears: Hears) -> None:
-        """Call this no more."""
+        """Remove a callback from a topic."""
         topic = _full(topic)
         with suppress(KeyError, ValueError):
             self._hears[topic].remove(hears)
@@ -162,18 +162,18 @@ class Rosbridge:
                 self._send({"op": "unsubscribe", "id": topic, "topic": topic})
 
     def advertise(self, topic: str, kind: str) -> None:
-        """Say that a topic will be published on, now and at every new connection."""
+        """Advertise a topic, now and at every new connection."""
         topic = _full(topic)
         wire = {"op": "advertise", "id": f"publish {topic}", "topic": topic}
         self._greet(f"advertise {topic}", {**wire, "type": self.spelled(kind)})
 
     def publish(self, topic: str, message: Message, *, urgent: bool = False) -> None:
-        """Hand a message over; it never waits.
+        """Queue a message without waiting.
 
         Args:
-            topic: its name in ROS.
-            message: the message, as JSON has it.
-            urgent: goes out before all waiting messages, and replaces those of this topic.
+            topic: name of the topic.
+            message: the message as JSON.
+            urgent: send it before all queued messages, and replace those of this topic.
 
         Raises:
             DeviceError: there is no connection.
@@ -192,7 +192,7 @@ class Rosbridge:
         """Call a service and return its values.
 
         Raises:
-            DeviceError: it refused, did not answer in so many s, or the connection was lost.
+            DeviceError: it refused, did not answer within so many s, or the connection was lost.
         """
         name = _full(service)
         if not self.connected:
@@ -207,7 +207,7 @@ class Rosbridge:
             self._waiting.forget(key)
 
     def send_goal(self, action: str, kind: str, goal: Message, feeds: Hears | None = None) -> Goal:
-        """Send a goal to an action of ROS 2; the returned goal reports its progress.
+        """Send a goal to a ROS 2 action; the returned goal reports its progress.
 
         Raises:
             DeviceError: there is no connection.
@@ -222,21 +222,21 @@ class Rosbridge:
         return sought
 
     def cancel_goal(self, goal: Goal) -> None:
-        """Ask the robot to give a goal up, by whatever link it was sent; `over` tells that it did.
+        """Ask the robot to cancel a goal, sent over any link; `over` reports when it has.
 
-        A bridge may hear nothing else of a link as long as a goal of that link is under way.
+        Some bridges process no other message of a link while it has an active goal.
         """
         goal.given_up = True
         self._send({"op": "cancel_action_goal", "id": goal.key, "action": goal.action})
 
     def spelled(self, kind: str) -> str:
-        """Return the name of a type as this ROS spells it: pkg/Kind, or pkg/msg/Kind."""
+        """Return a message type in the form of this ROS version: pkg/Kind or pkg/msg/Kind."""
         package, _, name = kind.partition("/")
         name = name.removeprefix("msg/")
         return f"{package}/{name}" if self.ros == 1 else f"{package}/msg/{name}"
 
     def tell_once(self, sentence: str) -> None:
-        """Tell something unless it was told before."""
+        """Report a sentence unless it was reported before."""
         if sentence not in self._told and len(self._told) < SAYINGS:
             self._told.add(sentence)
             self._tell(plain(sentence))
@@ -250,7 +250,7 @@ class Rosbridge:
                 async with connect(
                     self.url,
                     compression=None,
-                    proxy=None,  # a robot is on this network, whatever the environment says
+                    proxy=None,  # a robot is on this network: ignore proxy settings
                     max_size=LARGEST,
                     open_timeout=OPENING_SECONDS,
                     ping_interval=PING_SECONDS,
@@ -258,7 +258,7 @@ class Rosbridge:
                     close_timeout=CLOSING_SECONDS,
                 ) as socket:
                     await self._talk(socket)
-            except Exception as error:  # a link that ended for good would be worse than any reason
+            except Exception as error:  # any error: the link must go on reconnecting
                 reason = str(error) or type(error).__name__
             finally:
                 self._lose(reason)
@@ -266,7 +266,7 @@ class Rosbridge:
             await asyncio.sleep(wait * random.uniform(0.8, 1.2))
 
     async def _talk(self, socket: ClientConnection) -> None:
-        self._urgent.clear()  # what was meant before a loss is not meant after it
+        self._urgent.clear()  # messages from before the loss are outdated
         self.waiting.clear()
         self._fragments = Fragments()
         self._connected.set()
@@ -291,7 +291,7 @@ class Rosbridge:
                     else:
                         text = self.waiting.popleft()
                     await socket.send(text)
-                    await asyncio.sleep(0)  # much that waits delays nobody else
+                    await asyncio.sleep(0)  # let other tasks run while many messages wait
                 self._idle.set()
                 self._wake.clear()
                 await self._wake.wait()
@@ -306,7 +306,7 @@ class Rosbridge:
 
     def _lose(self, reason: str) -> None:
         if self._task is None:
-            pass  # it was closed here
+            pass  # closed by `close`
         elif self._connected.is_set():
             self._tell(plain(f"The link to {self.url} was lost: {reason}"))
         else:
@@ -324,7 +324,7 @@ class Rosbridge:
             self._send(wire)
 
     def _send(self, wire: Message) -> None:
-        """Queue something; without a connection it is forgotten."""
+        """Queue a message; drop it without a connection."""
         if self.connected:
             if len(self.waiting) >= QUEUED:
                 self.waiting.popleft()
@@ -332,7 +332,7 @@ class Rosbridge:
             self._stir()
 
     def hear(self, text: str | bytes) -> None:
-        """Take one message of the server; skip anything else."""
+        """Handle one message of the server; skip invalid ones."""
         try:
             message = json.loads(text)
             if not isinstance(message, dict):
@@ -362,7 +362,7 @@ class Rosbridge:
         for hears in tuple(self._hears.get(topic, ())):
             try:
                 hears(message["msg"])
-            except Exception as error:  # whatever a message is, the link is there for the others
+            except Exception as error:  # an invalid message must not break the link for others
                 wrong = f"{type(error).__name__}: {error}"
                 self.tell_once(f"A message of {topic} cannot be read: {wrong}")
 

@@ -1,27 +1,27 @@
-"""Messages that rosbridge sends in fragments, put together again."""
+"""Reassembles messages that rosbridge sends in fragments."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-OPEN = 16  # messages that may be incomplete at a time; the oldest is given up
-PIECES = 4_096  # fragments that a message may have
+OPEN = 16  # incomplete messages kept; the oldest is dropped first
+PIECES = 4_096  # maximum of fragments per message
 LARGEST = 16 << 20  # characters of a whole message
 
 
 class Fragments:
-    """Fragments by their message, whatever order they come in."""
+    """Fragments by message, in any order of arrival."""
 
     def __init__(self) -> None:
-        """Begin without any."""
+        """Start without fragments."""
         self.open_parts: dict[str, dict[int, str]] = {}
 
     def take(self, fragment: Mapping[str, Any]) -> str | None:
-        """Take one fragment; return the whole text when it was the last that was missing.
+        """Add a fragment; return the whole text once it is complete.
 
         Raises:
-            ValueError, KeyError, TypeError: it is none, or its message is too large.
+            ValueError, KeyError, TypeError: it is invalid, or its message is too large.
         """
         key, number, total = str(fragment["id"]), fragment["num"], fragment["total"]
         data = fragment["data"]

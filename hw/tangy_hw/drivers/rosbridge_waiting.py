@@ -14,39 +14,39 @@ from tangy_profiles.reading import plain
 
 Message = Mapping[str, Any]
 
-UNKNOWN, SUCCEEDED, CANCELED = 0, 4, 5  # as action_msgs/GoalStatus numbers them
+UNKNOWN, SUCCEEDED, CANCELED = 0, 4, 5  # by their number in action_msgs/GoalStatus
 
 
 class LinkLost(DeviceError):
-    """An answer does not come because the link was lost."""
+    """No answer, because the link was lost."""
 
 
 class Goal:
-    """A goal of an action of ROS 2, on its way."""
+    """A goal of a ROS 2 action in progress."""
 
     def __init__(self, key: str, action: str, feeds: Callable[[Message], None] | None) -> None:
-        """Know what to do with feedback."""
+        """Store the callback for feedback."""
         self.key, self.action, self.feeds = key, action, feeds
         self.given_up = False
         """Whether it was cancelled."""
         self.over: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
-        """Its values; or what became of it, as a `DeviceError`."""
+        """Result values, or a `DeviceError`."""
         self.over.add_done_callback(lambda over: over.cancelled() or over.exception())
 
 
 class Waiting:
-    """Answers that are awaited, by the id that both sides gave them."""
+    """Pending requests by their id."""
 
     def __init__(self) -> None:
-        """Begin with none."""
-        # Some bridges keep the goals of all their clients in one place.
+        """Start without requests."""
+        # Some bridges keep the goals of all clients in one place.
         self._mark = f"tangy {secrets.token_hex(4)}"
         self._numbers = count(1)
         self._calls: dict[str, tuple[str, asyncio.Future[Message]]] = {}
         self._goals: dict[str, Goal] = {}
 
     def call(self, service: str) -> tuple[str, asyncio.Future[Message]]:
-        """Return an id for a call, and what becomes of it."""
+        """Return an id and a future for a service call."""
         key = f"{self._mark} {next(self._numbers)}"
         future: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
         self._calls[key] = service, future
@@ -59,11 +59,11 @@ class Waiting:
         return goal
 
     def forget(self, key: str) -> None:
-        """Await an answer no more."""
+        """Stop waiting for an answer."""
         self._calls.pop(key, None)
 
     def take(self, message: Message) -> None:
-        """Take an answer; one that nobody awaits is old."""
+        """Handle an answer; ignore one without a pending request."""
         key, values = message.get("id"), message.get("values")
         if not isinstance(key, str):
             return
@@ -78,13 +78,13 @@ class Waiting:
         elif message["op"] == "action_feedback" and key in self._goals:
             feeds = self._goals[key].feeds
             if feeds is not None and isinstance(values, Mapping):
-                with suppress(Exception):  # feedback that cannot be read is none
+                with suppress(Exception):  # ignore unreadable feedback
                     feeds(values)
         elif message["op"] == "action_result" and key in self._goals:
             self._end(self._goals.pop(key), message)
 
     def lose(self, reason: str) -> None:
-        """Answer all of them with the loss of the link."""
+        """Fail all pending requests with the loss of the link."""
         for name, future in self._calls.values():
             if not future.done():
                 future.set_exception(LinkLost(plain(f"{name}: {reason}")))
@@ -96,7 +96,7 @@ class Waiting:
 
     @staticmethod
     def _end(goal: Goal, message: Message) -> None:
-        """Report the result of a goal; some bridges send it inside the values, some never."""
+        """Report the result of a goal; its status may be inside the values, or missing."""
         values = message.get("values")
         inside = values.get("status") if isinstance(values, Mapping) else None
         status = message.get("status", inside)

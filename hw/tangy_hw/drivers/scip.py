@@ -33,31 +33,30 @@ from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Fact, Reading
 
 NEAR = 0.15
-"""A hand's breadth in m: beams that end within it see what covers the scanner."""
+"""A hand's breadth in m: nearer returns come from an object that covers the scanner."""
 
 WINDOW = 1.0
-"""Seconds within which beams change, unless the scanner is covered."""
+"""Seconds in which ranges change, unless the scanner is covered."""
 
 SEEN = 0.8
-"""Share of that time after which it can be told."""
+"""Share of that time that scans must span before the change is reported."""
 
-ANSWER_SECONDS = 1.0  # for a command; scanners answer within 10 ms
-SILENT_SECONDS = 2.0  # without a scan, after which the connection is made anew
-AGAIN_SECONDS = (0.05, 0.1, 0.2, 0.5)  # until it is tried again; the last for ever
-CLOCK = 1 << 24  # ms after which the scanner's clock begins again
+ANSWER_SECONDS = 1.0  # timeout of a command; scanners answer within 10 ms
+SILENT_SECONDS = 2.0  # without a scan, after which it reconnects
+AGAIN_SECONDS = (0.05, 0.1, 0.2, 0.5)  # until it retries; the last one repeats
+CLOCK = 1 << 24  # ms after which the scanner's clock wraps
 NEVER = 3600.0
 
 
 class _Refusal(DeviceError):
-    """The scanner itself says that it cannot measure."""
+    """The scanner itself reports that it cannot measure."""
 
 
 class ScipLaser:
-    """A scanner that is asked to measure on and on; it is found again when it was gone.
+    """A scanner in continuous measurement mode; it reconnects by itself.
 
-    Scans count from 1 on, in the order in which they came. `missed` is how many the scanner took
-    and we never got (as its own clock tells), `spoilt` how many replies came damaged, `connected`
-    how often a connection began to give scans.
+    Scans are numbered from 1. `missed` counts scans that never arrived (by the scanner's own
+    clock), `spoilt` damaged replies, and `connected` connections that delivered scans.
     """
 
     def __init__(
@@ -72,23 +71,23 @@ class ScipLaser:
         skip: int = 0,
         baud: int = 115_200,
     ) -> None:
-        """Prepare a scanner; nothing is opened before `start`.
+        """Prepare a scanner; `start` opens it.
 
         Args:
             address: `tcp://host:port`, or the path of a serial port.
-            name: what the robot's profile calls it.
-            clock: gives the time of the stamps, in s.
-            stale_after: s after which a scan is too old.
-            turned: by how much it looks to the left of where the robot faces, in radians.
-            flipped: it is mounted upside down.
-            skip: scans that are left out after each, 0 to 9.
-            baud: the speed of a serial port.
+            name: its name in the robot's profile.
+            clock: returns the time of the stamps, in s.
+            stale_after: age in s above which a scan is stale.
+            turned: rotation of the scanner to the left of the robot's front, in rad.
+            flipped: whether it is mounted upside down.
+            skip: scans to skip after each, 0 to 9.
+            baud: speed of a serial port.
         """
         self.name = name
         self.address = address
         self.optics: Optics | None = None
         self.about: Mapping[str, str] = MappingProxyType({})
-        """Its maker, firmware and serial number (VV)."""
+        """Manufacturer, firmware and serial number (VV)."""
         self.missed = self.spoilt = self.connected = 0
         self._clock = clock
         self._stale_after = stale_after
@@ -103,13 +102,13 @@ class ScipLaser:
         self._arrived = asyncio.Event()
         self._ticks: int | None = None
         self._warned = -math.inf
-        self._refused = False  # by its own words, not by silence
+        self._refused = False  # by an explicit status, not by silence
         self._why = "It was not started."
         self._task: asyncio.Task[None] | None = None
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """The newest scan; None: there was none yet."""
+        """Newest scan; None before the first."""
         return self._scan
 
     @property
@@ -118,13 +117,13 @@ class ScipLaser:
         return self._why
 
     async def start(self) -> None:
-        """Begin to look for it and to measure."""
+        """Start connecting and measuring."""
         if self._task is None:
             self._why = f"{self.name} at {self.address} has not answered yet."
             self._task = asyncio.create_task(self._run(), name=f"scip {self.name}")
 
     async def close(self) -> None:
-        """End for good: its laser is switched off, where it can still be told to."""
+        """Close for good; switch the laser off if still connected."""
         task, self._task = self._task, None
         if task is None:
             return
@@ -132,7 +131,7 @@ class ScipLaser:
         await asyncio.wait({task})
 
     async def after(self, seq: int) -> Stamped[Scan]:
-        """Wait for a scan of a higher number than `seq`, and return the newest."""
+        """Wait for a scan with a higher number than `seq`, and return the newest."""
         while self._scan is None or self._scan.seq <= seq:
             self._arrived.clear()
             await self._arrived.wait()
@@ -142,7 +141,7 @@ class ScipLaser:
         """Return its state, the age of its newest scan, and the facts about its view.
 
         `near_share` is the share of beams that end within `NEAR`; `variety` the share that changed
-        within a second, told when a second was seen.
+        within a second, once a second was seen.
         """
         now = self._clock()
         age = NEVER if self._scan is None else min(max(0.0, now - self._scan.stamp), NEVER)
@@ -194,17 +193,17 @@ class ScipLaser:
         with contextlib.suppress(OSError, TimeoutError):
             async with asyncio.timeout(0.2):
                 await link.write(b"QT\n")
-        await asyncio.sleep(0)  # a moment in which it can leave
+        await asyncio.sleep(0)  # let the write complete
         link.close()
 
     async def _begin(self) -> None:
-        """Bring the scanner to rest, ask what it is, light its laser."""
+        """Stop the scanner, query its properties, and switch its laser on."""
         if "://" not in self.address:
-            # Old ones wake up with SCIP 1.1, in which they answer nothing else as we read it;
-            # newer ones do not know this command, and say so.
+            # Old scanners start in SCIP 1.1, in which they answer nothing else that we parse; newer
+            # ones reject this command.
             with contextlib.suppress(DeviceError):
                 await self._ask(b"SCIP2.0")
-        # It may still measure for an earlier client, or hold half of its command.
+        # It may still measure for an earlier client, or hold part of its command.
         await self._ask(b"QT", tries=2)
         self.optics = optics(named((await self._ask(b"PP")).lines))
         self.about = MappingProxyType(dict(named((await self._ask(b"VV")).lines)))
@@ -213,10 +212,10 @@ class ScipLaser:
     async def _ask(
         self, command: bytes, *, also: tuple[str, ...] = (), tries: int = 1
     ) -> ScipReply:
-        """Send a command and return its answer; answers to anything else are passed over.
+        """Send a command and return its reply; skip replies to other commands.
 
         Raises:
-            DeviceError: it does not answer, or refuses.
+            DeviceError: no reply, or a refusal.
         """
         assert self._link is not None  # noqa: S101
         for last in range(tries - 1, -1, -1):
@@ -236,7 +235,7 @@ class ScipLaser:
         return reply
 
     async def _next(self, echo: bytes) -> ScipReply:
-        """Return the next sound reply, and find the one of this echo behind what came before it.
+        """Return the next valid reply; skip noise before the given echo.
 
         Raises:
             OSError: the connection has ended.
@@ -258,7 +257,7 @@ class ScipLaser:
                 self._damaged()
 
     async def _measure(self) -> None:
-        """Take scans until there are none any more."""
+        """Receive scans until an error."""
         assert self.optics is not None and self._link is not None  # noqa: S101
         command = b"MD%04d%04d01%d00" % (self.optics.first, self.optics.last, self._skip)
         await self._link.write(command + b"\n")
@@ -268,7 +267,7 @@ class ScipLaser:
                 async with asyncio.timeout(ANSWER_SECONDS):
                     reply = await self._next(command)
             except TimeoutError:
-                # On a bench that stands still no time has passed, and nothing is wrong.
+                # While a bench is paused, no time passes, and nothing is wrong.
                 if self._clock() - heard >= SILENT_SECONDS:
                     raise DeviceError("sends nothing any more") from None
                 continue
@@ -287,10 +286,10 @@ class ScipLaser:
                 raise _Refusal(f"cannot measure: {problem}")
 
     def _take(self, reply: ScipReply) -> None:
-        """Make a scan of a measurement.
+        """Turn a measurement into a scan.
 
         Raises:
-            ScipError: it is damaged, or not as long as it should be.
+            ScipError: it is damaged, or has the wrong length.
         """
         assert self.optics is not None  # noqa: S101
         have = joined(reply.lines[1:])
@@ -299,7 +298,7 @@ class ScipLaser:
         if len(measured) != self.optics.last - self.optics.first + 1:
             raise ScipError("not as many distances as were asked for")
         nearest, farthest = self.optics.nearest * 1000, self.optics.farthest * 1000
-        # Below and beyond its limits stand the scanner's reasons why nothing was measured.
+        # Values outside the limits are error codes of the scanner.
         measured[(measured < nearest) | (measured > farthest)] = 0
         ranges = np.where(measured > 0, measured / 1000, np.inf)
         first = (self.optics.first - self.optics.front) * self.optics.step
@@ -318,7 +317,7 @@ class ScipLaser:
         self._arrived.set()
 
     def _count(self, ticks: int) -> None:
-        """Count the scans that the scanner took since the last and that never came."""
+        """Count the missed scans since the last one."""
         assert self.optics is not None  # noqa: S101
         if self._ticks is None:
             self.connected += 1

@@ -1,9 +1,9 @@
-"""SCIP 2.0, the language of Hokuyo's laser scanners, as bytes: numbers, checksums, replies.
+"""Codec of SCIP 2.0, the protocol of Hokuyo's laser scanners: numbers, checksums, replies.
 
-Numbers are written six bits a character, the highest first, each character 30 (hex) above its
-bits. A reply is lines, the last one empty: the command again, a status, then what was asked for;
-status and data end with a checksum. Source: Hokuyo C-42-03320B, "Communication Protocol
-Specification for SCIP2.0 Standard".
+Numbers have six bits per character, the most significant first, each plus 30 (hex). A reply
+consists of lines, the last one empty: the echoed command, a status, and the data; status and data
+end with a checksum. Source: Hokuyo C-42-03320B, "Communication Protocol Specification for SCIP2.0
+Standard".
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 BASE = 0x30
 END = b"\n\n"
 LONGEST = 1 << 16
-"""Bytes within which a reply must end; one of 4,096 beams with intensities has 25,000."""
+"""Maximum bytes of a reply; one of 4,096 beams with intensities has 25,000."""
 
 
 class ScipError(Exception):
-    """The reply is not valid SCIP 2.0; a few words say why."""
+    """A reply that is not valid SCIP 2.0; a few words say why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +36,10 @@ class ScipReply:
 
 @dataclass(frozen=True, slots=True)
 class Optics:
-    """Parameters of a scanner: `nearest` and `farthest` in m, its steps, its turns a second.
+    """Properties of a scanner: `nearest` and `farthest` in m, angular steps, scans per s (`rate`).
 
-    There are `resolution` steps to a full turn, counter-clockwise; those from `first` to `last` are
-    measured, and `front` is straight ahead.
+    A full turn has `resolution` steps, counter-clockwise; `first` to `last` are measured, and
+    `front` is straight ahead.
     """
 
     model: str
@@ -53,15 +53,15 @@ class Optics:
 
     @property
     def step(self) -> float:
-        """The angle between two steps in radians."""
+        """Angle between two steps in rad."""
         return 2 * math.pi / self.resolution
 
 
 def encode(value: int, length: int) -> bytes:
-    """Write a number in so many characters.
+    """Encode a number in so many characters.
 
     Raises:
-        ValueError: it is negative, or too large for them.
+        ValueError: it is negative, or too large.
     """
     if not 0 <= value < 1 << 6 * length:
         raise ValueError(f"{value} does not fit {length} characters")
@@ -69,10 +69,10 @@ def encode(value: int, length: int) -> bytes:
 
 
 def decode(written: bytes) -> int:
-    """Read a number from all these characters.
+    """Decode a number from all these characters.
 
     Raises:
-        ScipError: a character is none that SCIP writes.
+        ScipError: a character is invalid.
     """
     value = 0
     for sign in written:
@@ -83,10 +83,10 @@ def decode(written: bytes) -> int:
 
 
 def decode_all(written: bytes, length: int) -> NDArray[np.int64]:
-    """Read numbers of `length` characters each, one after the other, (n,).
+    """Decode consecutive numbers (n,) of `length` characters each.
 
     Raises:
-        ScipError: the last is cut off, or a character is none that SCIP writes.
+        ScipError: the last is cut off, or a character is invalid.
     """
     if len(written) % length:
         raise ScipError("a distance that is cut off")
@@ -99,7 +99,7 @@ def decode_all(written: bytes, length: int) -> NDArray[np.int64]:
 
 
 def checksum(written: bytes) -> int:
-    """Return the character that stands after these: the last six bits of their sum."""
+    """Return the checksum character: the last six bits of the sum, encoded."""
     return (sum(written) & 0x3F) + BASE
 
 
@@ -115,41 +115,40 @@ def checked(line: bytes) -> bytes:
 
 
 def split(buffer: bytes) -> tuple[list[bytes], bytes]:
-    """Cut what came into whole replies, and the beginning of the next.
+    """Split received bytes into complete replies and the rest.
 
-    Replies that came together are distinguished, and one that came in pieces is put together by
-    giving the rest back with what comes after it.
+    The caller passes the rest again, followed by the next bytes.
 
     Raises:
-        ScipError: what came goes on without an end.
+        ScipError: the rest is too long for a reply.
     """
     *whole, rest = buffer.split(END)
     if len(rest) > LONGEST:
         raise ScipError("a reply without an end")
-    # An empty line too many stands at the beginning of what comes next.
+    # A surplus empty line is at the beginning of the next reply.
     return [one.lstrip(b"\n") for one in whole if one.strip(b"\n")], rest
 
 
 def reply_from_echo(reply: bytes, echo: bytes) -> bytes:
-    """Return a reply from its echo on, without what stands before that.
+    """Return a reply from its echo on, without anything before.
 
-    Before it may be noise from a bad cable, or the rest of a reply that lost its end. A reply
-    without the echo is returned as it is.
+    Noise from a bad cable, or the rest of a truncated reply, may precede it. A reply without the
+    echo is returned unchanged.
     """
     at = reply.rfind(echo + b"\n")
     return reply[at:] if at > 0 else reply
 
 
 def parse(reply: bytes) -> ScipReply:
-    """Read one reply, without its empty line.
+    """Parse one reply, without its empty line.
 
     Raises:
-        ScipError: it has no status, or one with a wrong checksum.
+        ScipError: it has no status, or the status has a wrong checksum.
     """
     echo, *lines = reply.split(b"\n")
     if not lines:
         raise ScipError("a reply without a status")
-    # Scanners that still speak SCIP 1.1 answer the change to 2.0 with a bare 0.
+    # Scanners in SCIP 1.1 answer the change to 2.0 with a bare 0.
     status = lines[0] if lines[0] == b"0" else checked(lines[0])
     try:
         return ScipReply(echo, status.decode("ascii"), tuple(lines[1:]))
@@ -158,7 +157,7 @@ def parse(reply: bytes) -> ScipReply:
 
 
 def joined(lines: Iterable[bytes]) -> bytes:
-    """Put the lines of a measurement together, each without its checksum.
+    """Join the lines of a measurement, each without its checksum.
 
     Raises:
         ScipError: a checksum is wrong.
@@ -167,7 +166,7 @@ def joined(lines: Iterable[bytes]) -> bytes:
 
 
 def named(lines: Iterable[bytes]) -> Mapping[str, str]:
-    """Read lines such as `DMAX:5600[mm];C`, as VV, PP and II answer; those that are none are left.
+    """Parse lines such as `DMAX:5600[mm];C`, as in answers to VV, PP and II; skip other lines.
 
     Raises:
         ScipError: a checksum is wrong.
@@ -177,7 +176,7 @@ def named(lines: Iterable[bytes]) -> Mapping[str, str]:
         body, semicolon, sums = line.rpartition(b";")
         if not semicolon or len(sums) != 1:
             continue
-        # Some firmwares count the semicolon in, some do not.
+        # Some firmware includes the semicolon in the checksum, some does not.
         if sums[0] not in (checksum(body), checksum(body + b";")):
             raise ScipError("a checksum that is wrong")
         name, colon, value = body.decode("ascii", "replace").partition(":")
@@ -187,10 +186,10 @@ def named(lines: Iterable[bytes]) -> Mapping[str, str]:
 
 
 def optics(facts: Mapping[str, str]) -> Optics:
-    """Read what PP answers.
+    """Parse the answer to PP.
 
     Raises:
-        ScipError: a fact is missing, or cannot be.
+        ScipError: a property is missing or impossible.
     """
     try:
         whole = {
@@ -220,7 +219,7 @@ def optics(facts: Mapping[str, str]) -> Optics:
 
 
 def trouble(status: str, command: str = "") -> str:
-    """Say in a few words what a status means that is no success; "" if it is one."""
+    """Return the meaning of an error status in a few words; "" for success."""
     if status in ("00", "99", "0", "98"):
         return ""
     if command == "BM":

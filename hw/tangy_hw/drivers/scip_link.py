@@ -1,4 +1,4 @@
-"""The cable to a scanner: TCP (`tcp://host:port`) or a serial port (`/dev/ttyACM0`)."""
+"""Connection to a scanner: TCP (`tcp://host:port`) or a serial port (`/dev/ttyACM0`)."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.reading import plain
 
 PORT = 10940
-"""At which Hokuyo's scanners listen."""
+"""Default port of Hokuyo's scanners."""
 
-OPEN_SECONDS = 2.0  # for a connection
+OPEN_SECONDS = 2.0  # timeout of a connection
 WRITE_SECONDS = 1.0
 CHUNK = 1 << 16
 
 
 class Link(Protocol):
-    """A cable: bytes both ways, until it is closed or pulled out."""
+    """A connection: bytes in both directions, until it is closed or lost."""
 
     async def read(self) -> bytes:
-        """Return the next bytes; b"": there will be none any more."""
+        """Return the next bytes; b"" at the end."""
         ...
 
     async def write(self, sent: bytes) -> None:
@@ -36,16 +36,16 @@ class Link(Protocol):
         ...
 
     def close(self) -> None:
-        """Close it."""
+        """Close the connection."""
         ...
 
 
 async def open_link(address: str, baud: int = 115_200) -> Link:
-    """Open the cable at an address.
+    """Open the connection to an address.
 
     Args:
         address: `tcp://host:port`, or the path of a serial port.
-        baud: the speed of a serial port; one over USB passes over it.
+        baud: speed of a serial port; ignored over USB.
 
     Raises:
         DeviceError: it cannot be opened; a few words say why.
@@ -57,17 +57,17 @@ async def open_link(address: str, baud: int = 115_200) -> Link:
                 return TcpLink(*await asyncio.open_connection(host, port))
         except TimeoutError:
             raise DeviceError("does not answer") from None
-        except (OSError, UnicodeError) as error:  # UnicodeError: a host that can be none
+        except (OSError, UnicodeError) as error:  # UnicodeError: an impossible host
             why = "nobody listens there" if isinstance(error, ConnectionRefusedError) else error
             raise DeviceError(f"cannot be reached ({plain(str(why))})") from None
     return await SerialLink.open(address, baud)
 
 
 def tcp_address(address: str) -> tuple[str, int]:
-    """Read `tcp://host:port`.
+    """Parse `tcp://host:port`.
 
     Raises:
-        DeviceError: it is none.
+        DeviceError: it is not such an address.
     """
     try:
         parts = urlsplit(address)
@@ -79,13 +79,13 @@ def tcp_address(address: str) -> tuple[str, int]:
 
 
 class TcpLink:
-    """A connection over the network."""
+    """A TCP connection."""
 
     def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self._reader, self._writer = reader, writer
 
     async def read(self) -> bytes:
-        """Return the next bytes; b"": there will be none any more."""
+        """Return the next bytes; b"" at the end."""
         try:
             return await self._reader.read(CHUNK)
         except OSError:
@@ -97,12 +97,12 @@ class TcpLink:
         await self._writer.drain()
 
     def close(self) -> None:
-        """Close it, without flushing."""
+        """Close the connection without flushing."""
         self._writer.transport.abort()
 
 
 class SerialLink:
-    """A serial port; a thread waits for what comes, as pyserial knows nothing of asyncio."""
+    """A serial port; a thread reads it, because pyserial does not support asyncio."""
 
     def __init__(self, port: Any) -> None:
         self._port = port
@@ -120,20 +120,20 @@ class SerialLink:
             DeviceError: it cannot be opened.
         """
         try:
-            serial = importlib.import_module("serial")  # only those who have a port need it
+            serial = importlib.import_module("serial")  # only users of serial ports need it
         except ImportError:
             raise DeviceError("needs pyserial (pip install pyserial)") from None
         try:
             port = await asyncio.to_thread(
                 serial.Serial, path, baud, timeout=0.1, write_timeout=WRITE_SECONDS, exclusive=True
             )
-        except (OSError, ValueError) as error:  # pyserial's own are OSErrors
+        except (OSError, ValueError) as error:  # pyserial's errors are OSErrors
             said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
             raise DeviceError(f"cannot be opened ({plain(said)[:100]})") from None
         return cls(port)
 
     async def read(self) -> bytes:
-        """Return the next bytes; b"": there will be none any more."""
+        """Return the next bytes; b"" at the end."""
         return await self._reader.read(CHUNK)
 
     async def write(self, sent: bytes) -> None:
@@ -141,7 +141,7 @@ class SerialLink:
         await asyncio.to_thread(self._port.write, sent)
 
     def close(self) -> None:
-        """Close it; its thread ends within a tenth of a second."""
+        """Close the port; its thread ends within .1 s."""
         self._closed.set()
 
     def _receive(self) -> None:
@@ -150,7 +150,7 @@ class SerialLink:
                 came = self._port.read(max(1, self._port.in_waiting))
                 if came:
                     self._say(self._reader.feed_data, came)
-        except (OSError, TypeError):  # TypeError: pyserial, when a port goes while it is read
+        except (OSError, TypeError):  # TypeError: pyserial, if a port vanishes during a read
             pass
         finally:
             with contextlib.suppress(OSError):
@@ -158,5 +158,5 @@ class SerialLink:
             self._say(self._reader.feed_eof)
 
     def _say(self, what: Any, *arguments: Any) -> None:
-        with contextlib.suppress(RuntimeError):  # the loop has ended before us
+        with contextlib.suppress(RuntimeError):  # the loop has ended before the thread
             self._loop.call_soon_threadsafe(what, *arguments)

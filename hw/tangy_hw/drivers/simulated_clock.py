@@ -1,7 +1,7 @@
-"""The time of a stepped bench: it advances when the robot asks for the next step.
+"""Clock of a stepped bench: it advances when the robot requests the next step.
 
-So nothing is late however busy the machine is, and an hour is over when all of it has been
-computed. The bench answers a step when all that was due in it has been sent.
+So nothing is late however busy the machine is, and a simulated hour takes only as long as computing
+it. The bench answers a step after sending everything that was due in it.
 """
 
 from __future__ import annotations
@@ -16,25 +16,26 @@ if TYPE_CHECKING:
 SERVICE = "/bench/advance"
 CONNECT_SECONDS = 10.0
 ARRIVE_SECONDS = 1.0
-"""Of real time, for what was sent on other wires than the answer to arrive."""
+"""Real time for messages on other connections to arrive."""
 
 
 class SteppedClock:
-    """A `Clock` that a bench keeps."""
+    """A `Clock` driven by a bench."""
 
     def __init__(self) -> None:
-        """Begin at 0; `follow` a bench before time is to pass."""
+        """Start at 0; call `follow` before time should pass."""
         self._now = 0.0
         self._link: Rosbridge | None = None
         self._counts: dict[str, Callable[[], int]] = {}
         self._sent: dict[str, int] = {}
 
     def follow(self, link: Rosbridge, counts: Mapping[str, Callable[[], int]]) -> None:
-        """Keep the time of the bench at the other end of a link.
+        """Follow the time of the bench at the other end of a link.
 
         Args:
-            link: the bench.
-            counts: by wire, how many of what the bench counts there has arrived.
+            link: the link to the bench.
+            counts: for each connection, returns how many of the messages that the bench counts have
+                arrived.
         """
         self._link, self._counts = link, dict(counts)
 
@@ -43,11 +44,11 @@ class SteppedClock:
         return self._now
 
     async def sleep(self, seconds: float) -> None:
-        """Let so many s of the bench's time pass, and wait for what they bring."""
+        """Advance the bench by so many s, and wait for the resulting messages."""
         if self._link is None or not await self._link.wait_connected(CONNECT_SECONDS):
             await asyncio.sleep(seconds)
             return
-        self._now += seconds  # what comes in this step is of its end
+        self._now += seconds  # messages of this step belong to its end
         had = {wire: count() for wire, count in self._counts.items()}
         told = await self._link.call(SERVICE, {"seconds": seconds})
         self._now = max(self._now, float(told["time"]))

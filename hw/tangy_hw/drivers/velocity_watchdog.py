@@ -1,8 +1,8 @@
-"""Stops a base whose robot process hangs: a child that waits for the next velocity command.
+"""Stops the base if the robot process hangs: a child process waits for the next velocity command.
 
-The robot process cannot stop anything while it is frozen. The child (`velocity_watchdog_child`) has
-a connection of its own to the base, and tells it to stand if a command to drive is followed by no
-other within its time to live, or if the robot process ends.
+A frozen robot process cannot stop anything. The child (`velocity_watchdog_child`) has its own
+connection to the base, and stops it if no command follows a drive command within its time to live,
+or if the robot process ends.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tangy_hw.worker_process import WorkerError, WorkerProcess
 _LOG = logging.getLogger(__name__)
 
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.drivers.velocity_watchdog_child")
-AGAIN_SECONDS = 1.0  # until a process that ended is started again
+AGAIN_SECONDS = 1.0  # until a dead process is restarted
 END_SECONDS = 1.0
 
 
@@ -33,14 +33,14 @@ class VelocityWatchdog:
         stamped: bool = False,
         lives: float,
     ) -> None:
-        """Describe the base; nothing runs before `start`.
+        """Describe the base; `start` starts the child.
 
         Args:
-            url: its rosbridge server, as ws://HOST:PORT.
-            ros: 1 or 2, how types and times are spelled.
-            drive: the topic of its velocity commands.
-            stamped: the topic takes geometry_msgs/TwistStamped.
-            lives: a command's time to live in s.
+            url: its rosbridge server, ws://HOST:PORT.
+            ros: 1 or 2: how types and times are spelled.
+            drive: topic for velocity commands.
+            stamped: whether the topic takes geometry_msgs/TwistStamped.
+            lives: time to live of a command in s.
         """
         self.stopped = 0
         """How often it has stopped the base because no command came in time."""
@@ -50,23 +50,23 @@ class VelocityWatchdog:
 
     @property
     def pid(self) -> int | None:
-        """The id of the child, if one runs."""
+        """Id of the child, if one runs."""
         return None if self._worker is None else self._worker.pid
 
     def start(self) -> None:
-        """Start the child, and start it again if it ends."""
+        """Start the child, and restart it if it ends."""
         if self._keeping is None:
             self._keeping = asyncio.create_task(self._keep(), name="velocity watchdog")
 
     async def close(self) -> None:
-        """Let the child tell the base to stand once more, and end it."""
+        """Let the child stop the base once more, and end it."""
         keeping, self._keeping = self._keeping, None
         if keeping is not None:
             keeping.cancel()
             await asyncio.wait({keeping})
 
     def note(self, *, drives: bool) -> None:
-        """Take note of a command: one to drive has to be followed in time, one to stand has not."""
+        """Report a command; only one that drives must be followed by another in time."""
         if self._worker is not None and drives:
             self._worker.beat({"drives": True})
         elif self._worker is not None:

@@ -1,14 +1,14 @@
-"""The process that stops a base whose robot process hangs or ends.
+"""Process that stops the base if the robot process hangs or ends.
 
-Run as `python -m tangy_hw.drivers.velocity_watchdog_child`, spoken to by JSON, one object a line:
+Run as `python -m tangy_hw.drivers.velocity_watchdog_child`; speaks JSON lines:
 
     {"at": "ws://HOST:9090", "ros": 1, "drive": "/cmd_vel", "stamped": false, "lives": 0.2}
-                               the base, and a command's time to live in s; comes once
-    {"drives": true}           the base was told to drive; false: to stand
-    {"stopped": 0.21}          it told the base to stand, so many s after the last command
-    {"failed": "..."}          a line cannot be heeded, and nothing comes of it
+                               the base, and a command's time to live in s; once
+    {"drives": true}           the base was commanded to drive; false: to stop
+    {"stopped": 0.21}          it stopped the base so many s after the last command
+    {"failed": "..."}          an invalid line was ignored
 
-It ends when its input closes, and tells the base to stand before it does.
+When its input closes, it stops the base and exits.
 """
 
 from __future__ import annotations
@@ -25,30 +25,30 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.worker_lines import AnswerWriter, Asked, LineError, coming, open_lines
 
-_LOG = logging.getLogger("tangy_hw.drivers.velocity_watchdog_child")  # also run as a process
+_LOG = logging.getLogger("tangy_hw.drivers.velocity_watchdog_child")  # also if run as a script
 
-LAST_SECONDS = 0.7  # at the end, in which a connection may come
+LAST_SECONDS = 0.7  # at the end, to wait for a connection
 
 
 class Watchdog:
-    """Stops a base if a command to drive is not followed by another one in time."""
+    """Stops the base if no command follows a drive command in time."""
 
     def __init__(self, say: Callable[[Asked], None]) -> None:
-        """Begin without a base."""
+        """Start without a base."""
         self._say = say
         self._bridge: Rosbridge | None = None
         self._topic: VelocityTopic | None = None
         self._lives = 0.0
-        self._driven = 0.0  # when the base was told to drive last (monotonic, s)
+        self._driven = 0.0  # time of the last drive command (monotonic, s)
         self._due: asyncio.TimerHandle | None = None
-        self._stands = True  # whether it has to, should the connection come back
+        self._stands = True  # whether to stop the base at a new connection
 
     async def take(self, told: Asked) -> None:
-        """Take the base, or that it was told to drive or to stand.
+        """Handle the description of the base, or a command to it.
 
         Raises:
-            LineError: it is neither.
-            DeviceError: the address is none.
+            LineError: the line is neither.
+            DeviceError: the address is invalid.
         """
         match told:
             case {
@@ -76,10 +76,10 @@ class Watchdog:
                 raise LineError("A line must describe the base, once, or say whether it drives.")
 
     async def close(self) -> None:
-        """Tell the base to stand, and end."""
+        """Stop the base, and close the connection."""
         if self._bridge is None:
             return
-        if self._due is not None:  # it drives: a connection that is not there yet is worth waiting
+        if self._due is not None:  # the base drives: wait for a connection
             self._due.cancel()
             self._stands = True
             await self._bridge.wait_connected(LAST_SECONDS)
@@ -97,12 +97,12 @@ class Watchdog:
 
     def _stand(self) -> None:
         if self._topic is not None:
-            with suppress(DeviceError):  # it is said again when there is a connection
+            with suppress(DeviceError):  # it is sent again at a new connection
                 self._topic.say(STILL)
 
 
 async def run() -> None:
-    """Watch until there is nothing more to hear."""
+    """Watch until the input closes."""
     answers = AnswerWriter()
     lines, _ = await open_lines()
     watchdog = Watchdog(answers.write)
@@ -115,7 +115,7 @@ async def run() -> None:
 
 
 def main() -> None:
-    """Run it."""
+    """Run the process."""
     log_to_stderr()
     _LOG.info("watches the velocity commands")
     with suppress(KeyboardInterrupt):
