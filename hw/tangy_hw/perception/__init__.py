@@ -1,1 +1,1 @@
-"""What pictures show: cards, faces, requests."""
+"""Recognition of cards, faces and requests for help, mostly in camera images."""

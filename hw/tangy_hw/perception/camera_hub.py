@@ -1,7 +1,6 @@
-"""The cameras of a robot, kept open: what each says of itself, what it sees, the last card read.
+"""The open cameras of a robot: their states, their frames, and the last card read.
 
-Which there are and where their pictures come from stands in the robot's profile; a source that is
-named on the command line goes before it.
+The robot's profile lists the cameras and their sources; a source on the command line overrides it.
 """
 
 from __future__ import annotations
@@ -27,24 +26,24 @@ from tangy_profiles.robot import DeviceProfile, Robot
 if TYPE_CHECKING:
     from tangy_hw.perception.cards.reader import CardReader
 
-LOG = "camera.log"  # in the data folder: what drivers have to say
-READ_SECONDS = 0.5  # between two readings of a card: it may cost a tenth of a processor
-FRAME_SECONDS = 1.0  # for which a picture is waited for at most
+LOG = "camera.log"  # in the data folder: messages of the drivers
+READ_SECONDS = 0.5  # between two card readings, to use at most a tenth of a core
+FRAME_SECONDS = 1.0  # timeout of a frame
 CARDS = "cards"
 
 Sources = Mapping[str, CameraSource]
-"""Where the pictures of a robot's cameras come from, by the name of the device."""
+"""Sources of a robot's cameras, by device name."""
 
 
 def camera_sources(robot: Robot, given: Sequence[str] = ()) -> Sources:
-    """Find the sources of a robot's cameras; a file or folder begins again when it is over.
+    """Find the sources of a robot's cameras; files and folders are played in a loop.
 
     Args:
-        robot: its profile.
-        given: as on the command line, DEVICE=SOURCE; they go before the robot's profile.
+        robot: the robot's profile.
+        given: DEVICE=SOURCE arguments of the command line, which override the profile.
 
     Raises:
-        CameraError: there is no such device, or a source is none.
+        CameraError: a device does not exist, or a source is invalid.
     """
     named: dict[str, str] = {}
     for text in given:
@@ -79,7 +78,7 @@ def _of_profile(robot: Robot, device: DeviceProfile) -> CameraSource:
 
 @dataclass(frozen=True, slots=True)
 class SeenCard:
-    """A card as it was read: its number, its numbers row by row, and masks of their cells.
+    """A card as read: its number, the numbers of its cells row by row, and masks of cells.
 
     `stamp` is of the monotonic clock, in s.
     """
@@ -96,17 +95,17 @@ class SeenCard:
     def of(
         cls, deck: Deck, card: int, marked: int, hidden: int, stamp: float, deck_seed: int
     ) -> SeenCard:
-        """Return a card of a deck as it was read (at a time in s), with the numbers that it has."""
+        """Return a reading (at a time in s) of a card of a deck, with the card's numbers."""
         numbers = numbers_of(deck, card, deck_seed)
         return cls(card, numbers, marked, hidden, deck.free, len(deck.columns), stamp)
 
 
 @dataclass(frozen=True, slots=True)
 class CardSight:
-    """What a camera that looks at cards has read of late.
+    """Latest readings of the camera that looks at cards.
 
-    `last` is the last card that could be read. `problem` says why there is none in the newest
-    picture, "" if there is one; that was looked at at `stamp` (monotonic, s), None: none was yet.
+    `last` is the last readable card. `problem` says why the newest frame shows none, "" if it does;
+    that frame was taken at `stamp` (monotonic, s), None before the first.
     """
 
     last: SeenCard | None = None
@@ -115,9 +114,9 @@ class CardSight:
 
 
 class CameraHub:
-    """The cameras of one robot. They are open within `async with`, and as long as anybody is in it.
+    """The cameras of one robot, open while anybody is within its `async with`.
 
-    `health` is what the diagnosis is told. Cards are read only within `reading_cards`.
+    `health` returns the readings for the diagnosis. Cards are read only within `reading_cards`.
     """
 
     def __init__(
@@ -129,14 +128,14 @@ class CameraHub:
         deck_seed: int = USUAL_SEED,
         log: Path | None = None,
     ) -> None:
-        """Prepare them.
+        """Prepare the cameras.
 
         Args:
-            robot: whose cameras they are.
-            sources: where their pictures come from.
-            deck: whose cards are read, if any are.
-            deck_seed: which numbers they have.
-            log: where messages of the drivers go; nowhere if not given.
+            robot: the robot's profile.
+            sources: sources of the cameras.
+            deck: deck of the cards to read; None: no cards are read.
+            deck_seed: seed that determines the numbers on the cards.
+            log: file for messages of the drivers; None: they are dropped.
         """
         self.robot = robot
         self.streams = {
@@ -144,7 +143,7 @@ class CameraHub:
         }
         looking = (n for n in self.streams if robot.devices[n].looks_at == CARDS)
         self.card_device = next(looking, "") if deck is not None else ""
-        """The device that looks at cards, "" if none does."""
+        """Device that looks at cards; "" if none does."""
         self._deck = deck
         self._deck_seed = deck_seed
         self._cards = CardSight()
@@ -168,18 +167,18 @@ class CameraHub:
                 await self._end()
 
     async def close(self) -> None:
-        """Close everything, also while it is in use."""
+        """Close everything, even while it is in use."""
         async with self._open:
             self._users = 0
             await self._end()
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """The devices that are cameras with a source, in the order of the profile."""
+        """Devices that are cameras with a source, in the order of the profile."""
         return tuple(self.streams)
 
     def source(self, device: str) -> str:
-        """Return where the pictures of a camera come from, as it was named."""
+        """Return the source of a camera, as it was named."""
         return self.streams[device].name
 
     def sight(self, device: str) -> Sight:
@@ -187,41 +186,41 @@ class CameraHub:
         return self.streams[device].sight
 
     def health(self) -> Health:
-        """Return the newest reading of each camera."""
+        """Return the latest reading of each camera."""
         return tuple(camera.reading() for camera in self.streams.values())
 
     async def settled(self, seconds: float) -> None:
-        """Wait until each camera has given its first picture, or cannot; at most so many s."""
+        """Wait up to so many s until each camera has delivered its first frame, or failed."""
         with suppress(TimeoutError):
             async with asyncio.timeout(seconds):
                 while any(c.sight.state == "OPENING" for c in self.streams.values()):  # noqa: ASYNC110
                     await asyncio.sleep(0.05)
 
     async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Frame | None:
-        """Return a camera's newest picture, as large as fits into so many columns and rows.
+        """Return a camera's newest frame, scaled to fit into so many columns and rows.
 
         Args:
-            device: which camera.
-            fit: in pixels.
-            after: of a higher number than this, if it comes within a second.
+            device: name of the camera.
+            fit: size in pixels.
+            after: return a frame with a higher number; None after a timeout of a second.
         """
-        with suppress(CameraError):  # its state says so
+        with suppress(CameraError):  # its state reports the error
             return await self.streams[device].frame(after=after, wait=FRAME_SECONDS, fit=fit)
         return None
 
     async def frame(self, device: str, *, after: int = -1) -> Frame | None:
-        """Return a camera's newest picture as it is, of a higher number than `after`.
+        """Return a camera's newest frame, unscaled, with a higher number than `after`.
 
-        None: none came within a second.
+        None if no frame came within a second.
 
         Raises:
-            CameraError: none will come any more.
+            CameraError: no more frames will come.
         """
         return await self.streams[device].frame(after=after, wait=FRAME_SECONDS)
 
     @contextmanager
     def reading_cards(self) -> Iterator[None]:
-        """Read cards as long as somebody is in it."""
+        """Read cards while the context is active."""
         self._readers += 1
         self._wanted.set()
         try:
@@ -233,7 +232,7 @@ class CameraHub:
 
     @property
     def cards(self) -> CardSight:
-        """The latest card readings."""
+        """Latest card readings."""
         return self._cards
 
     async def _start(self) -> None:
@@ -244,7 +243,7 @@ class CameraHub:
             self._task = asyncio.create_task(self._read())
 
     async def _end(self) -> None:
-        """End everything; it may be done again where it was broken off."""
+        """Close everything; may be called again if it was interrupted."""
         task, self._task = self._task, None
         if task is not None:
             task.cancel()
@@ -252,11 +251,11 @@ class CameraHub:
         await asyncio.gather(*(camera.close() for camera in self.streams.values()))
 
     async def _read(self) -> None:
-        """Read the card in the newest picture, again and again, on a thread."""
+        """Keep reading the card in the newest frame, on a thread."""
         camera, seq = self.streams[self.card_device], -1
         loop = asyncio.get_running_loop()
         reader: CardReader | None = None
-        with ThreadPoolExecutor(1, "cards") as thread:  # leaving waits for the reading in work
+        with ThreadPoolExecutor(1, "cards") as thread:  # exiting waits for the current reading
             while not camera.over:
                 await self._wanted.wait()
                 began = loop.time()
@@ -277,11 +276,11 @@ class CameraHub:
         cv2.setNumThreads(1)
         with suppress(AttributeError):
             cv2.utils.logging.setLogLevel(0)  # its messages would go to the terminal
-        assert self._deck is not None  # noqa: S101 - or there would be no device that looks
+        assert self._deck is not None  # noqa: S101 - card_device is "" without a deck
         return CardReader(self._deck, self._deck_seed)
 
     def _look(self, reader: CardReader, frame: Frame) -> CardSight:
-        """Read the card in a picture; called on the thread."""
+        """Read the card in a frame; called on the thread."""
         reading = reader.read(frame.image())
         if reading.card is None:
             return CardSight(self._cards.last, reading.problem, frame.stamp)
@@ -298,10 +297,10 @@ def sensors_of(
     *,
     deck_seed: int = USUAL_SEED,
 ) -> CameraHub:
-    """Make the cameras of a robot, those of its profile and those given (see `camera_sources`).
+    """Create the cameras of a robot, from its profile and the command line (see `camera_sources`).
 
     Raises:
-        CameraError: one of them is none.
+        CameraError: a source is invalid.
     """
     sources = camera_sources(robot, given)
     return CameraHub(robot, sources, deck, deck_seed=deck_seed, log=folder / LOG)

@@ -1,7 +1,7 @@
-"""Perception from pictures: the number of a card, its marks, and the identity of a face.
+"""Reads cards and identifies faces in the frames of a camera.
 
-Several pictures are made one reading of, each taken after the question was put: a picture from
-before the robot arrived tells nothing.
+Each reading fuses several frames, all taken after the request: frames from before the robot arrived
+show something else.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-MOST_PICTURES = 5  # of a card: what a hand hides in one another may show
-SETTLE_SECONDS = 0.15  # in which a picture that was under way when it was asked for has come
+MOST_PICTURES = 5  # of a card: another frame may show what a hand hides in one
+SETTLE_SECONDS = 0.15  # after which a frame that was under way at the request has arrived
 NOTHING_SEEN = "no picture came"
 
 
@@ -39,10 +39,10 @@ NOTHING_SEEN = "no picture came"
 class CardSeen:
     """A reading of the card beside the robot.
 
-    `card` is its number, None where it cannot be told, and `problem` says why; `marked` and
-    `hidden` are masks of its cells; `state` is the user activity state; `pictures` is how many
-    were looked at. `cards` are the numbers of all cards in sight: of several none is told. `sure`:
-    pictures of two moments show this card.
+    `card` is its number, None if it cannot be read, and `problem` says why; `marked` and `hidden`
+    are masks of its cells; `state` is the user activity state; `pictures` is the number of frames
+    read. `cards` are the numbers of all cards in sight: if there are several, none is read. `sure`
+    says whether frames of two moments show this card.
     """
 
     card: int | None
@@ -55,12 +55,12 @@ class CardSeen:
     sure: bool = False
 
     def to_json(self) -> dict[str, Any]:
-        """Return it as the robot process tells it."""
+        """Return it as JSON for the program."""
         return {name: getattr(self, name) for name in self.__slots__}
 
 
 class CardAndFacePerception:
-    """Cards and faces in the pictures of one camera."""
+    """Cards and faces in the frames of one camera."""
 
     def __init__(
         self,
@@ -71,14 +71,14 @@ class CardAndFacePerception:
         faces: Mapping[str, Any] | None = None,
         models: FaceModels | None = None,
     ) -> None:
-        """Prepare.
+        """Prepare the readers.
 
         Args:
-            sensors: the robot's cameras, of which one looks at cards.
-            activity: what is played; its deck and its user activity states.
-            deck_seed: which numbers the cards have.
-            faces: rows of features of the people who are known, by id.
-            models: the robot's files for faces, if it has some.
+            sensors: the robot's cameras, one of which looks at cards.
+            activity: the activity, with its deck and user activity states.
+            deck_seed: seed that determines the numbers on the cards.
+            faces: feature vectors of enrolled people (a row for each image), by id.
+            models: the robot's model files for faces, if it has any.
         """
         self.sensors = sensors
         self._activity = activity
@@ -95,7 +95,7 @@ class CardAndFacePerception:
         self._thread.shutdown(wait=False, cancel_futures=True)
 
     async def prepare(self) -> None:
-        """Load what readers need, so that the first reading takes no longer than others."""
+        """Load the models, so that the first reading takes no longer than later ones."""
         await self._in_thread(self._load)
 
     async def read_card(
@@ -106,13 +106,14 @@ class CardAndFacePerception:
         identify: bool = False,
         wins: tuple[tuple[str, ...], int] | None = None,
     ) -> CardSeen:
-        """Read the card that the robot looks at, from as many pictures as it takes.
+        """Read the card that the robot looks at, from as many frames as necessary.
 
         Args:
-            called: the numbers that were called.
-            most: pictures that are looked at; it ends as soon as the state is told.
-            identify: two of them are to show which card it is, whatever its state is.
-            wins: the shapes that win, and how many of them together, if not the activity's.
+            called: the called numbers.
+            most: maximum number of frames; reading ends as soon as the state is known.
+            identify: require that two frames identify the card, whatever its state.
+            wins: winning patterns, and how many of them are required together; None: the
+                activity's.
         """
         look: CardLook | None = None
         async for frame in _fresh(self.sensors, most, apart=MOMENT):
@@ -143,7 +144,7 @@ class CardAndFacePerception:
         return deck if wins is None else replace(deck, patterns=wins[0], together=wins[1])
 
     async def who(self, most: int = 2 * FRAMES) -> Vote:
-        """Identify the face before the robot by a vote over so many pictures."""
+        """Identify the face before the robot by a vote over at most so many frames."""
         matches: list[FaceMatch] = []
         async for frame in _fresh(self.sensors, most):
             match = await self._in_thread(self._match, frame)
@@ -169,11 +170,11 @@ class CardAndFacePerception:
 
     def _card_reader(self) -> CardReader:
         self._load()
-        assert self._reader is not None  # noqa: S101 - `_load` has seen to that
+        assert self._reader is not None  # noqa: S101 - `_load` has set it
         return self._reader
 
     def _match(self, frame: Frame) -> FaceMatch | None:
-        """Compare the largest face in a picture that is seen well enough, if there is one."""
+        """Compare the largest face of sufficient quality in a frame, if there is one."""
         self._load()
         assert self._face_reader is not None and self._gallery is not None  # noqa: S101
         for face in self._face_reader.read(frame.image()):
@@ -186,9 +187,9 @@ class CardAndFacePerception:
 
 
 async def _fresh(sensors: CameraHub, most: int, apart: float = 0.0) -> AsyncIterator[Frame]:
-    """Give pictures that were taken from now on, at most so many; none if none comes.
+    """Yield up to so many frames taken from now on, until two timeouts.
 
-    Each was taken so many s `apart` from the one before.
+    Each was taken at least `apart` s after the previous one.
     """
     after, seq = time.monotonic() + SETTLE_SECONDS, -1
     given = late = 0

@@ -1,4 +1,4 @@
-"""Picture files that people hand over: read as colour, or refused in one sentence."""
+"""Reads image files from people in colour, or rejects them with one sentence."""
 
 from __future__ import annotations
 
@@ -17,35 +17,35 @@ if TYPE_CHECKING:
 
     Picture = NDArray[np.uint8]
 
-SMALLEST = 60  # pixels to a side
+SMALLEST = 60  # pixels per side
 LARGEST = 50_000_000  # pixels
-LARGEST_FILE = 200_000_000  # bytes: so many pixels that are not packed have 150 million
+LARGEST_FILE = 200_000_000  # bytes: LARGEST pixels need 150 million uncompressed
 ENDINGS = {
     "PNG": (".png",),
     "JPEG": (".jpg", ".jpeg", ".jpe", ".jfif"),
-    "MPO": (".jpg", ".jpeg", ".mpo"),  # as some telephones write them
+    "MPO": (".jpg", ".jpeg", ".mpo"),  # as some phones write them
     "WEBP": (".webp",),
     "BMP": (".bmp", ".dib"),
     "TIFF": (".tif", ".tiff"),
     "PPM": (".ppm", ".pnm"),
 }
-FORMATS = tuple(kind for kind in ENDINGS if kind != "MPO")  # which begins as a JPEG does
+FORMATS = tuple(kind for kind in ENDINGS if kind != "MPO")  # MPO files begin as JPEG files
 
 
 class PictureError(TangyError):
-    """A file gives no picture that can be used; one sentence that names it."""
+    """A file without a usable image; one sentence that names it."""
 
 
 def read_picture(path: Path, *, colours: bool = False) -> Picture:
-    """Read a picture file as colour (blue, green, red), turned the way it was taken.
+    """Read an image file in colour (BGR), rotated as it was taken.
 
-    A grey picture has three colours that are the same; white is behind transparent parts; what
-    the file is named does not matter. Where colours count (`colours`), all three are refused: they
-    are signs of a picture that something was done to, and a guess would look like a reading.
+    Grey images get three equal channels, transparent parts a white background, and the file's name
+    does not matter. With `colours` all three are rejected: they are signs of an edited image, from
+    which a reading would be a guess.
 
     Raises:
-        PictureError: it is missing, no picture, broken off, too small or too large, or has no
-            colours where they count.
+        PictureError: it is missing, not an image, truncated, too small or too large, or without
+            colours where they are required.
     """
     import numpy as np
     from PIL import Image, ImageOps, UnidentifiedImageError
@@ -53,7 +53,7 @@ def read_picture(path: Path, *, colours: bool = False) -> Picture:
     name = plain(str(path))
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of its size, which is asked about here
+            warnings.simplefilter("ignore")  # about its size, which is checked here
             with (
                 open_given(path, LARGEST_FILE, PictureError) as given,
                 Image.open(given, formats=FORMATS) as file,
@@ -79,7 +79,7 @@ def _too_large(name: str) -> str:
 
 
 def _check(kind: str, size: tuple[int, int], name: str) -> None:
-    """Refuse an unusable picture before decoding its pixels."""
+    """Reject an unusable image before decoding its pixels."""
     if kind not in ENDINGS:
         raise PictureError(f"{name}: is not a picture (PNG, JPEG, WebP, BMP or TIFF).")
     if min(size) < SMALLEST:
@@ -89,7 +89,7 @@ def _check(kind: str, size: tuple[int, int], name: str) -> None:
 
 
 def _check_colours(picture: Image, path: Path) -> None:
-    """Refuse a picture that cannot be as a camera took it."""
+    """Reject an image that is not as a camera took it."""
     name, kind = plain(str(path)), picture.format or ""
     if path.suffix.lower() not in ENDINGS[kind]:
         raise PictureError(f"{name}: is {kind} inside; name it {ENDINGS[kind][0]}.")
@@ -100,11 +100,11 @@ def _check_colours(picture: Image, path: Path) -> None:
 
 
 def _coloured(picture: Image) -> Image:
-    """Return a picture of any mode in red, green and blue."""
+    """Return an image of any mode in RGB."""
     import numpy as np
     from PIL import Image
 
-    if picture.mode[0] in "IF":  # 16 bits to a pixel, or more
+    if picture.mode[0] in "IF":  # 16 bits per pixel, or more
         values = np.nan_to_num(np.asarray(picture, dtype=float))
         values = values / 257 if values.max() > 255 else values
         return Image.fromarray(np.clip(values, 0, 255).astype(np.uint8)).convert("RGB")

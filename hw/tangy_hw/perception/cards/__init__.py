@@ -1,1 +1,1 @@
-"""Printed cards: where they are, which they are, what is marked on them."""
+"""Detects and identifies printed cards, and reads their marks."""

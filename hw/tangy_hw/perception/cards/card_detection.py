@@ -1,4 +1,4 @@
-"""Where cards are in a picture: all that are there, and the plane that each lies on."""
+"""Detects the cards in an image, and the plane of each."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     Picture = NDArray[Any]
     Plane = NDArray[Any]
 
-NEAR_ENOUGH = 4.0  # mm that a tag's corner may lie off the plane through the card's other tags
-ELSEWHERE = 1.5  # sides of a tag off its place on a card, from which it is on a copy of it
-MOST_LARGER = 1_000_000  # pixels of a picture that is enlarged as a whole
+NEAR_ENOUGH = 4.0  # mm that a tag's corner may be off the plane through the card's other tags
+ELSEWHERE = 1.5  # tag sides off its place on a card, from which it belongs to a copy of the card
+MOST_LARGER = 1_000_000  # pixels of an image up to which all of it is enlarged
 
 
 @dataclass(frozen=True)
 class Sighting:
-    """A card that may be there: its number, how many of its tags were seen, and its plane.
+    """A possible card: its number, the number of detected tags, and its plane.
 
-    `plane` takes mm on the card to pixels of the picture. `sure` says whether a card is there,
-    legible or not: several tags lie on one plane, or the only one is printed as tags are.
+    `plane` is the homography from mm on the card to pixels. `sure` says whether there is a card,
+    legible or not: several tags lie on one plane, or the only one looks printed.
     """
 
     card: int
@@ -35,7 +35,7 @@ class Sighting:
 
     @property
     def cell_area(self) -> float:
-        """The pixels that a square mm in the middle of the card covers."""
+        """Pixels that a square mm in the middle of the card covers."""
         import numpy as np
 
         x, y = WIDTH / 2, HEIGHT / 2
@@ -45,7 +45,7 @@ class Sighting:
 
 
 def project(plane: Plane, points: NDArray[Any]) -> NDArray[Any]:
-    """Return where points (n, 2) of the card are in the picture, in px."""
+    """Project points (n, 2) of the card into the image, in px."""
     import numpy as np
 
     seen = np.column_stack([points, np.ones(len(points))]) @ plane.T
@@ -54,15 +54,15 @@ def project(plane: Plane, points: NDArray[Any]) -> NDArray[Any]:
 
 
 def find_cards(grey: Picture) -> list[Sighting]:
-    """Find all cards in a grey picture, the best seen first; none of them is verified yet.
+    """Find all cards in a grey image, the best first, without verifying them.
 
-    Two copies of one card are two.
+    Two copies of one card are two sightings.
     """
     tags = tags_in(grey)
     found = _sightings(grey, tags)
     if found and found[0].tags == len(TAGS):
         return found
-    if found and found[0].tags > 1:  # the others are near
+    if found and found[0].tags > 1:  # the others are nearby
         box = _around(found[0], grey.shape)
     elif grey.size <= MOST_LARGER:
         box = (0, 0, grey.shape[1], grey.shape[0])
@@ -80,11 +80,11 @@ def _sightings(grey: Picture, tags: list[Tag]) -> list[Sighting]:
 
 
 def _copies(grey: Picture, tags: list[Tag]) -> list[Sighting]:
-    """Return the sightings of one card whose tags these are, the largest first: mostly one."""
+    """Return the sightings of one card from its tags, the largest first: mostly one."""
     found: list[Sighting] = []
     left = tags
     while left:
-        corners = {tag.corner: tag for tag in reversed(left)}  # the largest of each
+        corners = {tag.corner: tag for tag in reversed(left)}  # largest of each corner
         laid = _through(corners)
         if laid is None:
             break
@@ -96,16 +96,16 @@ def _copies(grey: Picture, tags: list[Tag]) -> list[Sighting]:
 
 
 def _is_elsewhere(tag: Tag, plane: Plane, kept: list[Tag]) -> bool:
-    """Say whether a tag cannot be one of the card that lies on a plane through other tags."""
+    """Return whether a tag cannot belong to the card on a plane through other tags."""
     if len(kept) == 1 and tag.corner != kept[0].corner:
-        return False  # how the card lies is not known well enough
+        return False  # the plane is too uncertain
     place = project(plane, _on_card(tag.corner)).mean(0)
     off = float(abs(tag.corners.mean(0) - place).max())
     return off > ELSEWHERE * tag.side
 
 
 def _on_card(corner: int) -> NDArray[Any]:
-    """Return where the four corners of a tag are on the card, in mm."""
+    """Return the positions of a tag's four corners on the card, in mm."""
     import numpy as np
 
     box = TAGS[corner]
@@ -114,9 +114,10 @@ def _on_card(corner: int) -> NDArray[Any]:
 
 
 def _through(tags: dict[int, Tag]) -> tuple[Plane, list[Tag]] | None:
-    """Lay a plane through the tags of a card, without those that do not lie on it.
+    """Fit a plane to the tags of a card, without outliers.
 
-    Returns the plane and the tags that do; None where there is none.
+    Returns:
+        The plane and its tags; None if there is none.
     """
     import cv2
     import numpy as np
@@ -132,7 +133,7 @@ def _through(tags: dict[int, Tag]) -> tuple[Plane, list[Tag]] | None:
         if off.max() <= NEAR_ENOUGH:
             plane = np.linalg.inv(back.astype(float))
             return plane / plane[2, 2], list(kept.values())
-        if len(kept) == 2:  # which of two is wrong cannot be seen: the smaller is less sure
+        if len(kept) == 2:  # either may be wrong; the smaller is less certain
             kept.pop(min(kept, key=lambda corner: kept[corner].side))
         else:
             kept.pop(_worst(kept))
@@ -140,7 +141,7 @@ def _through(tags: dict[int, Tag]) -> tuple[Plane, list[Tag]] | None:
 
 
 def _worst(tags: dict[int, Tag]) -> int:
-    """Return the tag without which the others lie best on one plane."""
+    """Return the tag without which the others fit best."""
     import cv2
     import numpy as np
 
@@ -156,7 +157,7 @@ def _worst(tags: dict[int, Tag]) -> int:
 
 
 def _around(seen: Sighting, shape: tuple[int, ...]) -> tuple[int, int, int, int]:
-    """Return the box of the picture that a card should fill, and a little more."""
+    """Return the box of the image that a card should fill, with a margin."""
     import numpy as np
 
     ends = np.array([(-8, -8), (WIDTH + 8, -8), (WIDTH + 8, HEIGHT + 8), (-8, HEIGHT + 8)], float)

@@ -1,6 +1,6 @@
-"""What a cell is: small nets, first of each cell alone, then of it among the others of its card.
+"""Classifies cells with small neural networks: each cell alone, then in the context of its card.
 
-Their coefficients are JSON in this folder.
+Their weights are JSON in this folder.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 CLASSES = ("unmarked", "marked", "hidden")
 UNMARKED, MARKED, HIDDEN = range(3)
-FAR = 6.0  # spreads from its usual value: a feature that is further off counts as that
-TURNS = 8  # ways to turn and mirror a cell: what is in it stays the same
-LEAST = 1e-5  # probability: less counts as that
+FAR = 6.0  # standard deviations at which features are clipped
+TURNS = 8  # rotations and reflections of a cell, which keep its class
+LEAST = 1e-5  # minimum probability
 
 
 Net = tuple[tuple["Real", "Real"], ...]
@@ -28,14 +28,14 @@ Net = tuple[tuple["Real", "Real"], ...]
 
 @dataclass(frozen=True)
 class Nets:
-    """Several nets, each layers of weights; features are centred and scaled before them."""
+    """An ensemble of networks, each a list of layers; features are standardised first."""
 
     centre: Real
     spread: Real
     nets: tuple[Net, ...]
 
     def scaled(self, rows: Real) -> Real:
-        """Return features standardised by their usual mean and spread."""
+        """Return standardised and clipped features (cells, features)."""
         import numpy as np
 
         told: Real = np.clip((rows - self.centre) / self.spread, -FAR, FAR).astype(np.float32)
@@ -44,14 +44,13 @@ class Nets:
 
 @dataclass(frozen=True)
 class Classifier:
-    """What tells cells, and when it is sure enough.
+    """The networks, and the thresholds of a decision.
 
-    `alone` looks at each cell in all ways to turn it; `among` corrects that by what the card's
-    other cells are. `temperature` divides what they give, so that of a hundred cells that are 99 %
-    sure one is wrong. A cell is told if it is at least `sure` either marked or unmarked, supposed
-    that it is in sight, and hidden with a probability of `doubt` at most: that of unmarked cells,
-    of marked ones on a card with a hand, and of others. A finger may look like a chip, but comes
-    with its hand.
+    `alone` classifies each cell in all orientations; `among` corrects this by the card's other
+    cells. `temperature` calibrates the output, so that one of a hundred cells at 99 % is wrong. A
+    cell is decided if it is marked or unmarked with a probability of at least `sure`, given that it
+    is visible, and hidden with at most `doubt`: for unmarked cells, for marked ones on a card with
+    a hand, and for other marked ones. A finger may look like a chip, but comes with its hand.
     """
 
     alone: Nets
@@ -61,7 +60,7 @@ class Classifier:
     doubt: tuple[float, float, float]
 
     def probabilities(self, rows: Real, beside: Real, across: int) -> Real:
-        """Return for each cell how probable each of `CLASSES` is.
+        """Return the probability of each of `CLASSES` for each cell (cells, classes).
 
         `rows` are the features of a card's cells, `beside` is that of `Measured`; the grid has
         `across` columns.
@@ -75,7 +74,7 @@ class Classifier:
         return seen_among(self.among.nets, self.among.scaled(among), known, self.temperature)
 
     def tells(self, part: Real, hand: bool) -> bool:
-        """Say whether a cell is told that has these probabilities, on a card with a hand or not."""
+        """Return whether a cell with probabilities (3,) is decided, with or without a hand."""
         seen = float(part[UNMARKED] + part[MARKED])
         best = float(max(part[UNMARKED], part[MARKED]))
         unmarked, with_hand, without = self.doubt
@@ -84,7 +83,7 @@ class Classifier:
 
 
 def outputs(net: Net, values: Real) -> Real:
-    """Return what a net gives, before it is made probabilities."""
+    """Return the outputs (logits) of a network (n, classes)."""
     import numpy as np
 
     for place, (weights, bias) in enumerate(net):
@@ -95,7 +94,7 @@ def outputs(net: Net, values: Real) -> Real:
 
 
 def softmax(values: Real) -> Real:
-    """Make probabilities of what a net gives."""
+    """Return the softmax of logits (..., classes)."""
     import numpy as np
 
     grown = np.exp(values - values.max(-1, keepdims=True))
@@ -105,9 +104,9 @@ def softmax(values: Real) -> Real:
 
 @cache
 def turned(turn: int) -> Real:
-    """Return where each feature of a cell is found when it is turned or mirrored this way.
+    """Return the permutation of features (n,) when a cell is rotated or mirrored this way.
 
-    What has no direction stays.
+    Features without a direction stay.
     """
     import numpy as np
 
@@ -122,7 +121,7 @@ def turned(turn: int) -> Real:
 
 
 def seen_alone(nets: tuple[Net, ...], scaled: Real) -> Real:
-    """Return how probable each class is by the cell alone: the mean of nets and ways to see it."""
+    """Return class probabilities (cells, classes) by the cell alone: mean of networks and turns."""
     import numpy as np
 
     total: Real = np.zeros((len(scaled), len(CLASSES)), np.float32)
@@ -134,7 +133,7 @@ def seen_alone(nets: tuple[Net, ...], scaled: Real) -> Real:
 
 
 def context_rows(parts: Real, scaled: Real, beside: Real, across: int) -> Real:
-    """Return what the nets among the others look at: (cards, cells, features)."""
+    """Return the inputs of the context networks: (cards, cells, features)."""
     import numpy as np
 
     from tangy_hw.perception.cards.context import LOOKS, context_of
@@ -147,7 +146,7 @@ def context_rows(parts: Real, scaled: Real, beside: Real, across: int) -> Real:
 
 
 def seen_among(nets: tuple[Net, ...], scaled: Real, known: Real, temperature: float) -> Real:
-    """Return the probabilities whose logarithms by the cell alone are `known`, corrected."""
+    """Return corrected probabilities (cells, classes); `known` are logarithms by the cell alone."""
     import numpy as np
 
     parts = [softmax((outputs(net, scaled) + known) / temperature) for net in nets]
@@ -157,7 +156,7 @@ def seen_among(nets: tuple[Net, ...], scaled: Real, known: Real, temperature: fl
 
 @cache
 def load_classifier() -> Classifier:
-    """Load the classifier that ships."""
+    """Load the classifier of this package."""
     text = (files(__package__) / "classifier.json").read_text(encoding="utf-8")
     return read_classifier(json.loads(text))
 
@@ -166,7 +165,7 @@ def read_classifier(told: dict[str, Any]) -> Classifier:
     """Read a classifier from JSON.
 
     Raises:
-        RuntimeError: it was made for other features.
+        RuntimeError: it was trained with other features.
     """
     from tangy_hw.perception.cards import context, features
 

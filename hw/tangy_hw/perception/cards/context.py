@@ -1,4 +1,4 @@
-"""What the other cells of a card say of one: chips of a card are alike, and hands are large."""
+"""Context features of a cell from its card's other cells: chips are alike, and hands are large."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ LOOKS = (
     "change disc", "print", "middle of usual", "contrast of usual", "least of usual", "alike",
     "black", "rest of usual", "colour ring", "change ring",
 )  # fmt: skip
-"""Features by which cells are compared with those of their card that are surely marked or not."""
-TOLD = 8  # logarithm of odds: surer counts as that
+"""Features in which a cell is compared with its card's clearly marked and unmarked cells."""
+TOLD = 8  # bound on log odds
 
 NAMES = (
     "own mark", "own hidden",
@@ -27,11 +27,11 @@ NAMES = (
 
 
 def context_of(parts: Real, looks: Real, beside: Real, columns: int) -> Real:
-    """Return for each cell (cards, cells) a row of `NAMES`.
+    """Return a row of `NAMES` for each cell (cards, cells).
 
-    `parts` are how probable each class is (cards, cells, classes) by the cell alone, `looks` the
-    features `LOOKS`, scaled (cards, cells, features); `beside` is that of `Measured`; the grid has
-    so many `columns`.
+    `parts` are the class probabilities (cards, cells, classes) by the cell alone, `looks` the
+    standardised features `LOOKS` (cards, cells, features), `beside` is that of `Measured`, and
+    `columns` the number of the grid's columns.
     """
     import numpy as np
 
@@ -81,7 +81,7 @@ def context_of(parts: Real, looks: Real, beside: Real, columns: int) -> Real:
 
 
 def _near(values: Real, rows: int, columns: int) -> Real:
-    """Return what the eight cells around each have: cards, cells, eight, values; 0 outside."""
+    """Return the values of each cell's eight neighbours (cards, cells, 8, values); 0 outside."""
     import numpy as np
 
     cards = len(values)

@@ -1,4 +1,4 @@
-"""How far what lies on a cell reaches: a chip ends all around, a finger goes on the way it came."""
+"""How far an object on a cell extends: a chip ends on all sides, a finger continues on one."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ if TYPE_CHECKING:
 
 NAMES = ("same way near", "same way far", "same ways", "same longest", "same way mean")
 ANGLES = 24
-FAR = (0.5, 0.62, 0.75, 0.87, 1.0, 1.12, 1.25)  # of a cell's side, from a chip's middle
-NEAR = 4  # so many of them are near
-SAME = 0.5  # of its contrast with paper: what is less unlike may be the same thing
-PALE = 0.15  # the least contrast with paper
+FAR = (0.5, 0.62, 0.75, 0.87, 1.0, 1.12, 1.25)  # of a cell's side, from the centre of the chip
+NEAR = 4  # of these radii count as near
+SAME = 0.5  # of the contrast with paper: smaller differences may be the same object
+PALE = 0.15  # minimum contrast with paper
 
 
 def ways_out(covered: Real, y: Real, x: Real, side: int) -> tuple[Real, Real]:
-    """Follow straight ways out of a cell; return how well the most and the least hidden are.
+    """Follow rays out of each cell; return how covered the most and the least covered ray are.
 
-    From a chip every way leads over paper; a finger is hidden all along the way that it came.
+    All rays from a chip reach paper; one ray along a finger stays covered. Maps are (rows,
+    columns), results (cells,).
     """
     import numpy as np
 
@@ -29,10 +30,10 @@ def ways_out(covered: Real, y: Real, x: Real, side: int) -> tuple[Real, Real]:
 
 
 def same_ways(tones: Real, y: Real, x: Real, tone: Real, side: int) -> list[Real]:
-    """Follow ways out over what has the same tone; return columns of `NAMES`.
+    """Follow rays out of each cell over the same colour; return columns of `NAMES`, each (cells,).
 
-    `tones` is a map of light (paper has 1) and two differences of colours (paper has 0); `tone`
-    is that of what is most like a chip in each cell, whose middle is at (y, x).
+    `tones` (rows, columns, 3) has brightness (1 for paper) and two colour differences (0 for
+    paper); `tone` is the colour of the most chip-like place in each cell, centred at (y, x).
     """
     import numpy as np
 
@@ -49,7 +50,7 @@ def same_ways(tones: Real, y: Real, x: Real, tone: Real, side: int) -> list[Real
 
 
 def _places(layer: Real, y: Real, x: Real, ways: int, far: Real) -> tuple[Real, Real]:
-    """Return rows and columns of a map on straight ways out: cells, ways, places."""
+    """Return rows and columns of points on rays from each cell: (cells, rays, points)."""
     import numpy as np
 
     angles = np.arange(ways) * (2 * np.pi / ways)

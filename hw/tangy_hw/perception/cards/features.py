@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     Picture = NDArray[Any]
     Real = NDArray[Any]
 
-HALF = SIDE // 2  # pixels of a cell in the maps
-AWAY = 8  # how far from a cell's middle a chip's middle is looked for, in pixels of the maps
-BEYOND = 12  # as far again is looked for chips of the next cells
-SPOTS, APART = 11, 3  # of a cell and its surroundings: so many to each side, pixels of the maps
-OUTSIDE = 4, 10  # pixels outside of the grid that are looked at for what comes from there
-STRANGE, DARK = 0.22, 0.25  # of light: how far from grey, and how dark, paper never is
-INNER = 26  # pixels of the middle of a cell in which its number stands
-LARGEST = 1.4  # a scale above which nothing more is seen
-INKED = 80  # the percentile of a card's cells whose number counts as ink on paper
-SHIFT = 2  # how far a number may be off its place, in pixels
+HALF = SIDE // 2  # pixels of a cell in the half-size maps
+AWAY = 8  # pixels from a cell's centre within which the centre of a chip is searched
+BEYOND = 12  # pixels for chips of the neighbouring cells
+SPOTS, APART = 11, 3  # spots per side of a cell with its surroundings; pixels between spots
+OUTSIDE = 4, 10  # pixels outside the grid that show objects reaching in
+STRANGE, DARK = 0.22, 0.25  # limits of paper: difference from grey, and brightness
+INNER = 26  # pixels of a cell's middle with its number
+LARGEST = 1.4  # scale above which details do not increase
+INKED = 80  # percentile of the number contrasts of a card that counts as ink on paper
+SHIFT = 2  # pixels that a number may be off its place
 
 NAMES = (
     "print", "print here", "own number", "crossings least", "crossings mean",
@@ -42,22 +42,22 @@ NAMES = (
     "best under high", "dyed over low", "dyed under high", "print over low", "print under high",
     "black", *extent.NAMES, *synthesis.NAMES,
 )  # fmt: skip
-"""What the first features are called, in their order."""
+"""Names of the first features, in order."""
 SEEN = ("colour", "lighter", "unlike")
-"""What is seen in the spots of a cell and around it: the further features, spot by spot.
+"""Layers of the remaining features, spot by spot in a cell and around it.
 
-They are how far a spot is from grey, how much lighter it is than the print that the card has
-there, and how unlike in colour the place in the cell that is most like a chip.
+These are: difference from grey, brightness relative to the card's print, and colour difference to
+the most chip-like place in the cell.
 """
 
 
 @dataclass(frozen=True)
 class Measured:
-    """The features of a card's cells: a row for each, of `NAMES` and of spots that show `SEEN`.
+    """Features of a card's cells: a row for each, with `NAMES` and then the spots of `SEEN`.
 
-    `read` has, for each cell, the correlation with the number that the card has there and the best
-    correlation with any other number of its column. `beside` is how much of the paper outside of
-    the grid, beside a cell at its edge, something lies on: 0 to 1.
+    `read` has the correlation with the card's own number, and the best with another number of the
+    column, for each cell. `beside` is the share of the paper outside the grid, beside a cell at its
+    edge, that an object covers: 0 to 1.
     """
 
     rows: Real
@@ -65,7 +65,7 @@ class Measured:
     beside: Real
 
     def compared(self, name: str) -> Real:
-        """Return one feature of all cells."""
+        """Return one feature of all cells (cells,)."""
         column: Real = self.rows[:, NAMES.index(name)]
         return column
 
@@ -112,7 +112,7 @@ def features_of(flat: Flat, face: CardLayout, numbers: tuple[int, ...]) -> Measu
     cell = np.arange(rows * columns)
     y = start + cell // columns * HALF + HALF // 2
     x = start + cell % columns * HALF + HALF // 2
-    # A chip is looked for in more than the cell: one whose middle lies beyond marks another.
+    # Search beyond the cell too: a chip centred there marks a neighbour.
     span = np.arange(-BEYOND, BEYOND + 1)
     wide = np.pad(chipped, BEYOND, mode="edge")
     wide = wide[(y[:, None] + BEYOND + span)[:, :, None], (x[:, None] + BEYOND + span)[:, None]]
@@ -167,7 +167,7 @@ def features_of(flat: Flat, face: CardLayout, numbers: tuple[int, ...]) -> Measu
 
 
 def _beside(strange: Real, bare: Real, rows: int, columns: int) -> Real:
-    """Return how much of the bare paper beside the cells at the grid's edges is strange."""
+    """Return the share of unusual colour in the bare paper beside the cells at the grid's edges."""
     import numpy as np
 
     near, far = OUTSIDE
@@ -179,17 +179,18 @@ def _beside(strange: Real, bare: Real, rows: int, columns: int) -> Real:
         ((np.s_[RIM:down], np.s_[RIM - far : RIM - near]), np.s_[:, 0]),
         ((np.s_[RIM:down], np.s_[across + near : across + far]), np.s_[:, -1]),
     ):
-        along = 1 if where[0] == slice(None) else 0  # the axis that is as thin as the strip
+        along = 1 if where[0] == slice(None) else 0  # axis across the strip
         odd, paper = (layer[part].sum(along).reshape(-1, SIDE).sum(1) for layer in (strange, bare))
         found[where] = np.maximum(found[where], odd / np.maximum(paper, SIDE))
     return np.asarray(found.ravel())
 
 
 def _plainly(layers: Real, middle: tuple[Real, Real], known: tuple[Real, Real]) -> list[Real]:
-    """Measure faint discs: averages with their sign, in which noise cancels out.
+    """Measure faint discs with signed means, in which noise cancels out.
 
-    `layers` are two differences of colours, and how much lighter a pixel is than the print.
-    What is measured is also compared with the card's other cells: chips are of one kind mostly.
+    `layers` (rows, columns, 3) are two colour differences, and the brightness relative to the
+    print. The results are also compared with the card's other cells, because chips are mostly of
+    one kind.
     """
     import cv2
     import numpy as np
@@ -224,7 +225,7 @@ def _plainly(layers: Real, middle: tuple[Real, Real], known: tuple[Real, Real]) 
 
 
 def _spots(layers: Real, middle: tuple[Real, Real], best: tuple[Real, Real]) -> Real:
-    """Look at spots of cells and what is around them; return a row of `SEEN` for each cell."""
+    """Sample spots of each cell and its surroundings; return a row of `SEEN` for each."""
     import cv2
     import numpy as np
 
@@ -243,7 +244,7 @@ def _spots(layers: Real, middle: tuple[Real, Real], best: tuple[Real, Real]) -> 
 
 
 def _light_and_tint(picture: Real) -> tuple[Real, Real]:
-    """Return how light each pixel is, and how far its colours are from grey."""
+    """Return the brightness of each pixel, and its difference from grey."""
     import cv2
 
     blue, green, red = cv2.split(picture)
@@ -252,10 +253,11 @@ def _light_and_tint(picture: Real) -> tuple[Real, Real]:
 
 
 def _numbers_read(light: Real, face: CardLayout, numbers: tuple[int, ...], scale: float) -> Real:
-    """Compare what stands in each cell with the numbers that can stand there.
+    """Correlate each cell with the numbers of its column.
 
-    Returns, for each cell, the best correlation with its own number, with any other of its column,
-    with its own where it should stand exactly, and how much the cell's middle varies.
+    Returns:
+        For each cell (n, 4): the best correlation with its own number, with any other, with its own
+        at its exact place, and the contrast of the cell's middle.
     """
     import numpy as np
 
@@ -274,7 +276,7 @@ def _numbers_read(light: Real, face: CardLayout, numbers: tuple[int, ...], scale
     for place, column in enumerate(face.deck.columns):
         prints = _prints(face, column.low, column.high, round(min(1.5, scale), 1))
         here = np.arange(place, rows * columns, columns)
-        match = windows[here] @ prints.T  # cells, shifts, numbers
+        match = windows[here] @ prints.T  # (cells, shifts, numbers)
         best = match.max(1)
         for order, cell in enumerate(here):
             own = numbers[cell] - column.low
@@ -295,7 +297,7 @@ def _drawn(face: CardLayout, number: int) -> Picture:
 
 @lru_cache(maxsize=256)
 def _prints(face: CardLayout, low: int, high: int, scale: float) -> Real:
-    """Return numbers as they look at a scale, each as a row of length 1 and mean 0."""
+    """Return templates of numbers at a scale, each a row with norm 1 and mean 0."""
     import cv2
     import numpy as np
 
@@ -310,7 +312,7 @@ def _prints(face: CardLayout, low: int, high: int, scale: float) -> Real:
 
 
 def _disc(maps: Real) -> Real:
-    """Average over what a chip's top covers."""
+    """Average over the area of a chip."""
     import cv2
 
     return cv2.GaussianBlur(maps, (13, 13), 2.4)
@@ -341,14 +343,14 @@ def _cells(layer: Real, rows: int, columns: int) -> Real:
 
 
 def _whole_cells(layer: Real, rows: int, columns: int) -> Real:
-    """Cut a picture of the grid into its cells."""
+    """Cut an image of the grid into its cells."""
     grid = layer[RIM : RIM + rows * SIDE, RIM : RIM + columns * SIDE]
     cut: Real = grid.reshape(rows, SIDE, columns, SIDE).swapaxes(1, 2).reshape(-1, SIDE, SIDE)
     return cut
 
 
 def _around(at_crossings: Real) -> Real:
-    """Return for each cell the values at its four crossings."""
+    """Return the values at the four line crossings of each cell."""
     import numpy as np
 
     a = at_crossings
@@ -357,7 +359,7 @@ def _around(at_crossings: Real) -> Real:
 
 
 def _corners(dots: Real, rows: int, columns: int) -> Real:
-    """Measure the four corners of each cell, inside its lines."""
+    """Sample the four corners of each cell, inside its lines."""
     import numpy as np
 
     cell = np.arange(rows * columns)
@@ -370,7 +372,7 @@ def _corners(dots: Real, rows: int, columns: int) -> Real:
 
 
 def _sides(dots: Real, rows: int, columns: int) -> Real:
-    """Measure the middle of the four sides of each cell, inside its lines."""
+    """Sample the middle of the four sides of each cell, inside its lines."""
     import numpy as np
 
     cell = np.arange(rows * columns)

@@ -1,4 +1,4 @@
-"""A folder of labelled pictures of cards, and the accuracy of reading them."""
+"""Reads a folder of labelled card images, and measures the accuracy of the card reader."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LABELS = "labels.json"
-LARGEST_JSON = 20_000_000  # bytes: a hundred thousand pictures
+LARGEST_JSON = 20_000_000  # bytes: a hundred thousand images
 
 
 @dataclass(frozen=True)
 class CardLabel:
-    """The ground truth of a picture; cells in `hidden` cannot be told."""
+    """Ground truth of an image; cells in `hidden` cannot be decided."""
 
     path: Path
     card: int | None
@@ -34,7 +34,7 @@ class CardLabel:
 
 @dataclass
 class Counted:
-    """How many pictures of a labelled folder were read as they are."""
+    """Counts of correct and wrong readings of labelled images."""
 
     pictures: int = 0
     with_card: int = 0
@@ -47,11 +47,11 @@ class Counted:
     mistakes: list[dict[str, Any]] = field(default_factory=list)
 
     def document(self) -> dict[str, Any]:
-        """Return it as JSON has it."""
+        """Return it as JSON."""
         return dict(vars(self))
 
     def lines(self) -> list[str]:
-        """Say it as a table, and which pictures were read wrongly."""
+        """Return it as a table, with a list of wrong readings."""
         rows = [
             ("cards read", self.read, self.with_card),
             ("read with all cells in sight", self.whole, self.with_card),
@@ -69,14 +69,14 @@ class Counted:
 
 
 def labelled(folder: Path, deck: Deck) -> list[CardLabel]:
-    """Read the labels of the pictures in a folder.
+    """Read the labels of the images in a folder.
 
-    That stands in its labels.json, a list in the form that reading pictures prints; or, as
-    `tangy capture` records it, in the `label` of a JSON file beside each picture, which is a
-    reading as well, or true where what was `seen` is right. The others are left out.
+    They are in its labels.json, a list in the form that the reader prints; or, as recorded by
+    `tangy capture`, in the `label` of the JSON file beside each image: a reading, or true if `seen`
+    is correct. Unlabelled images are skipped.
 
     Raises:
-        TangyError: there are none, or one of them cannot be understood.
+        TangyError: there are no labels, or one is invalid.
     """
     path = folder / LABELS
     name = plain(str(path))
@@ -144,10 +144,10 @@ def _mask(places: Any, deck: Deck) -> int:
 
 
 def count_labelled(labels: list[CardLabel], read: Callable[[NDArray[Any]], CardReading]) -> Counted:
-    """Read each picture (BGR) and compare it with its label.
+    """Read each image (BGR) and compare it with its label.
 
     Raises:
-        PictureError: a picture cannot be read.
+        PictureError: an image cannot be read.
     """
     counted = Counted()
     for label in labels:

@@ -1,9 +1,9 @@
-"""Marks that are unlike the card's other marks: people mark with chips of one kind mostly.
+"""Doubts marks that differ from the card's other marks, because people mostly use one kind of chip.
 
-What looks like a mark and is none has no colour where chips have one (a stripe of shadow, blurred
-or glaring print), or that of skin (a fingertip). Where no mark has a colour, a card is marked with
-a pen, coins, or white or grey chips: none of these is doubted, unless its number lies bare on a
-card of which much cannot be told.
+False marks have no colour where chips have one (a stripe of shadow, blurred or glaring print), or
+the colour of skin (a fingertip). If no mark has a colour, the card is marked with a pen, coins, or
+white or grey chips; then a mark is doubted only if its number is bare on a card with many undecided
+cells.
 """
 
 from __future__ import annotations
@@ -18,38 +18,40 @@ if TYPE_CHECKING:
 
     Real = NDArray[Any]
 
-# Chosen on 520 frames of stripes, glare, motion and fingers, on which 2,300 cells with chips and
-# 36 without were told marked; `tests.bench.card_harsh` makes such frames, and others to count on.
+# Chosen on 520 frames of stripes, glare, motion and fingers, in which 2,300 cells with chips and 36
+# without were classified as marked; `tests.bench.card_harsh` makes such frames, and others for
+# testing.
 COLOURED = 0.15
-"""How far from the paper's colour, in its light, a chip of a colour is; the palest had .151."""
+"""Difference from the paper's colour, relative to its brightness, of a coloured chip; the palest
+had .151."""
 PALE = 0.3
-"""Of the usual colour of the card's coloured marks: what has less is taken to have none. Chips had
-.63 and more, bare cells .28 and less."""
+"""Share of the usual colour of the card's coloured marks below which a mark has none. Chips had .63
+and more, bare cells .28 and less."""
 FLESH = 0.6
-"""Of that: what has less, and the hue of skin, may be a finger."""
+"""Share of the usual colour below which a mark with the hue of skin may be a finger."""
 SKIN = -70.0, -8.0
-"""Between these directions of colour (degrees, blue over red, each less green) skin lies."""
+"""Range of skin hues: degrees of blue over red, each minus green."""
 BARE = 0.55
-"""The correlation with its number from which the number of a colourless mark lies bare: of such
-chips and coins, 95 in 100 had less."""
+"""Correlation with its number above which the number of a colourless mark is bare: 95 in 100 of
+such chips and coins had less."""
 MUDDLED = 6
-"""Cells in sight that cannot be told, from which much of a card cannot: where bare cells were told
-marked there were 10 and more, on cards with coins or white chips mostly none."""
+"""Undecided visible cells from which on the rule applies. Cards with bare cells classified as
+marked had 10 or more, cards with coins or white chips mostly none."""
 BESIDE = 0.3
-"""How probably hidden a cell is beside which a finger may end."""
+"""Probability of hidden cells beside which a finger may end."""
 
 
 def unlike_others(measured: Measured, parts: Real, told: Real, across: int) -> Real:
-    """Return which marks are so unlike the others that they may be none.
+    """Return which marks differ so much from the others that they may be false.
 
     Args:
-        measured: what was measured of a card's cells.
-        parts: how probable each class is, (cells, classes).
-        told: which cells are told, (cells,) bool.
-        across: columns of the grid.
+        measured: features of a card's cells.
+        parts: class probabilities (cells, classes).
+        told: decided cells (cells,) bool.
+        across: number of the grid's columns.
 
     Returns:
-        Which of the cells that are told marked are doubted, (cells,) bool.
+        The doubted marks (cells,) bool.
     """
     import numpy as np
 
@@ -75,13 +77,13 @@ def _fingers(measured: Measured, parts: Real, coloured: Real, across: int) -> Re
     usual = float(np.median(colour[coloured])) if coloured.any() else 0.0
     faint = flesh & (colour < FLESH * usual)
     beside = _beside((parts[:, HIDDEN] >= BESIDE).reshape(-1, across))
-    if (coloured & ~(flesh & beside)).any():  # there are chips elsewhere, to compare it with
+    if (coloured & ~(flesh & beside)).any():  # there are chips elsewhere to compare with
         return np.asarray(faint)
     return np.asarray(faint | (flesh & beside))
 
 
 def _beside(hidden: Real) -> Real:
-    """Return which cells have a hidden one beside them or at a corner, (cells,) bool."""
+    """Return which cells have a hidden neighbour (cells,) bool."""
     import numpy as np
 
     rows, columns = hidden.shape

@@ -1,7 +1,7 @@
-"""A look at a card: pictures of several moments, made one reading of, and what two of them show.
+"""Fuses the readings of a card at several moments, and requires two moments for claims.
 
-One picture may be misread: a finger for a chip, a stripe of shadow for a mark. That a person has
-won, or made a mistake, is said only where pictures of two moments show it.
+A single frame may be misread: a finger as a chip, a stripe of shadow as a mark. A win or a mistake
+is only reported if frames of two moments show it.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from tangy_hw.perception.cards.reader import CardReader, CardReading
 
 MOMENT = 0.1
-"""The s from which two pictures show different moments: a hand or the light has moved by then."""
+"""Seconds between two moments: by then a hand or the light has moved."""
 
 
 class CardLook:
-    """The fused readings of one look at a card. `add` readings until it `is_over`."""
+    """The fused readings of one look at a card. Call `add` until `is_over`."""
 
     def __init__(
         self,
@@ -30,13 +30,13 @@ class CardLook:
         *,
         identify: bool = False,
     ) -> None:
-        """Begin a look.
+        """Start without readings.
 
         Args:
-            reader: what made the readings.
+            reader: the reader of the card.
             states: the activity's user states in order of precedence.
-            called: the numbers that were called.
-            identify: it is not over before two moments show which card it is.
+            called: the called numbers.
+            identify: require that two moments identify the card.
         """
         self._reader = reader
         self._states = states
@@ -47,12 +47,12 @@ class CardLook:
         self._last = float("-inf")
         self._unread = next(state.name for state in states if state.checker == "unread")
         self.reading = reader.nothing("")
-        """All of the look, made one reading of; there is no card in it where several are seen."""
+        """Fused reading; no card if several are in sight."""
         self.state = self._unread
-        """The user activity state that is told; the unread one where none is."""
+        """User activity state; the unread one if undecided."""
 
     def is_another(self, picture: bytes, stamp: float) -> bool:
-        """Say whether a picture, taken at a moment in s, shows another moment than those before."""
+        """Return whether a frame, taken at a time in s, shows another moment than those before."""
         if stamp < self._last + MOMENT or picture in self._seen:
             return False
         self._seen.add(picture)
@@ -60,7 +60,7 @@ class CardLook:
         return True
 
     def add(self, reading: CardReading) -> None:
-        """Add the reading of another picture."""
+        """Add the reading of another frame."""
         self._readings.append(reading)
         self.reading = self._reader.fuse(self._readings)
         self.state = self._reader.state(self.reading, self._states, self._called)
@@ -69,24 +69,24 @@ class CardLook:
 
     @property
     def pictures(self) -> int:
-        """How many pictures were read."""
+        """Number of frames read."""
         return len(self._readings)
 
     @property
     def sure(self) -> bool:
-        """Whether two moments show the card that is told, and none another."""
+        """Whether two moments show this card, and none shows another."""
         told = [reading for reading in self._readings if reading.card is not None]
         return self.reading.card is not None and len(told) > 1
 
     @property
     def is_over(self) -> bool:
-        """Whether more pictures would tell nothing more."""
+        """Whether more frames would add nothing."""
         if len(self.reading.cards) > 1:
             return True
         return self.state != self._unread and (self.sure or not self._identify)
 
     def _is_borne_out(self) -> bool:
-        """Say whether two moments show what the state rests on, and none shows otherwise."""
+        """Return whether two moments show what the state depends on, and none disagrees."""
         checker = next(state.checker for state in self._states if state.name == self.state)
         deck, card = self._reader.deck, self.reading.card
         if card is None:
@@ -97,7 +97,7 @@ class CardLook:
         return is_borne_out(checker, deck, marked, unmarked, cells)
 
     def _agreed(self) -> tuple[int, int]:
-        """Return the cells that two moments tell marked, and unmarked, with none against it."""
+        """Return masks of the cells that two moments show as marked, and as unmarked."""
         told = [reading for reading in self._readings if reading.card is not None]
         marked = [reading.marked & ~reading.hidden for reading in told]
         unmarked = [~reading.marked & ~reading.hidden for reading in told]
@@ -112,7 +112,7 @@ def _any(masks: Sequence[int]) -> int:
 
 
 def _twice(masks: Sequence[int]) -> int:
-    """Return the bits that two or more of the masks have."""
+    """Return the bits that are set in two or more masks."""
     once = twice = 0
     for mask in masks:
         twice |= once & mask

@@ -1,4 +1,4 @@
-"""A reading drawn over its picture."""
+"""Draws a card reading over its image."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     Picture = NDArray[Any]
 
 MARKED, HIDDEN, GRID = (60, 200, 0), (0, 140, 255), (255, 120, 0)  # blue, green, red
-SIDE = 100  # a cell straight on, in the units in which is drawn
+SIDE = 100  # side of a rectified cell in drawing units
 
 
 def draw_reading(picture: Picture, reading: CardReading, deck: Deck) -> Picture:
-    """Return the picture (BGR) with the grid, marked cells ringed, and hidden ones crossed."""
+    """Return the image (BGR) with the grid, marked cells circled, and hidden ones crossed."""
     import cv2
     import numpy as np
 
@@ -53,7 +53,7 @@ def draw_reading(picture: Picture, reading: CardReading, deck: Deck) -> Picture:
 
 
 def _write(drawn: Picture, text: str, place: tuple[int, int], thick: int) -> None:
-    """Write in white with a black edge, to be seen on anything."""
+    """Write white text with a black outline, readable on any background."""
     import cv2
 
     for tone, wide in (((0, 0, 0), 4), ((255, 255, 255), 1)):

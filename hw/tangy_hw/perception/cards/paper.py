@@ -1,8 +1,8 @@
-"""The paper's way to read a card, for comparison only: textures, Hough lines and red blobs.
+"""Card reader as in the paper, only for comparison: texture features, Hough lines and red blobs.
 
-Texture features (SIFT here; SURF is no longer shipped) match the picture with the faces of all
-cards, which gives the card and its plane; Hough lines give the grid; what is red is a chip. It has
-no way to say that it cannot tell.
+Texture features (SIFT; SURF is no longer available) match the image with the faces of all cards,
+which gives the card and its plane; Hough lines give the grid; red cells are chips. It cannot report
+uncertainty.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     Picture = NDArray[Any]
     Plane = NDArray[Any]
 
-SCALE = 4.0  # pixels to the mm of the faces that are compared with
+SCALE = 4.0  # pixels per mm of the reference faces
 FEATURES = 400  # of each face
-FEWEST = 10  # features that must lie on one plane
-RED = 0.15  # of a cell that must be red
+FEWEST = 10  # inliers of a homography
+RED = 0.15  # share of a cell that must be red
 
 
 class PaperReader:
@@ -43,7 +43,7 @@ class PaperReader:
         self._cards = cards
 
     def read(self, picture: Picture) -> CardReading:
-        """Read the card in a picture (blue, green, red)."""
+        """Read the card in an image (BGR)."""
         found = self._identified(picture)
         if found is None:
             return self._reader.nothing(NO_TAGS.replace("card", "known texture"))
@@ -52,7 +52,7 @@ class PaperReader:
 
     @cached_property
     def _faces(self) -> tuple[Any, Any, Any]:
-        """Return the matcher of all faces, the card of each feature, and its place in mm."""
+        """Matcher of all faces, card of each feature, and its position in mm."""
         import cv2
         import numpy as np
 
@@ -129,7 +129,7 @@ class PaperReader:
 
 
 def _evenly(lines: Plane, start: float, side: float, count: int) -> float:
-    """Return where a grid begins whose lines lie best on those that were found."""
+    """Return the start of a regular grid that best fits the found lines."""
     import numpy as np
 
     if not len(lines):

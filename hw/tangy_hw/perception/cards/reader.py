@@ -1,4 +1,4 @@
-"""The card in a picture: which one it is, which cells are marked, and which cannot be told."""
+"""Reads the card in an image: its number, its marked cells, and the undecided ones."""
 
 from __future__ import annotations
 
@@ -21,32 +21,32 @@ if TYPE_CHECKING:
     Picture = NDArray[Any]
     Real = NDArray[Any]
 
-WIDEST = 1920  # pixels: a larger picture is made smaller first
-TRIES = 4  # sightings that are looked at, the surest first
-LEGIBLE = 0.6  # correlation from which a number is taken to be read
-AGREE, FEWEST_AGREE = 0.6, 4  # the share of the legible numbers that must be the card's, and many
-COVERED = 0.7  # the share of the cells that are surely marked on a card with few bare numbers
-CLEARLY = 0.8  # correlation of a number that lies bare: chips reach .7, bare numbers .9
-BY_CHANCE = 1e-6  # or so many of them that another deck's would hardly ever be the same
+WIDEST = 1920  # pixels; larger images are scaled down first
+TRIES = 4  # sightings to try, the most certain first
+LEGIBLE = 0.6  # correlation from which a number counts as legible
+AGREE, FEWEST_AGREE = 0.6, 4  # share and minimum of legible numbers that must match the card's
+COVERED = 0.7  # share of surely marked cells of a card with few bare numbers
+CLEARLY = 0.8  # correlation of a bare number: chips reach .7, bare numbers .9
+BY_CHANCE = 1e-6  # or enough matches that another deck's card would hardly have
 NO_TAGS = "no card in sight"
 TOO_LITTLE = "too little of the card in sight"
 OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
-HAND = 0.5  # how probably hidden a cell is from which a hand is taken to be on the card
-MAYBE_HAND = 0.1  # how probably hidden a cell is from which a hand may be on the card
-CERTAIN_UNMARKED = 0.99  # how sure a cell is on which a state may rest, supposed it is in sight
-CERTAIN_MARKED = 0.965, 0.996  # and how sure a marked one: without a hand, and where one may be
-FADED = 0.6  # of its card's usual contrast: a number with less of it does not lie bare
+HAND = 0.5  # probability of hidden from which a hand is on the card
+MAYBE_HAND = 0.1  # probability of hidden from which a hand may be on the card
+CERTAIN_UNMARKED = 0.99  # minimum for a state, given that the cell is visible
+CERTAIN_MARKED = 0.965, 0.996  # for marked cells: without a hand, with a possible hand
+FADED = 0.6  # of the card's usual contrast: a bare number has more
 
 
 @dataclass(frozen=True)
 class CardReading:
     """A reading of a card: its number (None if unreadable) and its cells.
 
-    Masks have the bits of `Deck`'s cells. `cells` is the probability that a cell is marked;
-    `confidence` that of the least sure cell that was told; `problem` says why there is no card.
-    `cards` are the numbers of all cards in sight, legible or not, a copy as often as it lies there:
-    where they are several none is read, for nothing tells whose it is.
+    Masks have the bits of `Deck`'s cells. `cells` are probabilities that a cell is marked;
+    `confidence` is that of the least certain decided cell; `problem` says why there is no card.
+    `cards` are the numbers of all cards in sight, legible or not, with copies; if there are
+    several, none is read, because it is unclear which one is meant.
     """
 
     card: int | None
@@ -61,14 +61,14 @@ class CardReading:
 
 
 def cards_in(readings: Sequence[CardReading]) -> tuple[int, ...]:
-    """Return the numbers of all cards in sight in one picture or another of a table."""
+    """Return the numbers of all cards in sight in any of several frames."""
     most = max((reading.cards for reading in readings), key=len, default=())
     more = {card for reading in readings for card in reading.cards}.difference(most)
     return tuple(sorted((*most, *more)))
 
 
 def several_words(cards: Sequence[int]) -> str:
-    """Say that several cards are in sight."""
+    """Return a phrase that says which cards are in sight."""
     if len(set(cards)) == 1:
         return f"{_count(len(cards))} copies of card {cards[0]} in sight"
     *first, last = sorted(set(cards))
@@ -81,9 +81,9 @@ def _count(number: int) -> str:
 
 
 def _reconsidered(parts: Real, measured: Measured, across: int) -> Real:
-    """Doubt cells that nets take for paper, but whose numbers are pale, and marks unlike others.
+    """Make cells uncertain: unmarked ones with a pale number, and marks unlike the others.
 
-    What lies on a number takes from its contrast, however clear or pale; light does not.
+    Objects on a number reduce its contrast, however clear or pale they are; light does not.
     """
     import numpy as np
 
@@ -109,7 +109,7 @@ class CardReader:
         self.face = CardLayout(deck)
 
     def read(self, picture: Picture) -> CardReading:
-        """Read the card in a picture (blue, green, red); of several, none."""
+        """Read the card in an image (BGR); none if there are several."""
         import cv2
         import numpy as np
 
@@ -136,7 +136,7 @@ class CardReader:
             if reading.card is not None:
                 there = there if seen.sure else (*there, reading.card)
                 return reading if len(there) == 1 else self.several(there)
-            if seen.sure:  # else it may be no tag at all
+            if seen.sure:  # otherwise it may not be a tag
                 problem = reading.problem
         return self.nothing(problem, there)
 
@@ -155,7 +155,7 @@ class CardReader:
         )
 
     def several(self, cards: Sequence[int]) -> CardReading:
-        """Return the reading of several cards, without an owner for any."""
+        """Return the reading of several cards in sight, none of them read."""
         return self.nothing(several_words(cards), sorted(cards))
 
     def _read_card(self, picture: Picture, seen: Sighting) -> CardReading:
@@ -189,7 +189,7 @@ class CardReader:
         return self.told(seen.card, parts, tuple((float(x), float(y)) for x, y in corners))
 
     def agree(self, own: int, legible: int) -> bool:
-        """Say whether so many of the legible numbers make it this deck's card."""
+        """Return whether enough of the legible numbers match the card."""
         if own < FEWEST_AGREE:
             return False
         if own >= AGREE * legible:  # chips may look like other numbers
@@ -202,13 +202,13 @@ class CardReader:
         return by_chance < BY_CHANCE
 
     def covered(self, parts: Real, read: Real) -> bool:
-        """Say whether marks cover so many numbers that too few are left to be read.
+        """Return whether marks cover so many numbers that too few are legible.
 
-        Only the tags tell then which card it is. A number of another card must not lie bare.
+        Only the tags identify the card then, and no number of another card may be bare.
 
         Args:
-            parts: how probably each cell is unmarked, marked and hidden, (cells, 3).
-            read: how well each cell shows the card's own number and any other, (cells, >= 2).
+            parts: class probabilities of each cell (cells, 3).
+            read: correlations of each cell with the card's own number and any other (cells, >= 2).
         """
         other = (read[:, 1] > read[:, 0]) & (read[:, 1] >= CLEARLY)
         tells, hand = load_classifier().tells, _has_hand(parts)
@@ -219,7 +219,7 @@ class CardReader:
     def told(
         self, card: int, parts: Real, corners: tuple[tuple[float, float], ...] = ()
     ) -> CardReading:
-        """Return the decided cells and the doubtful ones, from their probabilities."""
+        """Decide the cells from their probabilities, and return the reading."""
         classifier = load_classifier()
         hand = _has_hand(parts)
         marked = hidden = 0
@@ -250,7 +250,7 @@ class CardReader:
         )
 
     def fuse(self, readings: Sequence[CardReading]) -> CardReading:
-        """Make one reading of several of the same card; where they name different ones, none."""
+        """Fuse readings of the same card into one; if they show different cards, read none."""
         import numpy as np
 
         there = cards_in(readings)
@@ -262,7 +262,8 @@ class CardReader:
         parts = np.array([reading.parts for reading in told], float)
         odds = np.log(np.clip(parts, 1e-6, 1)[..., MARKED] / np.clip(parts, 1e-6, 1)[..., UNMARKED])
         seen = 1 - parts[..., HIDDEN]
-        # Frames of one camera go wrong together, so that many of them count less than each alone.
+        # Errors of frames from one camera are correlated, so evidence is discounted by a square
+        # root.
         total = (odds * seen).sum(0) / np.maximum(seen.sum(0), 1) ** 0.5
         hidden = np.prod(parts[..., HIDDEN], 0) ** (1 / len(parts) ** 0.5)
         marked = (1 - hidden) / (1 + np.exp(-total))
@@ -270,10 +271,9 @@ class CardReader:
         return self.told(there[0], fused, readings[-1].corners)
 
     def state(self, reading: CardReading, states: Sequence[CardState], called: set[int]) -> str:
-        """Name the user activity state of a card that was read; the unread one if not certain.
+        """Return the user activity state of a card; the unread one if uncertain.
 
-        A cell that is told may still be too unsure for a state to rest on it: one cell that is
-        wrong makes a wrong state.
+        A state requires more certainty than a single cell, because one wrong cell makes it wrong.
         """
         unread = next(state.name for state in states if state.checker == "unread")
         if reading.card is None:
@@ -284,7 +284,7 @@ class CardReader:
         return judge_partly(states, self.deck, reading.marked, unknown, cells)
 
     def _doubted(self, reading: CardReading) -> int:
-        """Return the cells, as a mask, that are less sure than a state must be."""
+        """Return a mask of the cells that are too uncertain for a state."""
         hand = any(part[HIDDEN] >= MAYBE_HAND for part in reading.parts)
         doubted = 0
         for cell, (unmarked, marked, _) in enumerate(reading.parts):
@@ -296,7 +296,7 @@ class CardReader:
         return doubted & ~self.deck.free
 
     def document(self, reading: CardReading) -> dict[str, Any]:
-        """Write a reading as JSON has it."""
+        """Return a reading as JSON."""
         columns = len(self.deck.columns)
 
         def places(mask: int) -> list[list[int]]:

@@ -1,4 +1,4 @@
-"""A card's grid seen straight on: the plane refined on the crossings of its lines."""
+"""Rectifies a card's grid: refines its plane on the crossings of the grid lines."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     Real = NDArray[Any]
     Plane = NDArray[Any]
 
-SIDE = 32  # pixels of a cell that is seen straight on
+SIDE = 32  # pixels of a rectified cell
 RIM = 20  # pixels around the grid
-PATCH = 9  # a crossing is compared over so many pixels to each side
-MATCHES = 0.5  # the least correlation of a crossing with its print
+PATCH = 9  # half side of the template of a crossing, in pixels
+MATCHES = 0.5  # minimum correlation of a crossing with its print
 FEWEST = 12  # crossings that must match
 
 
 @dataclass(frozen=True)
 class Flat:
-    """A grid seen straight on, `SIDE` pixels a cell, with a rim.
+    """A rectified grid, `SIDE` pixels per cell, with a rim.
 
-    `scale` is pixels of the picture to one of `SIDE`; `crossings` is how well each crossing
-    matches its print, -1 to 1, and `matched` how many of them lie on the plane.
+    `scale` is image pixels per rectified pixel, `crossings` the correlation of each crossing with
+    its print, -1 to 1, and `matched` the number of inliers.
     """
 
     picture: Picture
@@ -42,7 +42,7 @@ class Flat:
 
 @lru_cache(maxsize=64)
 def expected_grid(face: CardLayout, card: int, seed: int) -> Picture:
-    """Return how the grid of a card looks straight on: (rows, columns), grey."""
+    """Return the expected image of a card's rectified grid: (rows, columns), grey."""
     import cv2
 
     drawn = draw_face(face, card, seed, "", SIDE / face.cell)
@@ -61,7 +61,7 @@ def _size(face: CardLayout) -> tuple[int, int]:
 
 
 def _to_flat(face: CardLayout) -> Plane:
-    """Return what takes mm on the card to pixels straight on."""
+    """Return the transformation from mm on the card to rectified pixels."""
     import numpy as np
 
     scale = SIDE / face.cell
@@ -75,7 +75,7 @@ def _to_flat(face: CardLayout) -> Plane:
 
 
 def flatten(picture: Picture, seen: Sighting, face: CardLayout, seed: int) -> Flat | None:
-    """Return a card's grid straight on (rows, columns, 3); None where too few crossings match."""
+    """Return a card's rectified grid (rows, columns, 3); None if too few crossings match."""
     import cv2
     import numpy as np
 
@@ -123,7 +123,7 @@ def _corners(face: CardLayout) -> Plane:
 
 
 def _warped(picture: Picture, plane: Plane, face: CardLayout) -> tuple[Picture, float]:
-    """See the grid straight on; return it and how many pixels of the picture make one of it."""
+    """Rectify the grid; return it and the number of image pixels per rectified pixel."""
     import cv2
     import numpy as np
 
@@ -143,7 +143,7 @@ def _warped(picture: Picture, plane: Plane, face: CardLayout) -> tuple[Picture, 
 
 
 def _softened(expected: Picture, scale: float) -> Picture:
-    """Blur the print as much as a picture of this scale does."""
+    """Blur the print as much as an image of this scale does."""
     import cv2
 
     sigma = min(2.5, 0.55 / scale)
@@ -151,7 +151,7 @@ def _softened(expected: Picture, scale: float) -> Picture:
 
 
 def _found(grey: Picture, expected: Picture, corners: Plane, reach: int) -> tuple[Real, Real]:
-    """Find each crossing near where it should be; return where, and how well it matches."""
+    """Find each crossing near its expected place; return the places, and the correlations."""
     import cv2
     import numpy as np
 
@@ -172,7 +172,7 @@ def _found(grey: Picture, expected: Picture, corners: Plane, reach: int) -> tupl
 
 
 def _peak(three: Real) -> float:
-    """Return where a parabola through three values has its top, from the middle one."""
+    """Return the peak of a parabola through three values, relative to the middle one."""
     bend = float(three[0] - 2 * three[1] + three[2])
     if bend > -1e-6:
         return 0.0

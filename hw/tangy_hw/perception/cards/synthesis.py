@@ -1,7 +1,7 @@
-"""How far each cell is from what its card has printed there, in the light that falls on it.
+"""Compares each cell with its card's print under the local light.
 
-The number of a cell is compared in contrast with the lines around it. Shadow, glare and blur change
-both alike; a chip changes the number alone, however clear or pale it is.
+The contrast of a number is compared with that of the lines around it. Shadow, glare and blur change
+both alike; a chip changes only the number, however clear or pale it is.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
     Real = NDArray[Any]
 
-INNER = 24  # pixels of the middle of a cell that are compared
-SHIFT = 2  # how far a number may be off its place, in pixels
-ALONG, EVERY = 22, 2  # pixels of a line that are looked at on each side of a cell, and of those
-ACROSS = 5  # and so many to both sides of it
-USUAL = 75  # the percentile of a card's cells that counts as unmarked
-LEAST = 0.01  # contrast, of white: less is none
+INNER = 24  # pixels of a cell's middle that are compared
+SHIFT = 2  # pixels that a number may be off its place
+ALONG, EVERY = 22, 2  # pixels of a line used on each side of a cell; their spacing
+ACROSS = 5  # pixels on both sides of a line
+USUAL = 75  # percentile of a card's cells that counts as unmarked
+LEAST = 0.01  # minimum contrast, relative to white
 
 NAMES = (
     "contrast", "contrast middle", "contrast least", "contrast most", "contrast colours least",
@@ -30,13 +30,13 @@ NAMES = (
     "ink off lines", "paper off lines", "rest", "rest of usual", "lines", "lines sure",
     "lines apart", "white out", "alike",
 )  # fmt: skip
-"""What is compared, in the order of its columns."""
+"""Names of the columns, in order."""
 
 
 def compared(flat: Flat, expected: Real) -> Real:
     """Compare cells with their print; return a row of `NAMES` for each.
 
-    `expected` is the print in the blur of the picture, 0 to 1.
+    `expected` (rows, columns) is the print, blurred as the image is, 0 to 1.
     """
     import numpy as np
 
@@ -46,9 +46,9 @@ def compared(flat: Flat, expected: Real) -> Real:
     layers[..., 0] = layers[..., 1:].sum(2) / 3
     rows, columns = ((side - 2 * RIM) // SIDE for side in expected.shape)
     fit = _fitted(layers, expected, rows, columns)
-    lines = _lines(layers, expected, rows, columns)  # cells, sides, (contrast, paper), layers
+    lines = _lines(layers, expected, rows, columns)  # (cells, sides, (contrast, paper), layers)
     ordered = np.sort(lines[:, :, 0], 1)
-    local = np.maximum((ordered[:, 1] + ordered[:, 2]) / 2, LEAST)  # one may lie under something
+    local = np.maximum((ordered[:, 1] + ordered[:, 2]) / 2, LEAST)  # one of them may be covered
     ratio = fit.contrast / local[:, None]
     everywhere, middle, quarters = ratio[:, 0, 0], ratio[:, 1, 0], ratio[:, 2:, 0]
     least, most = quarters.min(1), quarters.max(1)
@@ -81,7 +81,7 @@ def compared(flat: Flat, expected: Real) -> Real:
 
 @dataclass(frozen=True)
 class _Fit:
-    """What fits cells: contrast (cells, parts, layers), paper, what is left over, correlation."""
+    """Fit of the cells: contrast (cells, parts, layers), paper, residual, correlation."""
 
     contrast: Real
     paper: Real
@@ -91,7 +91,7 @@ class _Fit:
 
 @lru_cache(maxsize=2)
 def _parts() -> Real:
-    """Return where the parts of a cell are: all, a disc in the middle, and four quarters."""
+    """Return masks of the parts of a cell: all, a disc in the middle, and four quarters."""
     import numpy as np
 
     v, u = (np.mgrid[:INNER, :INNER] - (INNER - 1) / 2).astype(np.float32)
@@ -101,7 +101,7 @@ def _parts() -> Real:
 
 
 def _fitted(layers: Real, expected: Real, rows: int, columns: int) -> _Fit:
-    """Fit to each cell a paper that is evenly lit and the contrast of its number."""
+    """Fit evenly lit paper and the contrast of the number to each cell."""
     import cv2
     import numpy as np
 
@@ -122,7 +122,7 @@ def _fitted(layers: Real, expected: Real, rows: int, columns: int) -> _Fit:
     seen = layers[ay[:, :, None], ax[:, None]].reshape(len(cell), INNER * INNER, -1)
     v, u = (np.mgrid[:INNER, :INNER] / INNER - 0.5).astype(np.float32).reshape(2, -1)
     ones = np.ones_like(there)
-    basis = np.stack([there, ones * v, ones * u, ones], 1)  # cells, 4, pixels
+    basis = np.stack([there, ones * v, ones * u, ones], 1)  # (cells, 4, pixels)
     slopes = []
     for part in _parts():
         inside = np.flatnonzero(part)
@@ -156,7 +156,7 @@ def _lines(layers: Real, expected: Real, rows: int, columns: int) -> Real:
         part = turned[
             (line[:, None] + around)[:, :, None, None], edge[:, None] + np.arange(0, ALONG, EVERY)
         ]
-        profiles.append(_profile(np.median(part, 3)))  # lines, cells, (contrast, paper), layers
+        profiles.append(_profile(np.median(part, 3)))  # (lines, cells, (contrast, paper), layers)
     level, upright = profiles
     upright = upright.swapaxes(0, 1)
     sides = np.stack([level[:-1], level[1:], upright[:, :-1], upright[:, 1:]], 2)
@@ -165,10 +165,10 @@ def _lines(layers: Real, expected: Real, rows: int, columns: int) -> Real:
 
 
 def _profile(seen: Real) -> Real:
-    """Fit how lines look across to what is seen across them: lines, places, cells, layers."""
+    """Fit the expected profile of lines to samples across them: (lines, places, cells, layers)."""
     import numpy as np
 
-    seen = seen.swapaxes(1, 2)  # lines, cells, places, layers
+    seen = seen.swapaxes(1, 2)  # (lines, cells, places, layers)
     there = seen[:, :, SHIFT:-SHIFT, -1]
     there = there - there.mean(2, keepdims=True)
     size = np.maximum((there**2).sum(2), 1e-2)

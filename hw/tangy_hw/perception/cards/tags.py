@@ -1,4 +1,4 @@
-"""The corner tags of cards in a picture, and whether what looks like one is printed as one."""
+"""Detects the corner tags of cards, and checks whether a detected pattern is a printed tag."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ if TYPE_CHECKING:
     Picture = NDArray[Any]
     Real = NDArray[Any]
 
-SMALL = 24.0  # pixels to the side of a tag, below which a quick look may miss it
-LARGER = 2.0  # how many times larger a part of a picture is looked at when tags are missing
+SMALL = 24.0  # pixels of a tag's side below which a quick search may miss it
+LARGER = 2.0  # scale at which a part of an image is searched for missing tags
 
 QUICK, THOROUGH, STEP = (11, 11), (7, 21), 14
-"""Sides of the windows over which a picture is made black and white, in pixels."""
+"""Window sizes of the adaptive threshold, in pixels."""
 
-MODULES, RIM = 6, 2  # to a side of a tag, its black ones among them; and of paper around it
-FINE = 4  # pixels of a module that is looked at
+MODULES, RIM = 6, 2  # modules per side of a tag with its black border; of the white margin
+FINE = 4  # pixels per rectified module
 SMALLEST, PALEST = 10.0, 15.0
-"""The side in pixels and the contrast in grey levels that a tag by itself has at least."""
+"""Minimum side in pixels, and contrast in grey levels, of a single tag."""
 APART, PAPER = 0.15, 0.55
-"""How far apart its darkest white and its lightest black module are at least, and how light the
-paper around it is, in its contrast. Measured: of 240 tags 1 % had less than .1 and none less than
-.67; of what 82 pictures without cards had of such patterns, none had more than .07."""
+"""Minimum gap between its darkest white and lightest black module, and brightness of the margin, in
+units of its contrast. Measured: of 240 tags, 1 % had less than .1 and none less than .67; of such
+patterns in 82 images without cards, none had more than .07."""
 
 
 @dataclass(frozen=True, eq=False)
 class Tag:
-    """A tag in a picture: of which card, in which of its corners, and its own four corners there.
+    """A tag in an image: its card, its corner of the card, and its own four corners.
 
-    Corners are counted clockwise from the top left; those in the picture are pixels.
+    Corners are counted clockwise from the top left; `corners` (4, 2) are in pixels.
     """
 
     card: int
@@ -43,21 +43,21 @@ class Tag:
 
     @property
     def side(self) -> float:
-        """The side of a square as large as it, in pixels."""
+        """Side of a square of the same area, in pixels."""
         import cv2
         import numpy as np
 
         return float(np.sqrt(cv2.contourArea(self.corners.astype(np.float32))))
 
     def is_at(self, other: Tag) -> bool:
-        """Say whether it is the same tag as another, at the same place."""
+        """Return whether it is the same tag as another, at the same place."""
         apart = self.corners.mean(0) - other.corners.mean(0)
         same = (self.card, self.corner) == (other.card, other.corner)
         return same and float(abs(apart).max()) < 0.5 * max(self.side, other.side)
 
 
 def tags_in(grey: Picture) -> list[Tag]:
-    """Return the tags in a grey picture: after a quick look, or a thorough one if any are small."""
+    """Return the tags in a grey image; if a quick search finds none or small ones, search again."""
     tags = joined([], _detected(grey, QUICK))
     if not tags or min(tag.side for tag in tags) < SMALL:
         tags = joined(tags, _detected(grey, THOROUGH))
@@ -65,7 +65,7 @@ def tags_in(grey: Picture) -> list[Tag]:
 
 
 def tags_enlarged(grey: Picture, box: tuple[int, int, int, int]) -> list[Tag]:
-    """Return the tags in a box (left, top, right, bottom) of a picture, seen through a glass."""
+    """Return the tags in a box (left, top, right, bottom) of an image, after enlarging it."""
     import cv2
     import numpy as np
 
@@ -79,7 +79,7 @@ def tags_enlarged(grey: Picture, box: tuple[int, int, int, int]) -> list[Tag]:
 
 
 def joined(tags: list[Tag], more: list[Tag]) -> list[Tag]:
-    """Return all of these tags, each of them once."""
+    """Return the union of two lists of tags, without duplicates."""
     kept = list(tags)
     for tag in more:
         if not any(tag.is_at(one) for one in kept):
@@ -88,9 +88,9 @@ def joined(tags: list[Tag], more: list[Tag]) -> list[Tag]:
 
 
 def is_printed(grey: Picture, tag: Tag) -> bool:
-    """Say whether a tag (corners (4, 2) in px) is black on white paper, every module of it.
+    """Return whether every module of a tag (corners (4, 2) in px) is clearly black or white.
 
-    In a picture full of detail some pattern may happen to be read as a tag.
+    In an image full of detail, some pattern may be decoded as a tag by chance.
     """
     import cv2
     import numpy as np
@@ -122,7 +122,7 @@ def is_printed(grey: Picture, tag: Tag) -> bool:
 
 
 def _detected(grey: Picture, windows: tuple[int, int]) -> list[Tag]:
-    """Return the tags of cards that the detector finds, copies and all."""
+    """Return the tags that the detector finds, including copies."""
     found, ids, _ = _detector(windows).detectMarkers(grey)
     return [
         Tag(*divmod(int(tag), len(TAGS)), found[place][0].astype(float))

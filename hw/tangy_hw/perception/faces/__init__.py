@@ -1,1 +1,1 @@
-"""Faces: found, told apart with the consent of those they are of, and forgotten when asked to."""
+"""Detects and identifies faces, with people's consent, and deletes their data on request."""

@@ -1,4 +1,4 @@
-"""Selection of enrolment pictures: faces of good quality that differ from one another."""
+"""Selects enrolment images: faces of good quality that differ from one another."""
 
 from __future__ import annotations
 
@@ -13,33 +13,32 @@ if TYPE_CHECKING:
     from tangy_hw.perception.pictures import Picture
 
 ADVISED = 10
-"""So many pictures make somebody known well."""
+"""Recommended number of images of a person."""
 MOST = 40
-"""More than these say nothing new."""
-SECOND = 0.6  # of the size of the first: a second face that may be the one that is meant
-SAME = 0.95  # similarity (a cosine) from which on two pictures are as good as one
-ODD = 5.0  # mean deviations below the median: not the person that the others show
+"""Maximum number of images; more add nothing."""
+SECOND = 0.6  # size ratio from which a second face may be the one that is meant
+SAME = 0.95  # cosine similarity from which two images are redundant
+ODD = 5.0  # mean absolute deviations below the median: an image of another person
 LEAST_ODD = 0.08
-FEWEST = 2  # pictures on one side, where they are divided in two
+FEWEST = 2  # images per cluster
 APART = 0.06
-"""So much more alike (a cosine) within two sides than between them: it may be two people. Of ten
-people, half of whom this was set on, 6 to 16 pictures of one person were so in 3 % of draws (of the
-other half in none), those of two or three people mixed in 77 % (89 %).
-"""
+"""Difference between the cosine similarity within two clusters and between them from which they may
+be two people. Of 6 to 16 images of one of ten people, 3 % of draws exceeded it (none for the half
+of the people that it was not chosen on), of images of two or three people mixed, 77 % (89 %)."""
 
 
 class Enrolment:
-    """Enrols one person from pictures; `vectors` are the stored features."""
+    """Enrols one person from images; `vectors` are the stored features."""
 
     def __init__(self, reader: FaceReader) -> None:
-        """Begin without a picture."""
+        """Start without images."""
         self._reader = reader
         self._vectors: list[Vector] = []
-        self._offered: list[int] = []  # which picture each of them is of; -1: of one before
+        self._offered: list[int] = []  # number of the image of each vector; -1: stored before
         self._seen = 0
 
     def take(self, vectors: Any) -> None:
-        """Take over the stored features (None: none)."""
+        """Add stored features (None: none)."""
         rows = [] if vectors is None else list(vectors)
         self._vectors += rows
         self._offered += [-1] * len(rows)
@@ -48,7 +47,7 @@ class Enrolment:
         return len(self._vectors)
 
     def offer(self, picture: Picture) -> str:
-        """Take a picture (BGR); return why it is refused, "" if it is not."""
+        """Add an image (BGR); return why it was rejected, "" if it was not."""
         self._seen += 1
         problem, vector = one_face(self._reader.read(picture))
         if vector is None:
@@ -62,10 +61,10 @@ class Enrolment:
         return ""
 
     def drop_odd(self) -> list[int]:
-        """Leave out the pictures that show somebody else, it seems.
+        """Remove the images that seem to show another person.
 
         Returns:
-            Which of the pictures that were offered (from 0) they are.
+            Their numbers among the offered images (from 0).
         """
         odd = self._odd()
         dropped = [self._offered[number] for number in odd if self._offered[number] >= 0]
@@ -89,9 +88,10 @@ class Enrolment:
         return [int(number) for number in np.flatnonzero(own < low)]
 
     def several(self) -> bool:
-        """Say whether the pictures may show more than one person: whether they fall in two.
+        """Return whether the images may show more than one person, because they form two clusters.
 
-        They are divided where they differ most; the sides are then less alike than each in itself.
+        They are divided along the first principal component; similarity within the clusters is then
+        compared with that between them.
         """
         import numpy as np
 
@@ -109,7 +109,7 @@ class Enrolment:
         return bool(similar[pairs & same].mean() - similar[pairs & ~same].mean() > APART)
 
     def added(self) -> list[Vector]:
-        """Return the features of the pictures that were offered, without those from before."""
+        """Return the features of the offered images, without those stored before."""
         return [
             vector
             for vector, offered in zip(self._vectors, self._offered, strict=True)
@@ -117,17 +117,17 @@ class Enrolment:
         ]
 
     def vectors(self) -> Any:
-        """Return the features, a row for each picture."""
+        """Return the features, a row for each image."""
         import numpy as np
 
         return np.array(self._vectors, np.float32)
 
 
 def one_face(faces: list[FaceReading]) -> tuple[str, Vector | None]:
-    """Choose the face that a picture is of: the only one, or by far the largest.
+    """Choose the face of an image: the only one, or by far the largest.
 
     Returns:
-        Why there is none ("" if there is), and its features.
+        Why there is none ("" if there is one), and its features.
     """
     if not faces:
         return NO_FACE, None

@@ -1,4 +1,4 @@
-"""Where the faces are in a picture, and where their eyes are: the Haar cascades of OpenCV."""
+"""Detects faces and their eyes with OpenCV's Haar cascades."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ Point = tuple[float, float]
 Box = tuple[float, float, float, float]
 """Left, top, width and height, in pixels."""
 
-LARGEST, SMALLEST = 720, 240  # pixels that the longer side is brought down to, the shorter up
+LARGEST, SMALLEST = 720, 240  # pixels: maximum of the longer side, minimum of the shorter
 MOST_ENLARGED = 4.0
-GLANCE = 480  # pixels of the longer side when faces that are near are looked for, at first
-LEAST_FACE = 22, 24  # pixels across, of the picture as it is searched, and at a glance
+GLANCE = 480  # pixels of the longer side in a first search for near faces
+LEAST_FACE = 22, 24  # pixels across in the searched image: thorough, coarse
 FRONT = ("haarcascade_frontalface_alt2", "haarcascade_frontalface_default")
 SIDE = "haarcascade_profileface"
-EYES = (  # of the left and the right half of a face, as it is seen
+EYES = (  # for the left and right half of a face, as seen
     ("haarcascade_righteye_2splits", "haarcascade_eye"),
     ("haarcascade_lefteye_2splits", "haarcascade_eye"),
 )
-FACE = 120  # pixels that a face is brought to when its eyes are looked for
-ROOM = ((12, 24, 66, 72), (54, 24, 108, 72))  # where they can be: left, top, right, bottom
-EYE = 20, 46  # pixels across, of all that the cascades take for an eye
+FACE = 120  # pixels of a face in which eyes are searched
+ROOM = ((12, 24, 66, 72), (54, 24, 108, 72))  # regions of the eyes: left, top, right, bottom
+EYE = 20, 46  # pixels across of eye detections
 APART = (0.28, 0.52)  # of the face's width
-STEEPEST = 0.5  # rise of the line between them
+STEEPEST = 0.5  # slope of the line between them
 
 
 class DetectedFace(NamedTuple):
-    """A face: where it is, and its eyes, the one on the left of the picture first.
+    """A face: its box, and its eyes, the left one in the image first.
 
-    Without eyes it is turned away, covered or no face.
+    Without eyes it is turned away, covered, or not a face.
     """
 
     box: Box
@@ -47,14 +47,14 @@ class DetectedFace(NamedTuple):
 
 
 class FaceError(TangyError):
-    """Faces cannot be told apart as things are; one sentence that says why."""
+    """Faces cannot be recognised; one sentence that says why."""
 
 
 def find_faces(grey: Grey) -> list[DetectedFace]:
-    """Find the faces in a grey picture, the largest first.
+    """Find the faces in a grey image, the largest first.
 
     Raises:
-        FaceError: this OpenCV comes without cascades.
+        FaceError: this OpenCV has no cascades.
     """
     first: list[DetectedFace] = []
     for boxes in _searches(grey):
@@ -66,7 +66,7 @@ def find_faces(grey: Grey) -> list[DetectedFace]:
 
 
 def find_eyes(grey: Grey, box: Box) -> tuple[Point, Point] | None:
-    """Find the eyes of a face; None unless both are there, as far apart as eyes are."""
+    """Find the eyes of a face; None unless both are found at a plausible distance."""
     import numpy as np
 
     left, top, width, height = box
@@ -89,12 +89,12 @@ def find_eyes(grey: Grey, box: Box) -> tuple[Point, Point] | None:
     if not APART[0] * FACE < bx - ax < APART[1] * FACE or abs(by - ay) > STEEPEST * (bx - ax):
         return None
     scale = width / FACE
-    middle = top + height / 2 - width / 2  # of what was cut out, which is square
+    middle = top + height / 2 - width / 2  # of the square that was cut out
     return (left + ax * scale, middle + ay * scale), (left + bx * scale, middle + by * scale)
 
 
 def _searches(grey: Grey) -> Iterator[list[Box]]:
-    """Search a picture in one way after the other: what is quick and mostly enough comes first."""
+    """Search an image in several ways, the quickest and usually sufficient first."""
     import cv2
 
     if max(grey.shape) > 1.25 * GLANCE:
@@ -105,7 +105,7 @@ def _searches(grey: Grey) -> Iterator[list[Box]]:
         return
     small, scale = _sized(grey, GLANCE)
     yield _detect(FRONT[1], small, scale)
-    flat = cv2.createCLAHE(3.0, (6, 6)).apply(small)  # of faces in shade
+    flat = cv2.createCLAHE(3.0, (6, 6)).apply(small)  # for faces in shadow
     yield _detect(FRONT[0], flat, scale)
     yield _detect(SIDE, flat, scale)
     mirrored = _detect(SIDE, flat[:, ::-1].copy(), scale)
@@ -113,7 +113,7 @@ def _searches(grey: Grey) -> Iterator[list[Box]]:
 
 
 def _sized(grey: Grey, largest: int) -> tuple[Any, float]:
-    """Bring a picture down to so many pixels of its longer side, or a small one up."""
+    """Scale an image down to so many pixels of its longer side, or enlarge a small one."""
     import cv2
 
     height, width = grey.shape
@@ -137,12 +137,12 @@ def _detect(name: str, grey: Any, scale: float, *, coarse: bool = False) -> list
 
 
 def _smaller(box: Box) -> float:
-    """Order boxes, the largest first."""
+    """Return the sort key of boxes, largest first."""
     return -box[2]
 
 
 def _cut(grey: Grey, x: float, y: float, side: float) -> Any:
-    """Cut a square out of a picture, brought to the size at which eyes are looked for."""
+    """Cut out a square, scaled for the search for eyes."""
     import cv2
     import numpy as np
 
@@ -156,7 +156,7 @@ def _cut(grey: Grey, x: float, y: float, side: float) -> Any:
 
 @cache
 def _cascade(name: str) -> Any:
-    """Load a cascade; it keeps state while it searches, so a process searches one by one."""
+    """Load a cascade; it is stateful, so use it from one thread at a time."""
     import cv2
 
     data = getattr(cv2, "data", None)

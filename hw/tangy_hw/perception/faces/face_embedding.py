@@ -1,4 +1,4 @@
-"""What a face looks like, in numbers that change little with light: HOG and LBP of its relief."""
+"""Describes a face by features that change little with light: HOG and LBP of its relief."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     Vector: TypeAlias = NDArray[np.float32]
 
 WIDTH, HEIGHT = 80, 104  # pixels of an aligned face
-EYES_APART, EYES_DOWN = 40.0, 32.0  # pixels between the eyes, and from the top to them
-CELL = 8  # pixels of a cell of HOG
-RADIUS = 2  # pixels, of LBP
-ROWS, COLUMNS = 8, 7  # cells of LBP
-HOG_SHARE = 0.3125  # so that both tell people apart alike: LBP varies less
+EYES_APART, EYES_DOWN = 40.0, 32.0  # pixels between the eyes, and from the top to the eyes
+CELL = 8  # pixels of a HOG cell
+RADIUS = 2  # pixels of LBP
+ROWS, COLUMNS = 8, 7  # LBP cells
+HOG_SHARE = 0.3125  # weight that makes both equally discriminative: LBP varies less
 
 
 def align(grey: Grey, eyes: tuple[Point, Point]) -> Grey:
-    """Turn, size and cut a face so that its eyes are where they are in every face."""
+    """Rotate, scale and crop a face so that its eyes are at fixed positions."""
     import cv2
     import numpy as np
 
@@ -57,7 +57,7 @@ def describe(face: Grey) -> Vector:
 
 
 def symmetry(face: Grey) -> float:
-    """Return the likeness (cosine, up to 1) of an aligned face and its mirror image, as a ratio."""
+    """Return the cosine similarity (a ratio up to 1) of an aligned face and its mirror image."""
     import numpy as np
 
     relief = _relief(face)
@@ -66,7 +66,7 @@ def symmetry(face: Grey) -> float:
 
 
 def _relief(face: Grey) -> Grey:
-    """Take the light off a face and leave its relief (after Tan and Triggs, 2010)."""
+    """Normalise the illumination of a face (after Tan and Triggs, 2010)."""
     import cv2
     import numpy as np
 
@@ -93,7 +93,7 @@ def _hog_descriptor() -> Any:
 
 
 def _lbp(relief: Grey) -> Vector:
-    """Return the root of the share of each uniform pattern in each cell."""
+    """Return the square root of the share of each uniform pattern in each cell."""
     import cv2
     import numpy as np
 
@@ -122,7 +122,7 @@ def _lbp(relief: Grey) -> Vector:
 
 @cache
 def _uniform() -> tuple[Any, int]:
-    """Number the patterns with at most two changes around the ring; all others are one."""
+    """Number the uniform patterns (at most two changes around the ring); others share one."""
     import numpy as np
 
     numbers = np.zeros(256, np.int64)

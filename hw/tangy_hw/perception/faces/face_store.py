@@ -1,7 +1,7 @@
-"""The stored faces of a data folder: features, never pictures, and only with consent.
+"""Stores face features in a data folder, never images, and only with consent.
 
-Each person has a file for each kind of features, DATA/faces/KIND-PERSON.face: a line of JSON that
-says what is in it, and then the rows as 16-bit numbers. Who has agreed is in the log.
+Each person has a file for each kind of features, DATA/faces/KIND-PERSON.face: a JSON line with its
+metadata, and the rows as 16-bit floats. The log records who has consented.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ LARGEST_ROWS, LARGEST_COLUMNS = 1000, 100_000
 
 
 class NoConsent(FaceError):
-    """Somebody has not agreed that features of their face are kept."""
+    """A person has not consented to storing features of their face."""
 
 
 def consented(store: Store) -> frozenset[str]:
-    """Return who has agreed that their face is known, and has not taken that back since."""
+    """Return the people who have consented to face recognition, and not withdrawn since."""
     agreed: set[str] = set()
     for event in store.events(FaceConsent, FaceForgotten):
         if event.person is None:
@@ -43,17 +43,17 @@ def consented(store: Store) -> frozenset[str]:
 
 
 def consent(store: Store, person: str, yes: bool, how: str) -> None:
-    """Note whether a person agreed, and how; after a no nothing of their face is kept."""
+    """Record whether a person consented, and how; after a refusal, delete their features."""
     store.append(FaceConsent(yes=yes, how=plain(how)), person=person)
     if not yes:
         _delete(store, person)
 
 
 def keep_face(store: Store, person: str, kind: str, rows: Any) -> None:
-    """Keep the features of a person's face, in place of those that were kept.
+    """Store the features of a person's face, replacing earlier ones.
 
     Raises:
-        NoConsent: the person has not agreed.
+        NoConsent: the person has not consented.
         FaceError: the file cannot be written.
     """
     import numpy as np
@@ -91,10 +91,10 @@ def keep_face(store: Store, person: str, kind: str, rows: Any) -> None:
 
 
 def read_face(store: Store, person: str, kind: str) -> Any:
-    """Read the features of a person's face, a row for each picture; None where none are kept.
+    """Read the features of a person's face, a row for each image; None if none are stored.
 
     Raises:
-        FaceError: the file is broken, or cannot be read.
+        FaceError: the file is damaged, or cannot be read.
     """
     if person not in consented(store):
         return None
@@ -102,10 +102,10 @@ def read_face(store: Store, person: str, kind: str) -> Any:
 
 
 def read_faces(store: Store, kind: str) -> dict[str, Any]:
-    """Read the features of everybody who has agreed, of one kind.
+    """Read the features of one kind of everybody who has consented.
 
     Raises:
-        FaceError: a file is broken, or cannot be read.
+        FaceError: a file is damaged, or cannot be read.
     """
     found = {}
     for person in sorted(consented(store)):
@@ -116,15 +116,15 @@ def read_faces(store: Store, kind: str) -> dict[str, Any]:
 
 
 def kept_faces(store: Store) -> list[tuple[str, str]]:
-    """Return the people with stored features, and the kind of these."""
+    """Return the people with stored features, and their kinds."""
     return sorted(_ours(store.folder / FOLDER))
 
 
 def forget_face(store: Store, person: str) -> bool:
-    """Delete all that is kept of a person's face, and take back their consent.
+    """Delete all stored features of a person's face, and withdraw their consent.
 
     Returns:
-        Whether there was anything.
+        Whether there were any.
 
     Raises:
         FaceError: a file cannot be deleted.
@@ -147,14 +147,14 @@ def _delete(store: Store, person: str) -> bool:
                 path.unlink()
                 deleted = True
         with suppress(OSError):
-            folder.rmdir()  # where something else lies in it, it stays
+            folder.rmdir()  # it stays if it contains other files
     except OSError as error:
         raise FaceError(plain(f"{folder}: a face cannot be deleted ({error.strerror}).")) from None
     return deleted
 
 
 def _check_folder(folder: Path) -> None:
-    if folder.is_symlink():  # what is kept elsewhere would not be forgotten
+    if folder.is_symlink():  # data elsewhere would not be deleted
         raise FaceError(plain(f"{folder}: is a symbolic link; make it a folder."))
 
 
@@ -170,7 +170,7 @@ def _name(kind: str, person: str) -> str:
 
 
 def _parse(name: str) -> tuple[str, str] | None:
-    """Parse a file name as person and kind; None if it is none of ours."""
+    """Parse a file name as person and kind; None for other files."""
     kind, dash, rest = name.partition("-")
     if not kind.isalnum() or not dash or not rest.endswith(ENDING):
         return None

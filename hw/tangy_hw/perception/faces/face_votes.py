@@ -1,4 +1,4 @@
-"""Face identification by a vote of several frames; unknown is one of the answers."""
+"""Identifies a face by a vote of several frames; "unknown" is a possible answer."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from tangy_hw.perception.faces.gallery import FaceMatch
 
 FRAMES = 5
-"""So many frames with a face that is seen well are voted over."""
-SHARE = 0.6  # of the votes somebody needs
+"""Number of frames with a face of sufficient quality in a vote."""
+SHARE = 0.6  # share of the votes that a person needs
 
 
 @dataclass(frozen=True, slots=True)
 class Vote:
-    """The outcome of a vote: None is unknown. `votes` are theirs, of `frames`."""
+    """Outcome of a vote: None is unknown. `votes` of `frames` are for the person."""
 
     person: str | None
     votes: int
@@ -24,9 +24,9 @@ class Vote:
 
 
 def vote(matches: Iterable[FaceMatch]) -> Vote:
-    """Count votes: somebody needs three in five, and nobody is chosen by fewer than two frames.
+    """Count votes: a person needs three in five, and at least two frames.
 
-    `likeness` is the mean to whoever is chosen, or to the nearest.
+    `likeness` (a score) is the mean for the chosen person, or for the nearest.
     """
     cast = list(matches)
     counts = Counter(match.person for match in cast if match.person is not None)

@@ -1,9 +1,8 @@
-"""Face identification among enrolled people, with unknown as an answer.
+"""Identifies a face among enrolled people; "unknown" is a possible answer.
 
-How alike pictures of one person are, and those of different people, is taken from the pictures
-that were enrolled, each against the others. From that comes how alike a face must be; nothing else
-sets it, and no stranger is needed. On the scale of `likeness` 0 is as like as the others are to one
-another, and from 0.4 on it is somebody.
+The enrolled images alone calibrate the threshold: each is compared with the other images of its
+person, and with those of other people. On the scale of `likeness`, 0 is the mean similarity of
+different people, and a face with .4 or more is recognised.
 """
 
 from __future__ import annotations
@@ -16,15 +15,15 @@ if TYPE_CHECKING:
     from tangy_hw.perception.faces.face_embedding import Vector
 
 ENOUGH = 0.4
-"""The likeness from which on a face is taken for somebody's: so much of the way to oneself."""
-SPREAD = 2.0  # deviations that others are stayed away from, where they are nearer than that
+"""Likeness from which a face is recognised; 1 is the median similarity to oneself."""
+SPREAD = 2.0  # standard deviations between the threshold and other people
 AHEAD = 0.1
-"""So much more alike must it be than to anybody else."""
-BEST = 2  # so many pictures of a person count, those that are most alike
+"""Required lead in likeness over everybody else."""
+BEST = 2  # most similar images of a person that count
 LEAST = 3
-"""Fewer pictures of a person say nothing of how much they vary."""
-ALONE = 0.1  # share of one's own pictures that would be unknown, where nobody else is enrolled
-LEAST_GAP = 0.01  # between others and the threshold: pictures may be the very same
+"""Minimum images of a person from which their variation can be estimated."""
+ALONE = 0.1  # share of one's own images below the threshold if nobody else is enrolled
+LEAST_GAP = 0.01  # between others and the threshold: images may be identical
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +37,10 @@ class FaceMatch:
 
 
 class Gallery:
-    """The faces that are known: for each person rows of features of length 1, of one kind."""
+    """Enrolled faces: for each person rows of unit feature vectors of one kind."""
 
     def __init__(self, faces: Mapping[str, Any]) -> None:
-        """Compute from the enrolment alone how alike a face must be."""
+        """Calibrate the threshold from the enrolled images."""
         import numpy as np
 
         self.people = tuple(sorted(faces))
@@ -50,7 +49,7 @@ class Gallery:
         self._spans = list(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True))
         self._all = np.concatenate(rows) if rows else np.zeros((0, 1), np.float32)
         self.stranger, self.threshold = self._scale()
-        """The mean similarity (a cosine) to another person, and that which is enough."""
+        """Mean cosine similarity to another person, and the threshold."""
 
     def compare(self, vector: Vector) -> FaceMatch:
         """Identify a face; unknown if no person matches clearly."""
@@ -65,7 +64,7 @@ class Gallery:
         return decide(likenesses)
 
     def _scale(self) -> tuple[float, float]:
-        """Compare each enrolled picture with the others of its person, and of the others."""
+        """Compare each enrolled image with those of its person, and of other people."""
         import numpy as np
 
         similar = self._all @ self._all.T
@@ -93,7 +92,7 @@ class Gallery:
 
 
 def decide(likenesses: Mapping[str, float]) -> FaceMatch:
-    """Say who it is by the likeness (cosine, a score up to 1) to everybody who is enrolled."""
+    """Identify a face by its likeness (a score) to each enrolled person."""
     ranked = sorted(likenesses, key=lambda person: -likenesses[person])
     if not ranked:
         return FaceMatch(None, None, 0.0)

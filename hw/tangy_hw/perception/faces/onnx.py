@@ -1,4 +1,4 @@
-"""Faces by two ONNX files that the robot's profile names, such as OpenCV's YuNet and SFace."""
+"""Recognises faces with two ONNX models from the robot's profile, such as YuNet and SFace."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from tangy_profiles.reading import plain
 if TYPE_CHECKING:
     from tangy_hw.perception.pictures import Picture
 
-SURE = 0.7  # that it is a face
-LARGEST, SMALLEST = 1280, 240  # pixels that the longer side is brought down to, the shorter up
+SURE = 0.7  # detection threshold
+LARGEST, SMALLEST = 1280, 240  # pixels: maximum of the longer side, minimum of the shorter
 MOST_ENLARGED = 4.0
-LARGEST_FILE = 500_000_000  # bytes; those of OpenCV's have 0.2 and 39 million
+LARGEST_FILE = 500_000_000  # bytes; OpenCV's models have 0.2 and 39 million
 LIMITS = FaceQualityLimits(contrast=12, evenness=0.15, symmetry=0.0)
-"""These see turned faces and shadows through better than the usual reader."""
+"""These models tolerate turned faces and shadows better than the default reader."""
 
 
 class OnnxReader:
-    """A finder (as YuNet: boxes with five points) and a recogniser (as SFace: a vector)."""
+    """A detector (as YuNet: boxes with five landmarks) and a recogniser (as SFace: a vector)."""
 
     def __init__(self, finder: Path, recogniser: Path, limits: FaceQualityLimits = LIMITS) -> None:
-        """Load both files.
+        """Load both models.
 
         Raises:
-            FaceError: one of them is missing, or not such a model.
+            FaceError: a file is missing, or not such a model.
         """
         import cv2
 
@@ -41,16 +41,16 @@ class OnnxReader:
             finder, "finds", lambda: cv2.FaceDetectorYN.create(str(finder), "", (320, 320), SURE)
         )
         self.kind = f"onnx{_check(recogniser):08x}"
-        """Vectors of another recogniser cannot be compared with these."""
+        """Vectors of different recognisers are not comparable."""
         self._recogniser: Any = _load(
             recogniser, "tells apart", lambda: cv2.FaceRecognizerSF.create(str(recogniser), "")
         )
 
     def read(self, picture: Picture) -> list[FaceReading]:
-        """Find and describe the faces of a picture (BGR), the largest first.
+        """Detect and describe the faces of an image (BGR), the largest first.
 
         Raises:
-            FaceError: one of the models does something else with it.
+            FaceError: a model has unexpected inputs or outputs.
         """
         import cv2
         import numpy as np
@@ -93,7 +93,7 @@ class OnnxReader:
 
 
 def _check(path: Path) -> int:
-    """Return a check sum of a file that is there and can be read."""
+    """Return a checksum of a readable file."""
     shown = plain(str(path))
     if not path.exists():
         raise FaceError(f"{shown}: there is no such file, and the robot's profile names it.")
@@ -104,7 +104,7 @@ def _check(path: Path) -> int:
 
 
 def _load(path: Path, does: str, load: Callable[[], object]) -> object:
-    """Load a model; what OpenCV says of a broken one is for its developers."""
+    """Load a model, without OpenCV's messages for developers."""
     import cv2
 
     logging = cv2.utils.logging

@@ -1,4 +1,4 @@
-"""The quality of a face picture for identification; if too low, the reason in plain words."""
+"""Quality of a face image for identification; if it is too low, the reason in plain words."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tangy_hw.perception.faces.face_detector import Box, Grey
 
-SIDE = 64  # pixels across at which sharpness is measured
-FINE, COARSE = 1.0, 4.0  # pixels: of the two blurs whose differences are compared
+SIDE = 64  # pixels of width at which sharpness is measured
+FINE, COARSE = 1.0, 4.0  # pixels: sigma of the two blurs that are compared
 
 
 @dataclass(frozen=True, slots=True)
 class FaceQualityLimits:
-    """What a face must have."""
+    """Minimum quality of a face."""
 
     size: float = 24  # pixels across
     sharpness: float = 0.2
     darkest: float = 30  # of 255
     brightest: float = 235
-    contrast: float = 17  # of 255: the spread of its brightness
-    evenness: float = 0.55  # of 1: the darker half by the lighter
+    contrast: float = 17  # of 255: standard deviation of brightness
+    evenness: float = 0.55  # of 1: ratio of the darker to the brighter half
     symmetry: float = 0.75
 
 
@@ -30,7 +30,7 @@ USUAL = FaceQualityLimits()
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """How a face is seen: pixels across, and the rest as in `FaceQualityLimits`."""
+    """Quality of a face: pixels across, and the rest as in `FaceQualityLimits`."""
 
     size: float
     sharpness: float
@@ -40,7 +40,7 @@ class Quality:
     symmetry: float
 
     def problem(self, limits: FaceQualityLimits = USUAL) -> str:
-        """Say why it is not seen well enough; "" if it is."""
+        """Return why the quality is too low; "" if it is not."""
         if self.size < limits.size:
             return f"the face is too small ({self.size:.0f} pixels across): come closer"
         if self.brightness < limits.darkest:
@@ -58,12 +58,12 @@ class Quality:
         return ""
 
     def document(self) -> dict[str, float]:
-        """Return it for JSON: px, rad and scores as measured."""
+        """Return it as JSON: size in px, brightness and contrast of 255, ratios."""
         return {name: round(value, 3) for name, value in asdict(self).items()}
 
 
 def judge(grey: Grey, box: Box, face: Grey) -> Quality:
-    """Measure how a face is seen, in the picture and aligned."""
+    """Measure the quality of a face, in its image and aligned."""
     import numpy as np
 
     from tangy_hw.perception.faces.face_embedding import symmetry
@@ -82,7 +82,7 @@ def judge(grey: Grey, box: Box, face: Grey) -> Quality:
 
 
 def _sharpness(grey: Grey, box: Box) -> float:
-    """Compare fine with coarse differences; a share, so that it depends little on the light."""
+    """Compare fine with coarse differences; a ratio depends little on the light."""
     import cv2
 
     x, y, w, h = (round(value) for value in box)

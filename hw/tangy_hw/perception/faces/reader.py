@@ -1,4 +1,4 @@
-"""Faces in a picture, each with its features, or with the reason why it has none."""
+"""Finds the faces in an image, each with its features, or with the reason why it has none."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ NO_EYES = "the eyes are not both seen: look at the camera"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FaceReading:
-    """A face in a picture: where, how it is seen, and what it looks like.
+    """A face in an image: its box, its quality, and its features.
 
-    `vector` is None where it is not seen well enough, and `problem` says why.
+    `vector` is None if the quality is too low, and `problem` says why.
     """
 
     box: Box
@@ -31,7 +31,7 @@ class FaceReading:
 
 
 class FaceReader(Protocol):
-    """What finds faces and describes them. Vectors of another `kind` cannot be compared."""
+    """Detects and describes faces. Vectors of different `kind` are not comparable."""
 
     @property
     def kind(self) -> str:
@@ -47,7 +47,7 @@ class HaarReader:
     kind = "hoglbp1"
 
     def __init__(self, limits: FaceQualityLimits = USUAL) -> None:
-        """Read faces that are seen as well as `limits` say."""
+        """Prepare a reader with these quality limits."""
         self.limits = limits
 
     def read(self, picture: Picture) -> list[FaceReading]:
@@ -74,10 +74,10 @@ class HaarReader:
 
 
 def open_reader(models: FaceModels | None = None) -> FaceReader:
-    """Open the reader that the robot's profile asks for: that of its ONNX files, or the usual.
+    """Open the reader of the robot's profile: with its ONNX models, or the default one.
 
     Raises:
-        FaceError: one of the files is missing, or no such model.
+        FaceError: a model is missing or invalid.
     """
     if models is None:
         return HaarReader()

@@ -1,1 +1,1 @@
-"""Who asks for help: signs in pictures, buttons, keys, messages."""
+"""Sources of requests for help: signs in images, buttons, keys, messages."""

@@ -1,7 +1,7 @@
-"""Requests by a box of buttons: whatever Linux takes for a keyboard, a number pad or a joystick.
+"""Requests from a box of buttons: any keyboard, number pad or joystick that Linux supports.
 
-The events of such a device are read as the kernel writes them (linux/input.h), which needs no
-package. The device is grabbed, so that its keys do not also arrive in the terminal.
+Events are read in the kernel's format (linux/input.h), without a package. The device is grabbed, so
+that its keys do not also reach the terminal.
 """
 
 from __future__ import annotations
@@ -22,26 +22,26 @@ from tangy_profiles.reading import plain
 EVENT = struct.Struct("llHHi")  # time in s and us, type, code, value
 SYN, KEY = 0x00, 0x01
 SYN_REPORT, SYN_DROPPED = 0, 3
-PRESSED = 1  # 0 let go, 2 held down
+PRESSED = 1  # 0: released, 2: repeated
 GRAB = 0x40044590  # EVIOCGRAB
-AGAIN_SECONDS = 0.5  # until a box that has gone is looked for again
+AGAIN_SECONDS = 0.5  # until a missing box is tried again
 
 _PAD = (79, 80, 81, 75, 76, 77, 71, 72, 73)
 SEATS = {
-    **{code: code - 1 for code in range(2, 11)},  # the number keys 1 to 9
-    **{code: place + 1 for place, code in enumerate(_PAD)},  # those of a number pad
+    **{code: code - 1 for code in range(2, 11)},  # number keys 1 to 9
+    **{code: place + 1 for place, code in enumerate(_PAD)},  # number pad
     **{0x100 + number: number for number in range(1, 10)},  # numbered buttons
-    **{0x120 + place: place + 1 for place in range(9)},  # a joystick's
-    **{0x130 + place: place + 1 for place in range(9)},  # a game pad's
+    **{0x120 + place: place + 1 for place in range(9)},  # joystick
+    **{0x130 + place: place + 1 for place in range(9)},  # game pad
 }
-"""Which seat a key is for."""
+"""Seat of each key."""
 
 DEVICES = Path("/dev/input")
 LISTED = Path("/sys/class/input")
 
 
 class Events:
-    """Assembles a device's bytes into events, and yields the pressed keys."""
+    """Parses a device's bytes into events, and returns the pressed keys."""
 
     def __init__(self) -> None:
         self._rest = b""
@@ -55,14 +55,14 @@ class Events:
         found = []
         for _, _, kind, code, value in EVENT.iter_unpack(content[:whole]):
             if kind == SYN and code in (SYN_DROPPED, SYN_REPORT):
-                self._dropped = code == SYN_DROPPED  # what follows one is not complete
+                self._dropped = code == SYN_DROPPED  # incomplete events follow
             elif kind == KEY and value == PRESSED and not self._dropped:
                 found.append(code)
         return found
 
 
 def find_boxes(listed: Path = LISTED, devices: Path = DEVICES) -> list[tuple[str, str]]:
-    """Return the devices with keys, and what they are called."""
+    """Return the paths and names of the devices with keys."""
     found = []
     for folder in listed.glob("event*"):
         device = devices / folder.name
@@ -74,19 +74,19 @@ def find_boxes(listed: Path = LISTED, devices: Path = DEVICES) -> list[tuple[str
 
 
 class ButtonBox(RequestSource):
-    """A button asks for its seat, as often as it is pressed; helping ends that (`answered`)."""
+    """Each press of a button asks for its seat; `answered` ends the request."""
 
     def __init__(self, name: str, device: str, seats: int, people: Sequence[str] = ()) -> None:
-        """Name the box.
+        """Prepare the box.
 
         Args:
-            name: as it was given.
-            device: /dev/input/event5, or a part of what the box is called; "" for the only one.
-            seats: how many there are.
-            people: the ids of who sits at them.
+            name: name of the source, as given.
+            device: /dev/input/event5, or part of the box's name; "" for the only one.
+            seats: number of seats.
+            people: ids of the people at the seats.
 
         Raises:
-            RequestError: it is not clear which box is meant.
+            RequestError: the box is missing or ambiguous.
         """
         super().__init__(name, seats, people)
         self._device = device if device.startswith("/") else _by_name(device)
@@ -94,17 +94,17 @@ class ButtonBox(RequestSource):
         self._lost: float | None = time.monotonic()
 
     def reading(self) -> Reading:
-        """Return what the diagnosis is told of it; a button that is not pressed is no silence."""
+        """Return the reading for the diagnosis; buttons at rest are not a fault."""
         if self._lost is None:
             return Reading(DEVICE, 0.0, OK)
         return Reading(DEVICE, time.monotonic() - self._lost, STALE)
 
     async def start(self) -> None:
-        """Begin to hear who asks."""
+        """Start listening."""
         self._task = asyncio.create_task(self._run())
 
     async def close(self) -> None:
-        """Hear no more."""
+        """Stop listening."""
         await super().close()
         if self._task is not None:
             self._task.cancel()
@@ -135,7 +135,7 @@ class ButtonBox(RequestSource):
             await asyncio.sleep(AGAIN_SECONDS)
 
     async def _listen(self, descriptor: int) -> None:
-        """Read events until the box has gone."""
+        """Read events until the box is unplugged."""
         import fcntl
 
         with contextlib.suppress(OSError):
@@ -150,7 +150,7 @@ class ButtonBox(RequestSource):
                     content = os.read(descriptor, 64 * EVENT.size)
                 except BlockingIOError:
                     continue
-                except OSError:  # ENODEV: it is unplugged
+                except OSError:  # ENODEV: it was unplugged
                     return
                 if not content:
                     return

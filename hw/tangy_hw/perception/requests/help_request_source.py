@@ -1,4 +1,4 @@
-"""The interface of a source of help requests."""
+"""Interface of a source of help requests."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.health import OK, Reading
 
 DEVICE = "requests"
-"""What the robot's profile calls whatever tells requests."""
+"""Name of the source in the robot's profile."""
 
 
 class RequestError(TangyError):
@@ -19,9 +19,9 @@ class RequestError(TangyError):
 
 
 class Ask(NamedTuple):
-    """Somebody asks: at which seat (from 1), who sits there ("": it is not known).
+    """A request: its seat (from 1), and the person there ("" if unknown).
 
-    `since` is of the monotonic clock, in s; `sure` is from 0 to 1.
+    `since` is of the monotonic clock, in s; `sure` is a probability from 0 to 1.
     """
 
     seat: int
@@ -31,31 +31,31 @@ class Ask(NamedTuple):
 
 
 def _nobody(*_: object) -> None:
-    """Tell nobody."""
+    """Ignore the event."""
 
 
 class RequestSource:
-    """Tells who asks: look at `asking` at any time, or `async for asks in source` at each change.
+    """Reports who asks: read `asking` at any time, or use `async for asks in source`.
 
-    Start it with `async with`, or with `start` and `close`.
+    Use it with `async with`, or call `start` and `close`.
     """
 
     def __init__(self, name: str, seats: int, people: Sequence[str] = ()) -> None:
         """Prepare a source.
 
         Args:
-            name: as it was given.
-            seats: how many there are.
-            people: the ids of who sits at them, where that is known.
+            name: name of the source, as given.
+            seats: number of seats.
+            people: ids of the people at the seats, if known.
         """
         self.name = name
         self.seats = seats
         self.tell: Callable[[str], None] = _nobody
-        """Is called with a sentence when something must be said about the source."""
+        """Called with a sentence about each change of the source."""
         self.looks = 0
-        """How many pictures it has looked at, where it looks at pictures."""
+        """Number of processed frames, if it uses a camera."""
         self.agreed = 0
-        """How many of them in a row showed just those who are taken to ask."""
+        """Number of consecutive frames that showed exactly the current requests."""
         self._people = tuple(people)
         self._asks: dict[int, Ask] = {}
         self._changed = asyncio.Event()
@@ -71,19 +71,19 @@ class RequestSource:
 
     @property
     def asking(self) -> tuple[Ask, ...]:
-        """Who asks now, the one who has waited longest first."""
+        """Current requests, the longest waiting first."""
         return tuple(sorted(self._asks.values(), key=lambda ask: ask.since))
 
     def answered(self, seat: int) -> None:
-        """Take note that somebody has been helped, where nothing but that ends a request."""
+        """End the request of a seat that was visited, if nothing else ends it."""
         self._withdraw(seat)
 
     def reading(self) -> Reading:
-        """Return what the diagnosis is told of it."""
+        """Return the reading for the diagnosis."""
         return Reading(DEVICE, 0.0, OK)
 
     async def start(self) -> None:
-        """Begin to listen; that nothing is heard is a state, no error."""
+        """Start listening; silence is a state, not an error."""
 
     async def close(self) -> None:
         """Close for good; pending waits end without a change."""
@@ -91,7 +91,7 @@ class RequestSource:
         self._changed.set()
 
     async def __aiter__(self) -> AsyncIterator[tuple[Ask, ...]]:
-        """Give who asks, each time that this has changed.
+        """Yield the current requests at each change.
 
         Raises:
             RequestError: it cannot go on; one sentence that says why.
@@ -109,7 +109,7 @@ class RequestSource:
             raise self._error
 
     def _ask(self, seat: int, sure: float = 1.0, since: float | None = None) -> None:
-        """Take note that somebody asks, or still does; of a seat there is."""
+        """Record a new or continued request of an existing seat."""
         if not 1 <= seat <= self.seats:
             return
         ask = self._asks.get(seat)
@@ -121,7 +121,7 @@ class RequestSource:
             self._asks[seat] = ask._replace(sure=sure)
 
     def _withdraw(self, seat: int) -> None:
-        """Take note that somebody does not ask any more."""
+        """Record the end of a request."""
         if self._asks.pop(seat, None) is not None:
             self._changed.set()
 

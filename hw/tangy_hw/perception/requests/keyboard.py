@@ -1,4 +1,4 @@
-"""Requests by the number keys, pressed by a person who watches the table."""
+"""Requests by number keys, pressed by a person who watches the table."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from tangy_hw.perception.requests.help_request_source import RequestSource
 
 
 class Keyboard(RequestSource):
-    """The program hands in the keys; a seat's number asks, and pressed again takes that back."""
+    """The program passes keys in; a seat's number toggles its request."""
 
     def press(self, key: str) -> bool:
-        """Take a key; return whether it was one of ours."""
+        """Handle a key; return whether it belongs to a seat."""
         seat = int(key) if len(key) == 1 and key in "123456789" else 0
         if not 1 <= seat <= self.seats:
             return False

@@ -29,18 +29,18 @@ TAKES_BACK = frozenset(
 )
 KEYS = ("action", "state", "value", "asks", "event")
 LONGEST = 1_000  # bytes of a message
-ALIVE_SECONDS = 5  # between two signs of life; a broker that gives none is lost
-AGAIN_SECONDS = 1  # until one that was lost is tried again
+ALIVE_SECONDS = 5  # between keepalive packets; a silent broker counts as lost
+AGAIN_SECONDS = 1  # until it reconnects
 
 
 class Topic(RequestSource):
-    """Who asks by a topic of a broker, which is connected to again whenever it was lost."""
+    """Requests from a topic of a broker, with automatic reconnection."""
 
     def __init__(self, url: str, seats: int, people: Sequence[str] = ()) -> None:
-        """Name the broker and the topic.
+        """Set the broker and the topic.
 
         Raises:
-            RequestError: the address is none, or the package for it is not installed.
+            RequestError: the address is invalid, or the package for it is not installed.
         """
         try:
             parts = urlsplit(url)
@@ -64,13 +64,13 @@ class Topic(RequestSource):
         _package()
 
     def reading(self) -> Reading:
-        """Return what the diagnosis is told of it; that nobody asks is no silence."""
+        """Return the reading for the diagnosis; no requests are not a fault."""
         if self._lost is None:
             return Reading(DEVICE, 0.0, OK)
         return Reading(DEVICE, time.monotonic() - self._lost, STALE)
 
     async def start(self) -> None:
-        """Begin to hear who asks."""
+        """Connect and subscribe."""
         mqtt = _package()
         self._loop = asyncio.get_running_loop()
         self._client = client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2)
@@ -87,7 +87,7 @@ class Topic(RequestSource):
         client.loop_start()
 
     async def close(self) -> None:
-        """Hear no more."""
+        """Disconnect."""
         await super().close()
         client, self._client = self._client, None
         if client is not None:
@@ -95,7 +95,7 @@ class Topic(RequestSource):
             await asyncio.to_thread(client.loop_stop)
 
     def hear(self, topic: str, payload: bytes) -> None:
-        """Take one message."""
+        """Handle one message."""
         seat = self._seat_of(topic.removeprefix(self._topic).strip("/"))
         said = _meaning(payload)
         if not 1 <= seat <= self.seats or said is None:
@@ -120,7 +120,7 @@ class Topic(RequestSource):
             self._later(self.hear, message.topic, bytes(message.payload[: LONGEST + 1]))
 
     def _later(self, what: Any, *arguments: Any) -> None:
-        """Have something done on the program's own thread; the client has one of its own."""
+        """Call something on the program's thread; the MQTT client has its own."""
         if self._loop is not None and not self._closed and not self._loop.is_closed():
             self._loop.call_soon_threadsafe(what, *arguments)
 
@@ -140,7 +140,7 @@ class Topic(RequestSource):
 
 
 def _meaning(payload: bytes) -> bool | None:
-    """Say whether a message asks, or takes that back; None if neither."""
+    """Return whether a message asks (True) or withdraws (False); None if neither."""
     if len(payload) > LONGEST:
         return None
     text = payload.decode("utf-8", "replace").strip()

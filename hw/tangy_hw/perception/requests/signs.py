@@ -1,7 +1,7 @@
-"""Requests by signs: people turn up a triangle that shines in the picture of an infrared camera.
+"""Requests by signs: people turn up a triangle that shines in the image of an infrared camera.
 
-The camera looks at the whole table from a fixed place. Where the four corners of the table are in
-its picture is enough to know at which seat a sign stands.
+The camera sees the whole table from a fixed place. The four corners of the table in its image
+determine at which seat a sign stands.
 """
 
 from __future__ import annotations
@@ -28,30 +28,30 @@ if TYPE_CHECKING:
 Corners = tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
 
 OF, BEGINS, ENDS = 5, 3, 1
-"""Of the last five pictures a sign must be in three; in one at most, and it is down again."""
+"""A sign is up if three of the last five frames show it, and down again at one."""
 
-FAR = 0.9  # metres from where a sign of that seat would stand
-EDGE = 0.25  # metres off the table that a sign may seem to stand
-PAUSE = 0.1  # s between two pictures that are looked at
+FAR = 0.9  # metres between a sign and its place at a seat
+EDGE = 0.25  # metres beyond the table's edge that a sign may seem to stand
+PAUSE = 0.1  # s between two processed frames
 
-# An infrared picture is dark, and often shows little: neither is a fault of the camera.
+# An infrared image is dark and often empty: neither is a fault of the camera.
 INFRARED = replace(USUAL_CAMERA, dark=0.0, flat=0.0, blurred=0.0)
 
 
 class TableView:
-    """Where in the picture of a fixed camera which seat is."""
+    """Maps pixels of a fixed camera to seats."""
 
     def __init__(self, corners: Corners, room: Room, seats: int) -> None:
-        """Take where the table's corners are.
+        """Compute the mapping from the table's corners.
 
         Args:
-            corners: of the table, in pixels: left near, right near, right far, left far, as the
-                room has it; near is the side on which the robot stands.
-            room: where table and seats are.
-            seats: how many people sit there.
+            corners: corners of the table in pixels: left near, right near, right far, left far in
+                the room; near is the robot's side.
+            room: the room, with table and seats.
+            seats: number of people.
 
         Raises:
-            RequestError: the corners do not make a table.
+            RequestError: the corners do not form a table.
         """
         left, near, right, far = room.table
         self._table = room.table
@@ -64,12 +64,12 @@ class TableView:
         ]
 
     def place(self, x: float, y: float) -> Point | None:
-        """Return the place on the table, in metres, that a pixel shows; None beyond its horizon."""
+        """Return the place on the table, in m, at a pixel; None beyond its horizon."""
         a, b, c = (row[0] * x + row[1] * y + row[2] for row in self._matrix)
         return Point(a / c, b / c) if c > 1e-9 else None
 
     def seat(self, x: float, y: float) -> int:
-        """Return the seat (from 1) at which a sign stands that is seen at this px, or 0."""
+        """Return the seat (from 1) of a sign at this px, or 0."""
         place = self.place(x, y)
         left, near, right, far = self._table
         if (
@@ -84,14 +84,14 @@ class TableView:
 
 
 class Persistence:
-    """Hysteresis over pictures: on at three of five, off at one of five or fewer."""
+    """Hysteresis over frames: on at three of five, off at one of five or fewer."""
 
     def __init__(self) -> None:
         self._seen: dict[int, deque[float]] = {}
         self._believed: set[int] = set()
 
     def take(self, found: dict[int, float]) -> dict[int, float]:
-        """Take what one picture shows, seat to probability; return the same of what is believed."""
+        """Add a frame's signs (seat to probability); return the confirmed ones likewise."""
         for seat in found:
             self._seen.setdefault(seat, deque((0.0,) * OF, OF))
         for seat, last in list(self._seen.items()):
@@ -107,17 +107,17 @@ class Persistence:
 
 
 class SignWatcher:
-    """Says of one picture after the other at which seats signs are up."""
+    """Detects in a sequence of frames at which seats signs are up."""
 
     def __init__(self, view: TableView, limits: TriangleLimits = USUAL) -> None:
         self._view = view
         self._limits = limits
         self._persistence = Persistence()
         self.found: dict[int, float] = {}
-        """Of the last picture alone: seat to how sure."""
+        """Signs of the last frame alone: seat to probability."""
 
     def look(self, image: Image) -> dict[int, float]:
-        """Take a picture (BGR); return who asks: seat (from 1) to probability."""
+        """Process a frame (BGR); return who asks: seat (from 1) to probability."""
         self.found = {}
         for one in find_triangles(image, self._limits):
             seat = self._view.seat(one.x, one.y)
@@ -127,30 +127,30 @@ class SignWatcher:
 
 
 class Signs(RequestSource):
-    """Who has a sign up before a camera."""
+    """Requests by signs before a camera."""
 
     def __init__(
         self, source: CameraSource, view: TableView, seats: int, people: Sequence[str] = ()
     ) -> None:
-        """Prepare to watch the signs at a table through a camera that was not started."""
+        """Prepare to watch a table through a camera, which `start` opens."""
         super().__init__(f"signs:{source.name}", seats, people)
         self.camera = Camera(source, device=DEVICE, limits=INFRARED)
         self._watcher = SignWatcher(view)
         self._task: asyncio.Task[None] | None = None
 
     def reading(self) -> Reading:
-        """Return what the diagnosis is told: how old the newest picture is."""
+        """Return the reading for the diagnosis, with the age of the newest frame."""
         sight = self.camera.sight
         return Reading(DEVICE, sight.age, OK if sight.state == "OK" else STALE, rate=sight.rate)
 
     async def start(self) -> None:
-        """Begin to hear who asks."""
+        """Start watching."""
         self.camera.changed = lambda sight: self.tell(sight.why) if sight.why else None
         await self.camera.start()
         self._task = asyncio.create_task(self._watch())
 
     async def close(self) -> None:
-        """Hear no more."""
+        """Stop watching."""
         await super().close()
         if self._task is not None:
             self._task.cancel()
@@ -165,7 +165,7 @@ class Signs(RequestSource):
             await self._look()
         except CameraError as error:
             self._error = RequestError(str(error))
-        self._closed = True  # a file is over
+        self._closed = True  # a file has ended
         self._changed.set()
 
     async def _look(self) -> None:
@@ -197,7 +197,7 @@ def _homography(pixels: Corners, places: Corners) -> list[list[float]]:
 
 
 def _goes_round(corners: Corners) -> bool:
-    """Say whether four points make a convex shape of some size."""
+    """Return whether four points form a convex quadrilateral that is not degenerate."""
     turns = []
     for here in range(4):
         (ax, ay), (bx, by), (cx, cy) = corners[here - 2], corners[here - 1], corners[here]

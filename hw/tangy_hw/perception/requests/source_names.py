@@ -1,4 +1,4 @@
-"""Which source of requests a robot's file names, and where the table is in its pictures."""
+"""Reads the source of requests from a robot's file, and the table's corners in its images."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from tangy_profiles.reading import nearest, plain
 from tangy_profiles.robot import Robot
 
 Corners = tuple[tuple[float, float], ...]
-"""Of the table in the camera's picture, in pixels; none where that does not matter."""
+"""Corners of the table in pixels; empty if not needed."""
 
 KINDS = ("buttons", "mqtt", "signs")
 
 
 def read_corners(text: str, what: str = "--table") -> Corners:
-    """Read the corners of the table, X,Y four times; "" for none.
+    """Parse the corners of the table, X,Y four times; "" for none.
 
     Raises:
-        RequestError: they are none; it names `what`.
+        RequestError: the text is invalid; the message names `what`.
     """
     try:
         numbers = [float(word) for word in text.split(",")] if text else []
@@ -31,14 +31,14 @@ def read_corners(text: str, what: str = "--table") -> Corners:
 
 
 def requests_named(robot: Robot) -> tuple[str, Corners]:
-    """Return the source of requests that a robot's file names, as `open_requests` takes it.
+    """Return the source of requests in a robot's file, as `open_requests` takes it.
 
-    `requests = { kind = "signs", at = "/dev/video2", table = "X,Y,..." }` under [drivers], or of
-    the kind buttons (`at`: the box, where there are several) or mqtt (`at` mqtt://HOST/TOPIC). ""
-    where it names none.
+    The file has `requests = { kind = "signs", at = "/dev/video2", table = "X,Y,..." }` under
+    [drivers], or the kind buttons (`at`: the box, if there are several) or mqtt (`at`:
+    mqtt://HOST/TOPIC). Returns "" if it names none.
 
     Raises:
-        RequestError: it is named wrongly.
+        RequestError: the entry is invalid.
     """
     driver = robot.drivers.get(DEVICE)
     if driver is None:
@@ -49,7 +49,7 @@ def requests_named(robot: Robot) -> tuple[str, Corners]:
         raise RequestError(plain(f"{where}: {wrong}"))
     where = f"{where} ({driver.kind})"
     given = {
-        key: f"{value:g}" if isinstance(value, float) else str(value)  # a camera's number
+        key: f"{value:g}" if isinstance(value, float) else str(value)  # number of a camera
         for key, value in driver.settings.items()
     }
     for key in given:

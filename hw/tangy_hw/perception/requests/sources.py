@@ -1,9 +1,9 @@
-"""Where requests for help come from, by name.
+"""Opens sources of help requests by name.
 
-keyboard              number keys, for whoever watches the table
-buttons               a box of buttons; of several buttons:/dev/input/event5 or buttons:NAME
-mqtt://HOST/TOPIC     messages, as from the buttons of a smart home
-signs:CAMERA          triangles that shine, seen by an infrared camera (0, http://..., a video)
+keyboard              number keys, for a person who watches the table
+buttons               a box of buttons; if several: buttons:/dev/input/event5 or buttons:NAME
+mqtt://HOST/TOPIC     messages, for example of smart-home buttons
+signs:CAMERA          shining triangles before an infrared camera (0, http://..., a video)
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ def open_requests(
     corners: Sequence[tuple[float, float]] = (),
     each: bool = False,
 ) -> RequestSource:
-    """Open a source by its name; it is not started yet. Times are in s.
+    """Create a source by its name, without starting it. Times are in s.
 
     Args:
         name: one of those above.
-        room: where table and seats are.
-        people: the ids of those who sit there, in the order of the seats.
-        corners: of the table in the camera's picture, for signs: left near, right near, right far,
-            left far, in pixels.
-        each: look at every picture of a file or folder, for signs.
+        room: the room, with table and seats.
+        people: ids of the people, in the order of their seats.
+        corners: corners of the table in the camera's image in pixels, for signs: left near, right
+            near, right far, left far.
+        each: process every frame of a file or folder, for signs.
 
     Raises:
-        RequestError: it is not known, or cannot be used.
+        RequestError: the source is unknown, or cannot be used.
         CameraError: there is no such camera.
     """
     kind, _, rest = name.partition(":")

@@ -1,8 +1,7 @@
-"""Finds upright triangles that shine in an infrared picture: the signs with which people ask.
+"""Finds upright shining triangles in an infrared image: the signs with which people ask.
 
-A bright spot is looked at closely, at four times its size or more: cut out where it is half as
-bright as at its brightest, which is where its edge is however blurred it is, and compared with the
-smallest triangle around it.
+A bright spot is enlarged, cut out at half of its maximum brightness, where its edge is at any blur,
+and compared with its minimum enclosing triangle.
 """
 
 from __future__ import annotations
@@ -14,16 +13,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
 
-CLOSE = 80  # pixels to a side at which a spot is looked at
-MARGIN = 5  # pixels of its surroundings
-COARSE = 4  # times smaller the picture is in which it is looked for what is behind the spots
-BEHIND = 23  # pixels of that; what is smaller to a side is a spot
-EDGE = 75  # percentile of a spot's surroundings that it has to stand out of
-MOST_SPOTS = 60  # of a picture; the largest ones
+CLOSE = 80  # pixels per side of an enlarged spot
+MARGIN = 5  # pixels around a spot
+COARSE = 4  # scale factor of the smaller image for the background
+BEHIND = 23  # pixels in it up to which an object is a spot
+EDGE = 75  # percentile of a spot's surroundings that counts as background
+MOST_SPOTS = 60  # per image; the largest ones
 
 
 class Triangle(NamedTuple):
-    """A triangle in the picture: its middle and the length of its sides in pixels; how sure."""
+    """A triangle in the image: its centre and side length in pixels; its probability."""
 
     x: float
     y: float
@@ -33,12 +32,12 @@ class Triangle(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class TriangleLimits:
-    """What counts as a triangle; set by `tests/bench/requests.py --tune`.
+    """Limits of triangles; set by `tests/bench/requests.py --tune`.
 
-    `brighter`: than what is behind it, of 255. `size`: from the shortest to the longest side, in
-    pixels. `fills`: share of the smallest triangle around it (a disc .60, a square .5); `solid`:
-    share of its convex hull; `corner`: the sharpest and bluntest corner in degrees; `three`: share
-    of its outline within which three corners describe it.
+    `brighter`: difference to the background, of 255. `size`: mean side length in pixels, minimum
+    and maximum. `fills`: share of the enclosing triangle (a disc .60, a square .5); `solid`: share
+    of the convex hull; `corner`: sharpest and bluntest corner in degrees; `three`: share of the
+    outline within which three corners approximate it.
     """
 
     brighter: float = 36.0
@@ -53,7 +52,7 @@ USUAL = TriangleLimits()
 
 
 class Shape(NamedTuple):
-    """The shape of a spot (see `TriangleLimits`), and its enclosing triangle in the picture."""
+    """Shape of a spot (see `TriangleLimits`), and its enclosing triangle in the image."""
 
     fills: float
     solid: float
@@ -66,7 +65,7 @@ class Shape(NamedTuple):
 
 
 def find_triangles(image: Image, limits: TriangleLimits = USUAL) -> list[Triangle]:
-    """Return the triangles in a picture (grey, or BGR), the surest first."""
+    """Return the triangles in an image (grey, or BGR), the most probable first."""
     found = [
         Triangle(shape.x, shape.y, shape.size, sure)
         for shape in shapes(image, limits)
@@ -89,7 +88,7 @@ def how_sure(shape: Shape, limits: TriangleLimits = USUAL) -> float:
 
 
 def shapes(image: Image, limits: TriangleLimits = USUAL) -> list[Shape]:
-    """Return the shapes of all bright spots in a picture that are of a size for a sign."""
+    """Return the shapes (px) of all bright spots of a sign's size in an image (grey, or BGR)."""
     import cv2
     import numpy as np
 
@@ -103,14 +102,14 @@ def shapes(image: Image, limits: TriangleLimits = USUAL) -> list[Shape]:
     _, _, boxes, _ = cv2.connectedComponentsWithStats(bright, connectivity=4)
     low, high = limits.size
     sides = boxes[1:, 2:4].max(axis=1) if len(boxes) > 1 else np.empty(0)
-    kept = boxes[1:][(sides >= low) & (sides <= 2 * high)]  # with its mirror image, or a halo
+    kept = boxes[1:][(sides >= low) & (sides <= 2 * high)]  # with its reflection, or a halo
     kept = kept[np.argsort(-kept[:, 4])][:MOST_SPOTS]
     found = (_shape(grey, *(int(one) for one in box[:4])) for box in kept)
     return [shape for shape in found if shape is not None and low <= shape.size <= high]
 
 
 def _shape(grey: Any, left: int, top: int, width: int, height: int) -> Shape | None:
-    """Look at one spot closely."""
+    """Measure the shape of one spot."""
     import cv2
     import numpy as np
 
@@ -151,7 +150,7 @@ def _shape(grey: Any, left: int, top: int, width: int, height: int) -> Shape | N
 
 
 def _angles(points: list[tuple[float, float]]) -> list[float] | None:
-    """Return the angles of a triangle in degrees, or None if it is a line."""
+    """Return the angles of a triangle in degrees, or None if it is degenerate."""
     angles = []
     for here in range(3):
         a, b, c = points[here], points[here - 1], points[here - 2]
