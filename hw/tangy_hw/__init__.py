@@ -1,5 +1,5 @@
-"""The real world: cameras, laser, base, arms, screen and voice of a robot."""
+"""The real robot: cameras, laser, base, arms, screen and voice."""
 
 import logging
 
-logging.getLogger(__name__).addHandler(logging.NullHandler())  # or it would go to stderr
+logging.getLogger(__name__).addHandler(logging.NullHandler())  # otherwise it would go to stderr

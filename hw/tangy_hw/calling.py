@@ -1,9 +1,9 @@
-"""Calling a person by a command, an http address or a topic of MQTT, and hearing what they answer.
+"""Calls a person by a command, an HTTP address or an MQTT topic, and receives the answer.
 
-A command gets the message as JSON on its standard input, an address by POST, and a topic as it is.
-An answer is a line of the command that begins with "answered", such a text or {"answered": "who"}
-in the reply of an address, or any message to the topic with /answer behind its name. That a message
-was handed over is no answer.
+A command gets the message as JSON on standard input, an address by POST, and a topic as its
+payload. An answer is a line of the command's output that begins with "answered", such a text or
+{"answered": "who"} in the HTTP reply, or any message to the topic with /answer appended. Delivery
+of the message is not an answer.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from tangy_profiles.contacts import Contact
 from tangy_profiles.reading import plain
 
 Stage = Literal["sent", "answered", "failed"]
-"""What became of a call."""
+"""Outcome of a call."""
 
 ANSWERED = "answered"
 LONGEST = 4_000  # bytes of an answer
 CONNECT_SECONDS = 10.0
-WORDS = 160  # characters that are kept of what was said
+WORDS = 160  # characters of a message that are kept
 
 
 @dataclass(frozen=True, slots=True)
 class CallNews:
-    """What became of a call; `said` is the answer, or why it failed."""
+    """Outcome of a call; `said` is the answer, or why it failed."""
 
     stage: Stage
     said: str = ""
@@ -44,7 +44,7 @@ Told = Callable[[CallNews], None]
 def call(contact: Contact, message: Mapping[str, Any], seconds: float, told: Told) -> None:
     """Send a message to a person, and wait up to so many s for an answer.
 
-    Whatever comes of it is `told`, at the latest when the time is over; nothing is raised.
+    `told` receives the outcome, at the latest at the timeout; nothing is raised.
     """
     try:
         if contact.command:
@@ -60,14 +60,14 @@ def call(contact: Contact, message: Mapping[str, Any], seconds: float, told: Tol
 def _by_command(
     command: tuple[str, ...], message: Mapping[str, Any], seconds: float, told: Told
 ) -> None:
-    process = subprocess.Popen(  # noqa: S603 - the facility's own, from its robot's file
+    process = subprocess.Popen(  # noqa: S603 - the facility's own command, from its robot's file
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     ending = threading.Timer(seconds, process.kill)
     ending.start()
     try:
         assert process.stdin and process.stdout and process.stderr  # noqa: S101 - they are pipes
-        with suppress(BrokenPipeError):  # one that takes no message
+        with suppress(BrokenPipeError):  # a command that reads no message
             process.stdin.write(json.dumps(dict(message)).encode() + b"\n")
             process.stdin.close()
         answered = _first_answer(process.stdout)
@@ -97,7 +97,7 @@ def _first_answer(lines: IO[bytes]) -> str | None:
 
 
 def _by_post(url: str, message: Mapping[str, Any], seconds: float, told: Told) -> None:
-    from urllib.error import HTTPError  # they take long to load, and few robots' files need them
+    from urllib.error import HTTPError  # slow to import, and few robots need them
     from urllib.request import Request, urlopen
 
     body = json.dumps(dict(message)).encode()

@@ -1,7 +1,7 @@
-"""The start of a robot, as another thread sees it: what starts now, and cancelling that.
+"""Start-up of a robot as seen from another thread: its progress, and its cancellation.
 
-Opening takes seconds and starts processes. Each step looks first whether it was called off, and
-each process, as soon as it is started, names what ends it.
+Start-up takes seconds and starts processes. Each step first checks whether it was cancelled, and
+each started process registers how to end it.
 """
 
 from __future__ import annotations
@@ -12,58 +12,58 @@ from collections.abc import Callable
 from tangy_profiles.errors import TangyError
 
 PARTS = ("bench", "faces", "program", "senses", "first words")
-"""What is started beside devices.
+"""Parts of start-up that are not devices.
 
-The simulated devices, the pictures of faces, the process in the robot, what reads cards and faces;
-the last one waits for each device to have said something.
+The simulated devices, the models for faces, the robot process, the readers of cards and faces; the
+last one waits for the first data of each device.
 """
 
 
 class Cancelled(TangyError):
-    """The start was cancelled."""
+    """Start-up was cancelled."""
 
     def __init__(self) -> None:
         super().__init__("It was called off while it was being switched on.")
 
 
 class Cancellation:
-    """One opening, which may be called off until it is complete."""
+    """Progress of one start-up, which can be cancelled until it is complete."""
 
     def __init__(self) -> None:
-        """Begin an opening."""
+        """Begin a start-up."""
         self._lock = threading.Lock()
         self._ends: list[Callable[[], None]] = []
         self._cancelled = self._complete = False
         self.parts: tuple[str, ...] = ()
-        """What was started so far: names of devices and of `PARTS`; the last is being started."""
+        """Parts started so far: devices and `PARTS`; the last is in progress."""
         self.done: tuple[int, int] | None = None
-        """How many pieces of the last part are done, of how many; None: it has none."""
+        """Finished and total pieces of the current part; None if it has none."""
 
     def starts(self, part: str, done: int = 0, of: int = 0) -> None:
-        """Say what is being started now, and how many of its pieces are done."""
+        """Report the part being started, and how many of its pieces are done."""
         self.done = (done, of) if of else None
         if self.parts[-1:] != (part,):
             self.parts = (*self.parts, part)
 
     @property
     def cancelled(self) -> bool:
-        """Whether it was called off."""
+        """Whether it was cancelled."""
         return self._cancelled
 
     def check(self) -> None:
-        """Go on only if it was not called off.
+        """Check that start-up may go on.
 
         Raises:
-            Cancelled: it was.
+            Cancelled: it was cancelled.
         """
         if self._cancelled:
             raise Cancelled
 
     def register(self, end: Callable[[], None]) -> None:
-        """Have something ended when this is called off; at once, where it was already.
+        """Register a callback for cancellation; call it at once if already cancelled.
 
         Args:
-            end: is called from any thread, and must not wait.
+            end: the callback, called from any thread; it must not block.
         """
         with self._lock:
             if self._complete:
@@ -74,10 +74,10 @@ class Cancellation:
         end()
 
     def complete(self) -> None:
-        """Say that all is open: from now on there is nothing to call off.
+        """Complete the start-up: from now on it cannot be cancelled.
 
         Raises:
-            Cancelled: it was called off before.
+            Cancelled: it was cancelled before.
         """
         with self._lock:
             self.check()

@@ -1,8 +1,7 @@
-"""Which card each person plays with, and whether a card that lies before somebody is theirs.
+"""Which card belongs to each person, and whether a card before a person is theirs.
 
-Staff, or whatever deals, say which cards were dealt; what they do not say is learnt from the first
-sure sight of a single card at a person's place, for this game. A card is judged only where it is
-known to be that person's.
+Staff, or a dealing program, may assign cards; others are learnt for a game from the first certain
+sight of a single card at a person's place. A card is judged only if it is known to be the person's.
 """
 
 from __future__ import annotations
@@ -12,16 +11,16 @@ from dataclasses import dataclass
 from typing import Literal
 
 Doubt = Literal["several cards", "copies", "another's card", "other card"]
-"""Why a card is not judged: more than one is in sight, all of one number or not; it is another
-person's; or it is not the one that this person has."""
+"""Reason not to judge a card: several cards are in sight, of one number or not; it belongs to
+another person; or it is not the one that this person has."""
 
 
 @dataclass(frozen=True, slots=True)
 class CardDoubt:
     """A card that is not judged: the person, the cards in sight, and the reason.
 
-    `own` is the card that the person has, as far as is known; `owner` is whose the card in sight
-    is, if it is another person's.
+    `own` is the person's known card; `owner` is the owner of the card in sight, if it belongs to
+    another person.
     """
 
     person: str
@@ -33,14 +32,14 @@ class CardDoubt:
 
 @dataclass(frozen=True, slots=True)
 class CardLearnt:
-    """A card was seen before somebody, and is taken for theirs from now on."""
+    """A card was seen before a person, and counts as theirs from now on."""
 
     person: str
     card: int
 
 
 class DealtCards:
-    """The owners of the cards in a game."""
+    """Owners of the cards in a game."""
 
     def __init__(self) -> None:
         self._given: dict[str, int] = {}
@@ -48,21 +47,21 @@ class DealtCards:
 
     @property
     def given(self) -> Mapping[str, int]:
-        """The cards that staff, or whatever deals, said were dealt, by person."""
+        """Cards that were assigned, by person."""
         return self._given
 
     def begin(self) -> None:
-        """Begin a game, and forget the assignments of the last one."""
+        """Start a game, and forget the learnt cards of the last one."""
         self._learnt.clear()
 
     def deal(self, cards: Mapping[str, int]) -> None:
-        """Set the dealt cards; earlier assignments no longer hold."""
+        """Assign cards; earlier assignments no longer hold."""
         self._given, self._learnt = dict(cards), {}
 
     def give(self, person: str, card: int | None) -> None:
-        """Set a person's card; None: it is learnt again.
+        """Assign a card to a person; None: it is learnt again.
 
-        Nobody else has it then, whatever was said or learnt before.
+        Nobody else owns it from then on.
         """
         for known in (self._given, self._learnt):
             known.pop(person, None)
@@ -72,7 +71,7 @@ class DealtCards:
             self._given[person] = card
 
     def card_of(self, person: str) -> int | None:
-        """Return the number of a person's card, None where it is not known."""
+        """Return a person's card, None if unknown."""
         return self._given.get(person, self._learnt.get(person))
 
     def owner(self, card: int) -> str:
@@ -81,16 +80,16 @@ class DealtCards:
         return next((person for person in people if self.card_of(person) == card), "")
 
     def learn(self, person: str, card: int) -> bool:
-        """Take a card that was surely seen before a person for theirs; say whether that is new."""
+        """Assign a clearly seen card to a person without one; return whether this was new."""
         if self.card_of(person) is not None or self.owner(card):
             return False
         self._learnt[person] = card
         return True
 
     def doubt(self, person: str, cards: Sequence[int]) -> CardDoubt | None:
-        """Say why of these cards before a person none can be judged; None: the one is theirs.
+        """Return why no card before a person can be judged; None if the only one is theirs.
 
-        A card that nobody is known to have is theirs as long as they are not known to have one.
+        A card without an owner counts as that of a person without a card.
         """
         own, there = self.card_of(person), tuple(cards)
         if len(there) > 1:

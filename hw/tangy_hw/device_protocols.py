@@ -1,9 +1,9 @@
-"""The interfaces of a robot's devices, independent of their make.
+"""Interfaces of a robot's devices, independent of their make.
 
-Every reading has a stamp of the robot's clock and a sequence number; every command is
-acknowledged, or is a `DeviceError` after a time-out. Drivers satisfy these Protocols; which driver
-a robot has stands in its TOML. Lengths are metres, angles radians counter-clockwise, times seconds;
-poses are in the room's frame (see `tangy_profiles.room`) unless said otherwise.
+Every reading has a stamp of the robot's clock and a sequence number; every command is acknowledged,
+or raises a `DeviceError` after a timeout. Drivers implement these Protocols; the robot's TOML
+selects the drivers. Lengths are in m, angles in rad counter-clockwise, times in s; poses are in the
+room's frame (see `tangy_profiles.room`) unless stated otherwise.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ Value = TypeVar("Value", covariant=True)
 
 
 class DeviceError(TangyError):
-    """A device did not do what it was told, or cannot be had; one sentence that names it."""
+    """A device did not execute a command, or is unavailable; one sentence that names it."""
 
 
 class Pose(NamedTuple):
-    """Where something stands and which way it faces; heading 0 is along x."""
+    """Position and heading; heading 0 is along x."""
 
     x: float
     y: float
@@ -38,7 +38,7 @@ class Pose(NamedTuple):
 
 
 class Twist(NamedTuple):
-    """How fast a base drives: forward in m/s, turning in rad/s."""
+    """Velocity of a base: forward in m/s, turning in rad/s."""
 
     forward: float = 0.0
     turn: float = 0.0
@@ -48,7 +48,7 @@ STILL = Twist()
 
 
 class Odometry(NamedTuple):
-    """What the wheels report: the pose since the base was switched on, and how fast it drives."""
+    """Wheel odometry: the pose since the base was switched on, and the velocity."""
 
     pose: Pose
     twist: Twist
@@ -56,9 +56,9 @@ class Odometry(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """One turn of a laser scanner: beam i looks at `first` + i * `step`, from straight ahead.
+    """One turn of a laser scanner: beam i has the bearing `first` + i * `step`.
 
-    `ranges` (n,) are metres; a beam that met nothing, or of which nothing is known, is inf.
+    `ranges` (n,) are in m; inf for a beam without a return, or without a valid range.
     """
 
     first: float
@@ -69,7 +69,7 @@ class Scan:
 
 @dataclass(frozen=True, slots=True)
 class Stamped(Generic[Value]):
-    """A value with the time at which it came (the robot's clock, in s) and its number."""
+    """A value with its time of arrival (the robot's clock, in s) and number."""
 
     value: Value
     stamp: float
@@ -77,10 +77,10 @@ class Stamped(Generic[Value]):
 
 
 class Picture(NamedTuple):
-    """What the chest screen shows: a line in large type, the number that was called, the last few.
+    """Content of the chest screen: a line in large type, the called number, the previous ones.
 
-    `asks` is for whom something is asked, "" for everybody. `file` is the path of a picture that is
-    shown with the line.
+    `asks` is the person who is asked, "" for everybody. `file` is the path of a picture for the
+    line.
     """
 
     text: str
@@ -98,7 +98,7 @@ class Clock(Protocol):
         ...
 
     async def sleep(self, seconds: float) -> None:
-        """Let so much of it pass, in s."""
+        """Sleep for so many s of this clock."""
         ...
 
 
@@ -110,46 +110,46 @@ class MachineClock:
         return time.monotonic()
 
     async def sleep(self, seconds: float) -> None:
-        """Wait for so many s."""
+        """Sleep for so many s."""
         await asyncio.sleep(seconds)
 
 
 class Device(Protocol):
-    """What all devices have in common; `reading` is what the diagnosis is told."""
+    """Common interface of all devices; `reading` is for the diagnosis."""
 
     name: str
 
     async def start(self) -> None:
-        """Begin; a device that cannot be reached says so in its reading, and is tried again."""
+        """Start; an unreachable device reports this in its reading, and is tried again."""
         ...
 
     async def close(self) -> None:
-        """End for good."""
+        """Stop for good."""
         ...
 
     def reading(self) -> Reading:
-        """Return its state, the age of its newest data, and the facts it has of itself."""
+        """Return its state, the age of its newest data, and its facts."""
         ...
 
 
 class Base(Device, Protocol):
-    """Wheels that drive, and say how far they have turned."""
+    """A drive base with wheel odometry."""
 
     @property
     def odometry(self) -> Stamped[Odometry] | None:
-        """The newest odometry; None: there was none yet."""
+        """Newest odometry; None before the first."""
         ...
 
     async def drive(self, twist: Twist) -> None:
-        """Drive so until the next command, which must come within half a second.
+        """Drive at a twist until the next command, which must come within half a second.
 
         Raises:
-            DeviceError: the command could not be handed over.
+            DeviceError: the command could not be sent.
         """
         ...
 
     async def stop(self) -> None:
-        """Stand still now; it waits behind nothing, and never raises."""
+        """Stop now, ahead of all queued commands; never raises."""
         ...
 
 
@@ -158,7 +158,7 @@ class Laser(Device, Protocol):
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """The newest scan; None: there was none yet."""
+        """Newest scan; None before the first."""
         ...
 
 
@@ -172,25 +172,25 @@ class StopButton(Device, Protocol):
 
 
 class Arms(Device, Protocol):
-    """Limbs that take postures; the head is one of them."""
+    """Limbs that take poses; the head is one of them."""
 
     async def pose(self, angles: Mapping[str, Sequence[float]], seconds: float) -> None:
         """Move limbs to joint angles (degrees, by limb) within so many s, and wait for it.
 
         Raises:
-            DeviceError: a servo reports an error, or is not there in time.
+            DeviceError: a servo reports an error, or a joint does not arrive in time.
         """
         ...
 
     async def hold(self) -> None:
         """Hold the current position with torque on, and drop the goal; never raises.
 
-        A movement that is waited for ends with a DeviceError.
+        A movement in progress ends with a DeviceError.
         """
         ...
 
     async def relax(self) -> None:
-        """Let all of it hang without torque; never raises."""
+        """Switch the torque of all joints off; never raises."""
         ...
 
 
@@ -198,23 +198,23 @@ class ChestScreen(Device, Protocol):
     """The screen on the robot's chest."""
 
     async def show(self, picture: Picture) -> None:
-        """Show something, until the next.
+        """Show a picture until the next one.
 
         Raises:
-            DeviceError: nobody took it.
+            DeviceError: no page has drawn it.
         """
         ...
 
 
 @runtime_checkable
 class AnswersCalls(Protocol):
-    """A chest screen at which people can say that they come when staff are called."""
+    """A chest screen on which people can answer a call for staff."""
 
     answered: tuple[str, ...]
-    """The keys of the open calls that were answered at it."""
+    """Keys of the open calls that were answered at it."""
 
     def offer(self, calls: Mapping[str, str]) -> None:
-        """Show a button for each open call, and none for any other: who is called, by its key."""
+        """Show a button for each open call, and only for these: the called person's name by key."""
         ...
 
 
@@ -222,15 +222,15 @@ class Voice(Device, Protocol):
     """The robot's voice."""
 
     async def say(self, text: str) -> None:
-        """Say something, and wait until it was said.
+        """Speak, and wait until the speech has ended.
 
         Raises:
-            DeviceError: it cannot be said.
+            DeviceError: it cannot be spoken.
         """
         ...
 
     async def play(self, sound: Path) -> None:
-        """Play a WAV file, and wait until it was heard, or cut by `hush`.
+        """Play a WAV file, and wait until it has ended or `hush` has cut it.
 
         Raises:
             DeviceError: it cannot be heard.
@@ -238,41 +238,41 @@ class Voice(Device, Protocol):
         ...
 
     async def hush(self) -> None:
-        """Be quiet now; never raises."""
+        """Stop speaking now; never raises."""
         ...
 
 
 class OwnNavigation(Device, Protocol):
     """A robot's own navigation, which localises the robot and drives it to goals.
 
-    The facts of its reading have the `path`: clear, replanned or none.
+    The facts of its reading include `path`: clear, replanned or none.
     """
 
     @property
     def pose(self) -> Stamped[Pose] | None:
-        """Where the robot says that it is; None: it did not say so yet."""
+        """Pose that the robot reports; None before the first."""
         ...
 
     def localisation(self) -> Reading:
-        """Return how long ago it said so, and as facts how sure it is: `fit` and `spread`."""
+        """Return the age of the pose, with its certainty as the facts `fit` and `spread`."""
         ...
 
     def place(self, pose: Pose) -> None:
-        """Tell it that the robot is there.
+        """Set the robot's pose.
 
         Raises:
-            DeviceError: it could not be handed over.
+            DeviceError: it could not be sent.
         """
         ...
 
     async def go(self, goal: Pose) -> None:
-        """Drive somewhere, and wait until it is there.
+        """Drive to a pose, and wait for the arrival.
 
         Raises:
-            DeviceError: it is not taken there, or that was called off.
+            DeviceError: the robot does not arrive, or the goal was cancelled.
         """
         ...
 
     async def cancel(self) -> None:
-        """Call off where it drives to, and wait a moment until it has heard; never raises."""
+        """Cancel the goal, and wait a moment for the confirmation; never raises."""
         ...

@@ -1,28 +1,28 @@
-"""How often a second data comes."""
+"""Estimates the rate of data."""
 
 from __future__ import annotations
 
 from collections import deque
 
-WINDOW = 2.0  # s of late that count; a chest screen answers five times in them
-FIRST = 1.0  # s after the first that came, before which it cannot be told
+WINDOW = 2.0  # s of the sliding window; a chest screen answers five times in it
+FIRST = 1.0  # s after the first data, before which the rate is unknown
 
 
 class RateEstimator:
-    """Counts what comes, by a time that whoever counts gives, in s."""
+    """Counts arrivals, with times in s from the caller."""
 
     def __init__(self) -> None:
-        """Begin with nothing."""
+        """Start without arrivals."""
         self.restart()
 
     def restart(self) -> None:
-        """Forget what came."""
+        """Forget all arrivals."""
         self._came: deque[tuple[float, int]] = deque()
         self._number = 0
         self._began: float | None = None
 
     def count(self, now: float, number: int = 1) -> None:
-        """Count something that comes now (in s), or so many at once."""
+        """Count one arrival, or several, at a time in s."""
         if self._began is None:
             self._began = now
         self._came.append((now, number))
@@ -30,7 +30,7 @@ class RateEstimator:
         self._forget(now - WINDOW)
 
     def rate(self, now: float) -> float | None:
-        """Return how many came in a second, of late; None: that cannot be told yet."""
+        """Return the recent arrivals per second; None if unknown yet."""
         if self._began is None or now - self._began < FIRST:
             return None
         since = max(self._began, now - WINDOW)

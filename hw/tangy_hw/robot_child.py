@@ -1,4 +1,4 @@
-"""The former name of `tangy_hw.robot_process`, by which other programs may start it."""
+"""Former name of `tangy_hw.robot_process`, for programs that start it by this name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the robot process is told before it begins: which robot, where, for whom, and by what."""
+"""First message to the robot process: the robot, its room, the people, and the drivers."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ Setting = str | float | bool
 
 @dataclass(frozen=True)
 class RobotSetup:
-    """The beginning of the talk with the robot process, as JSON.
+    """The first message to the robot process, as JSON.
 
-    Names of profiles are as `load_robot` and the like take them. `drivers` (device -> settings
-    with their kind) and `cameras` (device -> source) go before those of the robot's profile.
-    `requests` is a source of requests (see `perception.requests.sources`), `corners` the table's
-    in its picture. `faces` are rows of features by person, of the kind `face_kind`. `pairing` is
-    what tablets are known by (see `drivers.chest_pairing`); without one they pair anew.
-    `courtesies` are what it says to those for whom it stands on its way (see `Courtesies`).
-    `record` is a file for the scans of a drive by hand; without a map, the pose is the wheels'.
+    Profiles are named as `load_robot` and similar functions take them. `drivers` (device ->
+    settings with their kind) and `cameras` (device -> source) override the robot's profile.
+    `requests` is a source of requests (see `perception.requests.sources`), `corners` are the
+    table's in its image. `faces` are feature vectors by person, of the kind `face_kind`. `pairing`
+    identifies tablets (see `drivers.chest_pairing`); without it they must pair again. `courtesies`
+    are sentences for people whom the robot waits for (see `Courtesies`). `record` is a file for the
+    scans of a manual drive; without a map, the pose is by odometry.
     """
 
     robot: str
@@ -46,15 +46,15 @@ class RobotSetup:
     record: str = ""
 
     def to_json(self) -> str:
-        """Write it as a line."""
+        """Return it as a JSON line."""
         return json.dumps(asdict(self))
 
     @classmethod
     def from_json(cls, line: str | bytes) -> RobotSetup:
-        """Read what `to_json` wrote.
+        """Read the output of `to_json`.
 
         Raises:
-            TangyError: it is no setup.
+            TangyError: the line is not a setup.
         """
         try:
             body: dict[str, Any] = json.loads(line)

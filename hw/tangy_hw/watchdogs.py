@@ -1,4 +1,4 @@
-"""Watchdogs (III-C): what each device says of itself, how old that is, and whether it may drive."""
+"""Watchdogs (III-C): state and age of each device's data, and whether the robot may drive."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from tangy_profiles.health import ERROR, OK, STALE, DeviceState, Health, Reading
 from tangy_profiles.robot import Robot
 
 Report = Callable[[], Reading]
-"""Gives the newest reading of a device."""
+"""Returns the newest reading of a device."""
 
 DRIVES_BY = ("link", "stop_button", "base", "laser", "localisation", "navigator")
-"""The devices that must be well for the robot to drive, as far as it has them."""
+"""Devices that must work for the robot to drive, as far as it has them."""
 
 DARK = 0.6
-"""Share of beams that end at once from which a laser scanner is covered (robot notes)."""
+"""Share of beams with a very short range from which a laser scanner is covered (robot notes)."""
 
 BLIND = 0.01
-"""Share of beams that change within a second below which a laser scanner sees nothing, or says the
-same again and again; what it measures varies even in a room where nothing moves."""
+"""Share of beams that change within a second below which a laser scanner sees nothing or repeats a
+scan; its noise changes ranges even in a static room."""
 
 
 class Watchdogs:
-    """The health of a robot: one report for each device of its profile."""
+    """Health of a robot: one report for each device of its profile."""
 
     def __init__(self, robot: Robot, reports: Mapping[str, Report]) -> None:
         """Watch a robot's devices.
 
         Args:
-            robot: whose devices they are.
-            reports: how each of them tells; a device without one is not there, so that nothing
-                can be wrong with it.
+            robot: the robot's profile.
+            reports: report of each device; a device without one does not exist, so nothing can be
+                wrong with it.
         """
         self._robot = robot
         self._reports = dict(reports)
@@ -41,18 +41,18 @@ class Watchdogs:
         return tuple(self._reading(name) for name in self._robot.devices)
 
     def fail(self, device: str, state: DeviceState = ERROR) -> None:
-        """Take a device for broken, whatever it says; "OK" takes that back."""
+        """Override the state of a device; OK removes the override."""
         if state == OK:
             self._silenced.pop(device, None)
         else:
             self._silenced[device] = state
 
     def ages(self) -> dict[str, float]:
-        """Return how old the data is by which the robot drives, in s."""
+        """Return the age, in s, of the data that driving depends on."""
         return {name: self._reading(name).age for name in DRIVES_BY if name in self._reports}
 
     def late(self) -> dict[str, float]:
-        """Return the age, in s, of the data by which the robot drives and that is too old."""
+        """Return the age, in s, of stale data that driving depends on."""
         return {
             name: reading.age
             for name in DRIVES_BY
@@ -60,7 +60,7 @@ class Watchdogs:
         }
 
     def hazard(self) -> str:
-        """Say why the robot must not drive now, "" if it may."""
+        """Return why the robot must not drive now, "" if it may."""
         for name in DRIVES_BY:
             if name not in self._reports:
                 continue
@@ -78,7 +78,7 @@ class Watchdogs:
         return ""
 
     def label(self, name: str) -> str:
-        """Return what a device is called."""
+        """Return the label of a device."""
         device = self._robot.devices.get(name)
         return name if device is None else device.label
 
@@ -94,6 +94,6 @@ class Watchdogs:
 
 
 def _measured(reading: Reading, fact: str, otherwise: float) -> float:
-    """Return what a device measures; what it is taken for where it does not tell that."""
+    """Return a fact of a device, or a default if it is missing."""
     value = reading.facts.get(fact, otherwise)
     return otherwise if isinstance(value, str) else float(value)

@@ -1,10 +1,10 @@
-"""The one supervisor of a child process: it is started, told, asked, timed, and ended.
+"""Supervises a child process: starts it, sends it requests, watches its life, and ends it.
 
-A child speaks JSON objects over its pipes, one a line; `tangy_profiles.worker_lines` is its side.
-What says {"bytes": n} is followed by so many bytes. Each child leads a session of its own, so that
-Ctrl+C in a terminal is not meant for it, and ends when its input closes, also where this process
-was killed. Anything here may be called from any thread, and only `stop` waits: one thread writes
-to the child, another reads.
+A child exchanges JSON lines over its pipes; `tangy_profiles.worker_lines` is its side. A message
+with {"bytes": n} is followed by n bytes. Each child leads its own session, so that Ctrl+C in a
+terminal does not reach it, and exits when its input closes, even if this process was killed. Any
+method may be called from any thread, and only `stop` blocks: one thread writes to the child,
+another reads.
 """
 
 from __future__ import annotations
@@ -31,21 +31,21 @@ from tangy_profiles.worker_log import open_log
 
 _LOG = logging.getLogger(__name__)
 
-MOST_BYTES = 1 << 28  # that follow a line: a picture of 9,000 x 9,000 pixels
-LINGERS_SECONDS = 2.0  # in which a child ends that has closed its output
-LAST_SECONDS = 1.0  # in which the end of a child that was killed is heard of
+MOST_BYTES = 1 << 28  # after a line: an image of 9,000 x 9,000 pixels
+LINGERS_SECONDS = 2.0  # for a child to exit after closing its output
+LAST_SECONDS = 1.0  # for the exit of a killed child
 FIRST = 0
-"""The id of the first word that a child says unasked, and of each later one without an id."""
+"""Id of the first unsolicited message of a child, and of later ones without an id."""
 
 Said = dict[str, Any]
 
 
 class WorkerError(TangyError):
-    """A child that cannot be started, or has ended; its text says how, in a few words."""
+    """A child cannot be started, or has ended; the text says how, in a few words."""
 
 
 def _nothing(*_: object) -> None:
-    """Take what nobody waits for."""
+    """Ignore the event."""
 
 
 def _itself(said: Said) -> Said:
@@ -53,7 +53,7 @@ def _itself(said: Said) -> Said:
 
 
 class WorkerProcess:
-    """A child that runs from the beginning on, until it ends or `stop` ends it."""
+    """A child process that runs until it ends or `stop` ends it."""
 
     def __init__(
         self,
@@ -72,35 +72,35 @@ class WorkerProcess:
         """Start a child.
 
         Args:
-            command: what to run.
-            hear: takes each thing it says, with the bytes after it, on the reader's thread or in
-                `loop`; returns True where that answers nothing.
-            ended: is told how it ended, as `WorkerError` is: "signal 9".
-            read: makes of an answer what `ask` gives, or raises what `ask` raises.
-            lost: makes of how it ended what `ask` raises when there is no answer any more.
-            log: takes what it writes to standard error; a log that cannot be written is no matter.
-            stderr: takes that where there is no log: nobody, or with None whoever takes ours.
-            longest: bytes of a line; what is longer cannot be read.
-            forgiving: leave out a line that cannot be read, in place of ending the child.
-            loop: where `hear` and `ended` are called.
+            command: the command line.
+            hear: called with each message and the bytes after it, on the reader's thread or in
+                `loop`; returns True if the message is not an answer.
+            ended: called with how it ended, as in `WorkerError`: "signal 9".
+            read: converts an answer to the result of `ask`, or raises its error.
+            lost: converts how it ended to the error of pending requests.
+            log: file for its standard error; a log that cannot be written is ignored.
+            stderr: destination of standard error without a log: DEVNULL, or None for ours.
+            longest: maximum bytes of a line.
+            forgiving: skip an invalid line, instead of ending the child.
+            loop: event loop in which `hear` and `ended` are called.
 
         Raises:
-            WorkerError: it cannot be started; its text is the system's.
+            WorkerError: it cannot be started; the text is the system's.
         """
         self.heard = 0.0
-        """When it spoke last (monotonic, s); 0 before its first word."""
+        """Time of its last message (monotonic, s); 0 before the first."""
         self.how = ""
-        """How it ended, "" as long as it has not."""
+        """How it ended, "" while it runs."""
         self.over: Future[str] = Future()
-        """Is done, with how it ended, when that was told everybody."""
-        self.over.set_running_or_notify_cancel()  # nobody who waits for the end can call it off
+        """Done, with how it ended, after all callbacks."""
+        self.over.set_running_or_notify_cancel()  # a waiting caller cannot cancel the end
         self._hear, self._ended, self._read, self._lost = hear, ended, read, lost
         self._longest, self._forgiving, self._loop = longest, forgiving, loop
         self._lock = threading.Lock()
         self._number = FIRST
         self.asked: dict[int, Future[Any]] = {}
         self.first = self._expect(FIRST)
-        """The answer of a child that says by itself when it is ready."""
+        """The first message of a child that reports when it is ready."""
         with ExitStack() as opened:
             if log is not None:
                 with suppress(OSError):
@@ -115,7 +115,7 @@ class WorkerProcess:
                 )
             except OSError as error:
                 raise WorkerError(error.strerror or str(error)) from None
-        assert self.process.stdin is not None  # noqa: S101 - it was asked for
+        assert self.process.stdin is not None  # noqa: S101 - it is a pipe
         self.outbox = WriteQueue(self.process.stdin)
         self.threads = [
             threading.Thread(target=work, daemon=True) for work in (self.outbox.run, self._listen)
@@ -125,27 +125,27 @@ class WorkerProcess:
 
     @property
     def pid(self) -> int | None:
-        """The id of its process, which is that of its group; None where it has ended."""
+        """Id of its process and process group; None if it has ended."""
         return self.process.pid if self.process.poll() is None else None
 
     # ------------------------------------------------------------------------- what it is told
 
     def tell(self, what: Mapping[str, Any] | str) -> Future[None] | None:
-        """Have a line written; the future is done when it is, or never can be.
+        """Queue a line; the future is done when it is written, or never will be.
 
         Returns:
-            None where it takes no more.
+            None if the queue is closed.
         """
         return self.outbox.put(what if isinstance(what, str) else json.dumps(what))
 
     def beat(self, what: Mapping[str, Any]) -> None:
-        """Have a line written that is worth nothing later: it is left out where others wait."""
+        """Send a line that is only useful now: it is dropped if others are queued."""
         self.outbox.beat(json.dumps(what))
 
     def expect(self) -> tuple[int, Future[Any]]:
-        """Return an id for what is told next, and what is done when that is answered.
+        """Return an id for the next request, and a future for its answer.
 
-        Whoever cancels the future is not answered any more.
+        A cancelled future gets no answer.
         """
         with self._lock:
             self._number += 1
@@ -161,30 +161,30 @@ class WorkerProcess:
         return answer
 
     def ask(self, what: Mapping[str, Any]) -> Future[Any]:
-        """Ask for something; the answer comes, or what `read` or `lost` makes of it is raised."""
+        """Send a request; return a future with the result of `read`, or the error of `lost`."""
         number, answer = self.expect()
-        if self.tell({"id": number, **what}) is None:  # it ends, and is not waited for
+        if self.tell({"id": number, **what}) is None:  # it has ended, or is ending
             _fail(answer, self._lost(self.how or "closed"))
         return answer
 
     # ------------------------------------------------------------------------- its end
 
     def close(self) -> None:
-        """Close its input when all is written, at which it ends by itself."""
+        """Close its input when all is written, at which it exits by itself."""
         self.outbox.close()
 
     def terminate(self) -> None:
-        """Ask it to end by a signal."""
+        """Send it SIGTERM."""
         self.process.terminate()
 
     def kill(self) -> None:
-        """Kill it, and all in its group."""
+        """Kill it and its process group."""
         if self.process.poll() is None:
             with suppress(ProcessLookupError):
                 os.killpg(self.process.pid, signal.SIGKILL)
 
     def stop(self, patience: float) -> None:
-        """Let it end by itself, and kill it where it has not in so many s."""
+        """Let it exit by itself, and kill it after so many s."""
         self.close()
         with suppress(TooLate):
             self.over.result(patience)
@@ -197,7 +197,7 @@ class WorkerProcess:
                 thread.join(LAST_SECONDS)
 
     async def stopped(self, patience: float) -> None:
-        """Do as `stop` does after so many s, in a loop; called off, it kills at once."""
+        """Do as `stop` does, in an event loop, within so many s; kill it at once if cancelled."""
         self.close()
         over = asyncio.wrap_future(self.over)
         try:
@@ -219,14 +219,14 @@ class WorkerProcess:
         self._post(self._tell_end)
 
     def _read_lines(self) -> None:
-        """Take what it says until it ends, closes its output, or says what cannot be read."""
-        assert self.process.stdout is not None  # noqa: S101 - it was asked for
+        """Read its messages until it ends, closes its output, or sends an invalid line."""
+        assert self.process.stdout is not None  # noqa: S101 - it is a pipe
         with self.process.stdout as out:
             while line := out.readline(self._longest):
                 said = _object(line)
                 if said is None and not self._forgiving:
                     return
-                while line and not line.endswith(b"\n"):  # the rest of one that is too long
+                while line and not line.endswith(b"\n"):  # the rest of a line that is too long
                     line = out.readline(self._longest)
                 if said is not None:
                     after = out.read(said.get("bytes", 0))
@@ -241,7 +241,7 @@ class WorkerProcess:
         if self._loop is None:
             do(*what)
         else:
-            with suppress(RuntimeError):  # the loop is closed: nobody listens any more
+            with suppress(RuntimeError):  # the loop is closed
                 self._loop.call_soon_threadsafe(do, *what)
 
     def _take(self, said: Said, after: bytes) -> None:
@@ -251,13 +251,13 @@ class WorkerProcess:
             if self._hear(said, after) or answer is None:
                 return
             done = self._read(said)
-        except Exception as error:  # whoever waits for an answer is told
+        except Exception as error:  # the waiting caller gets the error
             if answer is None:
                 _LOG.warning("what a process said cannot be taken: %r", error)
             else:
                 _fail(answer, error)
         else:
-            with suppress(InvalidStateError):  # nobody waits any more
+            with suppress(InvalidStateError):  # it was cancelled
                 answer.set_result(done)
 
     def _tell_end(self) -> None:
@@ -271,12 +271,12 @@ class WorkerProcess:
 
 
 def _fail(answer: Future[Any], error: Exception) -> None:
-    with suppress(InvalidStateError):  # nobody waits any more, or it was answered just now
+    with suppress(InvalidStateError):  # cancelled, or answered just now
         answer.set_exception(error)
 
 
 def _object(line: bytes) -> Said | None:
-    """Read a line as a JSON object; None where it is none, or so many bytes cannot follow it."""
+    """Parse a line as a JSON object; None if it is invalid, or its `bytes` are."""
     try:
         said = json.loads(line)
     except (ValueError, RecursionError):

@@ -1,7 +1,7 @@
-"""Lines to a process, written by a thread of its own, so that callers never block.
+"""Queue of lines to a process, written by its own thread, so that callers never block.
 
-A process that hangs reads nothing, and its pipe is full after a while. What is said then waits
-here, in order, and is written when it reads again.
+A process that hangs reads nothing, and its pipe fills up. Lines then wait here, in order, until it
+reads again.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from typing import IO
 
 
 class WriteQueue:
-    """The queue of one pipe; `run` writes it until `close`, or until the reader is gone."""
+    """Queue of one pipe; `run` writes it until `close`, or until the reader is gone."""
 
     def __init__(self, pipe: IO[bytes]) -> None:
-        """Take the pipe, which is closed at the end."""
+        """Set the pipe, which is closed at the end."""
         self._pipe = pipe
         self.lines: deque[tuple[str, Future[None]]] = deque()
         self._changed = threading.Condition()
@@ -28,7 +28,7 @@ class WriteQueue:
         """Queue a line.
 
         Returns:
-            What is done when it is written, or never will be; None where no more is written.
+            A future, done when the line is written or never will be; None if the queue is closed.
         """
         with self._changed:
             if self._over:
@@ -36,25 +36,25 @@ class WriteQueue:
             return self._append(line)
 
     def beat(self, line: str) -> None:
-        """Have a line written that is worth nothing later: it is left out where others wait."""
+        """Send a line that is only useful now: it is dropped if others are queued."""
         with self._changed:
             if not (self._over or self.lines or self.writing):
                 self._append(line)
 
     def close(self) -> None:
-        """Write what waits, and no more."""
+        """Write the queued lines, and accept no more."""
         with self._changed:
             self._over = True
             self._changed.notify()
 
     def run(self) -> None:
-        """Write until there is an end."""
+        """Write lines until the queue is closed and empty."""
         with suppress(OSError, ValueError), self._pipe as pipe:
             while (waits := self._next()) is not None:
                 line, written = waits
                 rest = memoryview(line.encode() + b"\n")
                 try:
-                    while rest:  # past its buffer, for whose lock the end of the program would wait
+                    while rest:  # bypasses its buffer, whose lock would delay the program's exit
                         rest = rest[os.write(pipe.fileno(), rest) :]
                 finally:
                     _done(written)

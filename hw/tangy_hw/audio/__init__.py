@@ -1,1 +1,1 @@
-"""Sound: sources that are heard, players, voices, and WAV files."""
+"""Audio: sources, players, speech synthesis, and WAV files."""

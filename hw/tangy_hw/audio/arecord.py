@@ -1,4 +1,4 @@
-"""The local microphone, through ALSA's recorder."""
+"""The local microphone, through ALSA's arecord."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from tangy_profiles.reading import plain
 
 RECORD = ("arecord", "-q", "-t", "raw", "-f", "S16_LE", "-r", str(RATE), "-c", "1")
 PIECE = 2 * RATE // 20  # bytes, 50 ms
-AGAIN_SECONDS = 1.5  # between two tries to record from a microphone that has gone
-LIST_SECONDS = 5.0  # for arecord to list what it can record from
+AGAIN_SECONDS = 1.5  # between two attempts to record from a missing microphone
+LIST_SECONDS = 5.0  # timeout of listing the devices
 DEVICES = Path("/dev/snd")
 REASONS = {"No such file or directory": "there is none", "No such device": "it is unplugged",
            "Device or resource busy": "another program uses it"}  # fmt: skip
-END_SECONDS = 2.0  # for arecord to end by itself when it has closed its output
+END_SECONDS = 2.0  # for arecord to exit after closing its output
 
 
 class LocalMicrophone(Source):
-    """A microphone by arecord; if it is unplugged, it waits for it."""
+    """A microphone recorded by arecord; if it is unplugged, recording waits for it."""
 
     def __init__(self, name: str, device: str = "", *, again: float = AGAIN_SECONDS) -> None:
         """Find the recorder.
 
         Args:
-            name: as it was given.
-            device: ALSA's name of the microphone, as `arecord -L` lists them; empty: the default.
-            again: seconds until a microphone that has gone is tried again.
+            name: name of the source, as given.
+            device: ALSA's name of the microphone, as in `arecord -L`; "": the default.
+            again: seconds until a missing microphone is tried again.
 
         Raises:
             SoundError: arecord is not installed.
@@ -62,7 +62,7 @@ class LocalMicrophone(Source):
             await asyncio.sleep(self._again)
 
     async def _recorded(self) -> Chunks:
-        """Record until the recorder ends, and keep why it did."""
+        """Record until the recorder exits, and store the reason."""
         try:
             process = await asyncio.create_subprocess_exec(
                 *self._command,
@@ -75,7 +75,7 @@ class LocalMicrophone(Source):
             self._why = f"arecord cannot be started ({error.strerror})"
             return
         sound, messages = process.stdout, process.stderr
-        assert sound is not None and messages is not None  # noqa: S101 - they were asked for
+        assert sound is not None and messages is not None  # noqa: S101 - both are pipes
         whole = WholeSamples()
         try:
             while chunk := await sound.read(PIECE):
@@ -88,15 +88,15 @@ class LocalMicrophone(Source):
             if process.returncode is None:
                 with contextlib.suppress(ProcessLookupError):
                     process.kill()
-            await process.communicate()  # wait() alone would wait for what nobody reads any more
+            await process.communicate()  # wait() alone would block on the unread pipes
 
 
 def list_microphones(program: str, devices: Path = DEVICES) -> list[str]:
-    """Return what the sound cards that can record are called.
+    """Return the names of the sound cards that can record.
 
     Args:
-        program: arecord.
-        devices: where the system keeps its sound devices.
+        program: path of arecord.
+        devices: folder of the system's sound devices.
 
     Raises:
         SoundError: arecord does not work, or this user may not use the sound cards.
@@ -121,7 +121,7 @@ def list_microphones(program: str, devices: Path = DEVICES) -> list[str]:
 
 
 def _reason(said: str) -> str:
-    """Say why arecord ended, from the last line of its messages."""
+    """Return why arecord exited, from the last line of its messages."""
     last = plain((said.strip().splitlines() or [""])[-1]).replace("\N{REPLACEMENT CHARACTER}", " ")
     last = re.sub(r"^arecord: \w+:\d+: ", "", last.strip().rstrip("."))
     known = (why for words, why in REASONS.items() if words in last)

@@ -1,4 +1,4 @@
-"""Recognise streams that should be raw 16-bit samples and obviously are something else."""
+"""Detects streams that are not the expected raw 16-bit samples."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ KINDS = {
     b"fLaC": "FLAC", b"OggS": "Ogg", b"ID3": "MP3", b"FORM": "AIFF", b".snd": "AU",
     b"caff": "CAF", b"RF64": "RF64", b"\x1aE\xdf\xa3": "WebM or Matroska",
 }  # fmt: skip
-AT_LEAST = 200  # bytes; in fewer, anything may look like anything
+AT_LEAST = 200  # bytes; fewer do not tell
 
 TEXT = frozenset((9, 10, 13, 27, *range(32, 127)))
 MIDDLE = frozenset(range(0x40, 0xC0))  # 8-bit silence is 0x80
@@ -15,10 +15,10 @@ SMALL = frozenset((0x00, 0x80, *range(0x20, 0x40), *range(0xA0, 0xC0)))  # float
 
 
 def odd_kind(head: bytes) -> str:
-    """Say in a sentence what the beginning of a stream is, or nothing if it may be samples.
+    """Return a sentence about the format of a stream's head, "" if it may be raw samples.
 
-    Real 16-bit sound comes near zero within a few hundred samples, from both sides, so its high
-    bytes are 0x00 and 0xFF; and its low bytes take every value.
+    Real 16-bit sound crosses zero within a few hundred samples, so its high bytes include 0x00 and
+    0xFF; its low bytes take every value.
     """
     for magic, kind in KINDS.items():
         if head.startswith(magic):

@@ -1,7 +1,7 @@
-"""Handing a laptop's microphone on to the program that listens at a socket.
+"""Forwards a laptop's microphone to the program that listens at a socket.
 
-Sound is never stored: what cannot be handed on at once is dropped, the oldest first, so that
-nobody is heard long after they spoke.
+Sound is never stored: if it cannot be sent at once, the oldest is dropped, so that nobody is heard
+long after they spoke.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ from tangy_hw.audio.socket_source import LISTENING, TAKEN
 from tangy_hw.audio.source import Source
 from tangy_hw.audio.wav import RATE, SoundError
 
-KEPT = 2 * RATE // 8  # bytes, an eighth of a second; what the socket holds is as much again
-SOCKET_HOLDS = 4_096  # bytes that the system is asked to hold at most
-PIECE = 2 * RATE // 50  # bytes, 20 ms; in larger ones the system holds more
-AGAIN_SECONDS = 0.3  # between two looks whether the program listens
-LAST_SECONDS = 1.0  # for the last sound to be taken
-PACE = 2 * RATE // 20  # bytes of a recording that are sent at once, 50 ms
+KEPT = 2 * RATE // 8  # bytes, 1/8 s; the socket's buffer holds as much again
+SOCKET_HOLDS = 4_096  # bytes of the requested socket buffer
+PIECE = 2 * RATE // 50  # bytes, 20 ms; larger writes make the system buffer more
+AGAIN_SECONDS = 0.3  # between two attempts to connect
+LAST_SECONDS = 1.0  # timeout for the last sound
+PACE = 2 * RATE // 20  # bytes of a recording sent at once, 50 ms
 
-SPEED_SECONDS = 4.0  # over which it is measured how fast sound comes
+SPEED_SECONDS = 4.0  # measurement window of the data rate
 TOO_FAST, TOO_SLOW = 1.4, 0.7  # of real time
 
 
 class TakenOver(SoundError):
-    """Another microphone has taken the place of this one."""
+    """Another microphone has replaced this one."""
 
 
 class Forwarder:
-    """Takes sound from a source and hands it on, whenever somebody listens at the socket."""
+    """Forwards sound from a source whenever a program listens at the socket."""
 
     def __init__(
         self,
@@ -47,18 +47,18 @@ class Forwarder:
         clock: Callable[[], float] = time.monotonic,
         again: float = AGAIN_SECONDS,
     ) -> None:
-        """Take a source that nobody listens to yet.
+        """Prepare to forward a source.
 
         Args:
-            source: is closed in the end.
-            path: of the socket.
-            tell: is called with a sentence when something has changed.
-            clock: gives seconds from any beginning.
-            again: seconds between two looks whether somebody listens.
+            source: the source, which is closed at the end.
+            path: path of the socket.
+            tell: called with a sentence about each change.
+            clock: returns a time in s.
+            again: seconds between two attempts to connect.
         """
         self.meter = Meter(clock)
         self.dropped = 0
-        """Bytes that came while somebody listened, but too slowly."""
+        """Bytes that a listener took too slowly."""
         self._source = source
         self._path = path
         self._tell = tell
@@ -72,15 +72,15 @@ class Forwarder:
 
     @property
     def connected(self) -> bool:
-        """Whether somebody takes the sound."""
+        """Whether a program takes the sound."""
         return self._connection.is_set()
 
     async def run(self) -> None:
-        """Hand sound on until there is no more.
+        """Forward sound until the source ends.
 
         Raises:
-            SoundError: the source cannot be used, the socket is somebody else's, or another
-                microphone has taken over (`TakenOver`).
+            SoundError: the source cannot be used, the socket belongs to another user, or another
+                microphone has replaced this one (`TakenOver`).
         """
         taking = asyncio.create_task(self._take())
         giving = asyncio.create_task(self._give())
@@ -105,7 +105,7 @@ class Forwarder:
                 if self._source.live:
                     self._keep(chunk)
                     continue
-                for place in range(0, len(chunk), PACE):  # as fast as it was spoken
+                for place in range(0, len(chunk), PACE):  # at the speed of speech
                     await self._connection.wait()
                     self._keep(chunk[place : place + PACE])
                     await asyncio.sleep(PACE / RATE / 2)
@@ -143,7 +143,7 @@ class Forwarder:
                 await asyncio.sleep(self._again)
 
     async def _connected(self) -> socket.socket:
-        """Connect, when somebody listens."""
+        """Connect once a program listens."""
         while (connection := connect(self._path)) is None:
             if not self._told_waiting:
                 self._tell("Tangy does not listen yet; start it with --mic socket. Waiting.")
@@ -153,13 +153,13 @@ class Forwarder:
         return connection
 
     async def _serve(self, connection: socket.socket) -> None:
-        """Hand sound on until the other side closes, or all is sent."""
+        """Forward sound until the other side closes, or all is sent."""
         watching = asyncio.create_task(self._watch(connection))
         sending = asyncio.create_task(self._send(connection))
         try:
             await asyncio.wait({watching, sending}, return_when=asyncio.FIRST_COMPLETED)
             if sending.done() and not sending.result():
-                await watching  # which knows why nothing can be sent any more
+                await watching  # it knows why nothing can be sent
             if watching.done():
                 watching.result()
         finally:
@@ -168,7 +168,7 @@ class Forwarder:
             await asyncio.wait({watching, sending})
 
     async def _watch(self, connection: socket.socket) -> None:
-        """Read what the other side says, until it closes."""
+        """Read messages of the other side until it closes."""
         loop = asyncio.get_running_loop()
         said = b""
         with contextlib.suppress(ConnectionError):
@@ -182,7 +182,7 @@ class Forwarder:
                         raise TakenOver("Another microphone has taken over; this one has ended.")
 
     async def _send(self, connection: socket.socket) -> bool:
-        """Send what waits, as it comes; False if it cannot be sent."""
+        """Send queued sound as it arrives; return False if it cannot be sent."""
         loop = asyncio.get_running_loop()
         while True:
             await self._arrived.wait()
@@ -197,7 +197,7 @@ class Forwarder:
 
 
 class _Speed:
-    """Notices sound that comes faster or slower than it can have been spoken, and says so once."""
+    """Detects sound that arrives faster or slower than real time, and reports it once."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
@@ -206,10 +206,10 @@ class _Speed:
         self._speeds: list[float] = []
 
     def odd(self, count: int) -> str:
-        """Count bytes; return a sentence when their speed is odd for the first time."""
+        """Count bytes; return a sentence when their rate is wrong for the first time."""
         now = self._clock()
         if self._since is None:
-            self._since = now  # what came until now has waited somewhere
+            self._since = now  # earlier data was buffered somewhere
             return ""
         self._bytes += count
         seconds = now - self._since
@@ -217,7 +217,7 @@ class _Speed:
             return ""
         self._speeds.append(self._bytes / seconds / (2 * RATE))
         self._since, self._bytes = now, 0
-        if len(self._speeds) != 3:  # the first may hold what was late; then two must agree
+        if len(self._speeds) != 3:  # the first may include buffered data; two must agree
             return ""
         low, high = sorted(self._speeds[1:])
         if low <= TOO_FAST and high >= TOO_SLOW:

@@ -1,4 +1,4 @@
-"""Measures loudness, and names its problem: no sound, too loud, too quiet."""
+"""Measures loudness, and names problems: no sound, too loud, too quiet."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from typing import Literal, TypeAlias
 from tangy_hw.audio.wav import RATE
 
 FLOOR = -60.0  # dB below full scale at which the bar is empty
-FALL = 1.5  # of the bar's length that it falls in a second; it rises at once
-PIECE = RATE // 50  # samples, 20 ms: the bar shows the loudest of these
+FALL = 1.5  # bar lengths per second by which it falls; it rises at once
+PIECE = RATE // 50  # samples, 20 ms: the bar shows the loudest piece
 
-RAILS = 32_700  # of 32,768; samples beyond are cut off, or nearly
-CLIPPED = 4  # of them in half a second are too many
+RAILS = 32_700  # of 32,768; larger samples are clipped, or nearly
+CLIPPED = 4  # number of them in half a second that is too many
 CLIPPED_SECONDS = 0.5
 
-NO_SOUND = 2.0  # root mean square of 16-bit samples; a microphone that is on hisses louder
+NO_SOUND = 2.0  # root mean square of 16-bit samples; a working microphone has more noise
 NO_SOUND_SECONDS = 2.0
-QUIET = 150.0  # the loudest 20 ms of a voice lie above it (-47 dB)
+QUIET = 150.0  # level that the loudest 20 ms of a voice exceed (-47 dB)
 QUIET_SECONDS = 2.0
-MEMORY_SECONDS = 3.0  # for how long the loudest is remembered
+MEMORY_SECONDS = 3.0  # for which the loudest level is remembered
 
 SoundFault: TypeAlias = Literal["nothing comes", "no sound", "too loud", "very quiet"]
-"""What can be wrong with a sound: no data come, or only silence, it is cut off, or it is faint."""
+"""Fault of a sound: no data arrive, only silence arrives, it is clipped, or it is faint."""
 
 
 @dataclass(frozen=True, slots=True)
 class SoundTrouble:
-    """A fault of a sound, and its duration in whole s (0: it began just now)."""
+    """A fault of a sound, and its duration in whole s (0: it has just begun)."""
 
     kind: SoundFault
     seconds: int = 0
@@ -43,15 +43,15 @@ class SoundTrouble:
 class Meter:
     """A level meter: a bar from 0 to 1, and the problem with the sound.
 
-    Give it every chunk of a live source as it comes; what the clock says between two chunks
-    counts. `begin` it when somebody starts to speak into it.
+    Call `feed` with every chunk of a live source on arrival; pauses between chunks count. Call
+    `begin` at the start of an utterance.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        """Begin to listen now.
+        """Start to measure.
 
         Args:
-            clock: gives seconds from any beginning.
+            clock: returns a time in s.
         """
         self._clock = clock
         self.begin()
@@ -65,8 +65,8 @@ class Meter:
         self._loudest: deque[tuple[float, float]] = deque()
 
     def feed(self, chunk: bytes) -> None:
-        """Take the next samples (16-bit little-endian, one channel)."""
-        samples = array("h", chunk[: len(chunk) // 2 * 2][-RATE:])  # at most the last half second
+        """Add the next samples (16-bit little-endian, one channel)."""
+        samples = array("h", chunk[: len(chunk) // 2 * 2][-RATE:])  # at most the last .5 s
         if not samples:
             return
         if sys.byteorder == "big":
@@ -86,35 +86,35 @@ class Meter:
 
     @property
     def level(self) -> float:
-        """How loud it is now on a scale of dB: 0 is silence, 1 as loud as can be."""
+        """Current loudness on a dB scale: 0 is silence, 1 full scale."""
         return max(0.0, self._shown - FALL * (self._clock() - self._shown_at))
 
     def loudest(self, seconds: float) -> float:
-        """How loud it was at most in the last seconds (3 are remembered), from 0 to 1."""
+        """Return the maximum loudness of the last s (at most 3), from 0 to 1."""
         since = self._clock() - seconds
         return _bar(max((loudness for at, loudness in self._loudest if at >= since), default=0.0))
 
     @property
     def clipping(self) -> bool:
-        """Whether the last half second was so loud that it was cut off."""
+        """Whether the last half second was clipped."""
         _forget(self._clipped, self._clock() - CLIPPED_SECONDS)
         return sum(count for _, count in self._clipped) >= CLIPPED
 
     @property
     def seconds_since_data(self) -> float:
-        """Seconds since anything came, be it silence."""
+        """Seconds since the last data, even silence."""
         return self._clock() - self._data_at
 
     @property
     def seconds_since_sound(self) -> float:
-        """Seconds since anything came that a microphone which is off would not send."""
+        """Seconds since the last sound above the noise of a muted microphone."""
         return self._clock() - self._sound_at
 
     def trouble(self, *, speaking: bool = True) -> SoundTrouble | None:
-        """Name the problem, if there is one.
+        """Return the current problem, if there is one.
 
         Args:
-            speaking: somebody is meant to be speaking; only then is a quiet room wrong.
+            speaking: whether somebody should be speaking; only then is quiet a problem.
         """
         if self.seconds_since_data >= NO_SOUND_SECONDS:
             return SoundTrouble("nothing comes", int(self.seconds_since_data))
@@ -133,7 +133,7 @@ class Meter:
 
 
 def _loudness(samples: array[int]) -> float:
-    """Return the root mean square, the mean (a bias of the device) taken out."""
+    """Return the root mean square without the mean (the device's offset)."""
     count = len(samples)
     mean = sum(samples) / count
     return math.sqrt(max(0.0, sum(map(mul, samples, samples)) / count - mean * mean))

@@ -1,7 +1,7 @@
-"""Numbers as a caller says them: slowly, with pauses, twice, the second time digit by digit.
+"""Words calls as a caller says them: slowly, with pauses, and repeated digit by digit.
 
-Fifteen and fifty sound alike in a room full of people; "one five" and "five zero" do not. What is
-on the screen stays as the activity writes it.
+Fifteen and fifty sound alike in a noisy room; "one five" and "five zero" do not. The text on the
+screen stays unchanged.
 """
 
 from __future__ import annotations
@@ -15,29 +15,27 @@ from xml.sax.saxutils import escape
 from tangy_profiles.activity import Activity
 from tangy_profiles.cards import Deck
 
-SLOWER = (
-    75  # per cent of the rate of the rest; the synthesiser goes no slower than 80 words a minute
-)
+SLOWER = 75  # % of the normal rate; the synthesiser goes no slower than 80 words a minute
 BEFORE, AFTER = 400, 600  # ms of pause before and after a call
-BETWEEN = "[ \u00a0\u2010\u2011-]?"  # what may stand between letter and number
+BETWEEN = "[ \u00a0\u2010\u2011-]?"  # separator between letter and number
 
 _UNSPEAKABLE = re.compile("[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff\ufffd]")
 
 
 @dataclass(frozen=True, slots=True)
 class SpokenPiece:
-    """A part of a text; a call is spoken slowly, with a pause before and after it."""
+    """Part of a text; a call is spoken slowly, with a pause before and after it."""
 
     text: str
     call: bool = False
 
 
 def as_called(text: str, deck: Deck | None) -> tuple[SpokenPiece, ...]:
-    """Split a text into plain parts and calls, worded as a caller says them.
+    """Split a text into plain pieces and calls, worded as a caller says them.
 
-    A call is a letter of the deck with a number of its column ("X 17", "X-17"). The first time in
-    a text it is said as one number, from then on digit by digit; one that stands there only once
-    is said twice.
+    A call is a letter of the deck with a number of its column ("X 17", "X-17"). Its first
+    occurrence in a text is spoken as one number, later ones digit by digit; a single occurrence is
+    spoken in both ways.
     """
     text = " ".join(_UNSPEAKABLE.sub(" ", text).split())
     if deck is None:
@@ -53,16 +51,16 @@ def in_words(pieces: tuple[SpokenPiece, ...]) -> str:
 
 
 def marked_up(pieces: tuple[SpokenPiece, ...]) -> str:
-    """Write the pieces for a synthesiser (SSML)."""
+    """Return the pieces as SSML for a synthesiser."""
     written: list[str] = []
     for place, piece in enumerate(pieces):
-        # Double brackets would be read as sounds, even within the mark-up.
+        # espeak-ng reads double brackets as phonemes, even within SSML.
         said = escape(piece.text.replace("[[", "[ ["))
         if piece.call:
             before = place > 0 and not pieces[place - 1].call
             after = place < len(pieces) - 1
-            # espeak-ng keeps to a pause before the slow part, and at the end within it; one that
-            # comes after it is cut short, and without one the rest is spoken slowly as well.
+            # espeak-ng respects a pause before the slow part, and one at the end inside it; a pause
+            # after it is cut short, and without one the rest is slow as well.
             said = (
                 f"{_pause(BEFORE) if before else ''}"
                 f'<prosody rate="{SLOWER}%">{said}{_pause(AFTER) if after else ""}</prosody>'
@@ -72,9 +70,9 @@ def marked_up(pieces: tuple[SpokenPiece, ...]) -> str:
 
 
 def calls(activity: Activity) -> tuple[str, ...]:
-    """Return every text that is known before a game: those in which nobody is spoken to by name.
+    """Return every text that is known before a game: those without a person's name.
 
-    Those come first that are said to everybody in the plain strategy: a game begins with them.
+    Those of the plain strategy come first, because a game begins with them.
     """
     plain_first = sorted(activity.strategies, key=lambda s: s != activity.plain_strategy)
     texts: list[str] = []
@@ -117,7 +115,7 @@ def _pieces(
 
 
 def _label(match: re.Match[str], deck: Deck) -> str:
-    """Return how the deck writes a call; "" if its column has no such number."""
+    """Return a call as the deck writes it; "" if its column has no such number."""
     number = int(match["number"])
     in_column = any(c.letter == match["letter"] and c.low <= number <= c.high for c in deck.columns)
     return deck.label(number) if in_column else ""

@@ -1,4 +1,4 @@
-"""Sound on standard input: raw samples or a WAV, from a pipe, a file or a laptop far away."""
+"""Sound on standard input: raw samples or a WAV, from a pipe, a file or a remote laptop."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ ENOUGH_TO_GUESS = 2_000  # bytes, 60 ms
 
 
 def open_standard_input(name: str, descriptor: int, *, convert: bool = True) -> Source:
-    """Open the sound on a file descriptor; a file is read at once, a pipe as it comes.
+    """Open the sound on a file descriptor; a file is read at once, a pipe as it arrives.
 
     Args:
-        name: what errors call it.
-        descriptor: is left open.
-        convert: also take a WAV of another rate or width from a pipe, when it is complete.
+        name: name of the source in errors.
+        descriptor: the file descriptor, which stays open.
+        convert: also accept a WAV of another format from a pipe, once it is complete.
 
     Raises:
-        SoundError: it is a terminal, closed, a folder, or a file that is no sound.
+        SoundError: it is a terminal, closed, a folder, or a file without sound.
     """
     try:
         kind = os.fstat(descriptor).st_mode
@@ -47,7 +47,7 @@ def open_standard_input(name: str, descriptor: int, *, convert: bool = True) -> 
 
 
 class Piped(Source):
-    """Sound from a pipe, as it comes."""
+    """Sound from a pipe, as it arrives."""
 
     def __init__(self, name: str, descriptor: int, *, convert: bool = True) -> None:
         super().__init__(name, live=True)
@@ -64,7 +64,7 @@ class Piped(Source):
                 yield whole.of(chunk)
 
     async def _head(self, chunks: Chunks) -> bytes:
-        """Read until it is known what comes, and return the first samples (or all, of a WAV)."""
+        """Read until the format is known; return the first samples (all samples of a WAV)."""
         head, other = b"", False
         async for chunk in chunks:
             head += chunk
@@ -86,7 +86,7 @@ class Piped(Source):
         return head
 
     def _told_of_other(self, form: Format) -> None:
-        """Say what a WAV of another kind means for somebody who speaks."""
+        """Report that a WAV of another format is only heard when it is complete."""
         found = f"{form.rate:,} samples a second, {form.channels} channels, {form.bits} bits"
         needed = "for a microphone record 16,000, 1 channel, 16 bits"
         if not self._convert:

@@ -1,4 +1,4 @@
-"""Where a WAV is heard: a program that plays it, in a process of its own, or nothing (`null`)."""
+"""Plays WAV files, with a program in a process of its own, or not at all (`null`)."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ PROGRAMS = {
     "paplay": ("paplay",),
     "afplay": ("afplay",),
 }
-"""The programs that play a WAV, and how they are called; the first that works is used."""
+"""Programs that play a WAV, with their options; the first that works is used."""
 
 SINKS = ("auto", *PROGRAMS, "null")
 ABSENT = "no program that plays sound is installed (aplay is in alsa-utils)"
-LATE = 10.0  # s that a player may take longer than its WAV: a device that is in use lets it wait
-END_SECONDS = 1.0  # for a player to be gone when it was killed: 2 ms when nothing else runs
-TRY_SECONDS = 5.0  # for a moment of silence to be played
+LATE = 10.0  # s that a player may exceed its WAV: it waits for a busy device
+END_SECONDS = 1.0  # for a killed player to exit: 2 ms on an idle machine
+TRY_SECONDS = 5.0  # timeout of the test with a moment of silence
 
-# The player ends with us, however we end: then our end of the pipe closes, and the shell that reads
-# from it kills the player. The shell waits for both, so that no dead process is left behind where
-# nobody else would (in a container).
+# The player ends with this process, however it ends: the other end of the pipe closes, and the
+# shell that reads from it kills the player. The shell waits for both, so that no zombie is left
+# where nobody reaps it (in a container).
 GUARDED = (
     "/bin/sh",
     "-c",
@@ -51,18 +51,18 @@ GUARDED = (
 
 
 class PlayerError(TangyError):
-    """No sound comes out; one sentence that says why."""
+    """No sound can be played; one sentence that says why."""
 
 
 class SoundPlayer(Protocol):
-    """Something on which a WAV is heard, one at a time."""
+    """Plays WAV files, one at a time."""
 
     @property
     def name(self) -> str:
         """Its name: the program, or `null`."""
 
     async def play(self, wav: Path) -> None:
-        """Play a WAV; return when it has been heard to its end, or was stopped.
+        """Play a WAV; return when it has ended, or was stopped.
 
         Raises:
             PlayerError: no sound comes out.
@@ -73,13 +73,13 @@ class SoundPlayer(Protocol):
 
 
 class ProgramPlayer:
-    """Plays with the first of some programs that works; one that failed is not tried again."""
+    """Plays with the first of several programs that works; a failed one is not retried."""
 
     def __init__(self, commands: Sequence[Sequence[str]], *, late: float = LATE) -> None:
-        """Take the commands, to which the path of a WAV is added; `late` is in s.
+        """Set the commands, to which the path of a WAV is added; `late` is in s.
 
         Raises:
-            PlayerError: there is none.
+            PlayerError: there are no commands.
         """
         if not commands:
             raise PlayerError(f"{ABSENT[0].upper()}{ABSENT[1:]}.")
@@ -90,14 +90,14 @@ class ProgramPlayer:
 
     @property
     def name(self) -> str:
-        """The program that plays."""
+        """The current program."""
         return Path(self._commands[0][0]).name
 
     async def play(self, wav: Path) -> None:
-        """Play a WAV; return when it has been heard to its end, or was stopped.
+        """Play a WAV; return when it has ended, or was stopped.
 
         Raises:
-            PlayerError: every program failed, or played for ten seconds too long.
+            PlayerError: every program failed, or exceeded the WAV's length by ten seconds.
         """
         while problem := await self._play(wav):
             if len(self._commands) == 1:
@@ -110,10 +110,10 @@ class ProgramPlayer:
         self._let_go()
 
     async def _play(self, wav: Path) -> str:
-        """Play a WAV with the first program; return what went wrong ("": nothing).
+        """Play a WAV with the first program; return the problem ("": none).
 
-        Who waits for it may give up, but not in the middle of the start of a process: asyncio
-        would then wait for ever for its pipes.
+        The caller may be cancelled, but not during the start of a process: asyncio would then wait
+        forever for its pipes.
         """
         self._stopped = False
         running = asyncio.create_task(self._run(wav))
@@ -132,7 +132,7 @@ class ProgramPlayer:
             process = await asyncio.create_subprocess_exec(
                 *GUARDED,
                 *self._commands[0],
-                str(wav.absolute()),  # noqa: ASYNC240 - it touches no disk
+                str(wav.absolute()),  # noqa: ASYNC240 - touches no disk
                 stdin=reading,
                 stdout=asyncio.subprocess.DEVNULL,
                 stderr=asyncio.subprocess.PIPE,
@@ -162,7 +162,7 @@ class ProgramPlayer:
 
 
 class NullPlayer:
-    """Plays nothing, but takes as long as the sound would, on a clock that can be driven."""
+    """Plays nothing, but takes as long as the sound, on any clock."""
 
     name = "null"
 
@@ -171,7 +171,7 @@ class NullPlayer:
         self._playing: asyncio.Future[None] | None = None
 
     async def play(self, wav: Path) -> None:
-        """Wait for as long as a WAV is; return early when it is stopped."""
+        """Wait for the duration of a WAV, or until it is stopped."""
         self._playing = asyncio.ensure_future(self._sleep(wav_seconds(wav)))
         try:
             await asyncio.wait({self._playing})
@@ -179,7 +179,7 @@ class NullPlayer:
             self._playing.cancel()
 
     def stop(self) -> None:
-        """Wait no longer."""
+        """End the wait."""
         if self._playing is not None:
             self._playing.cancel()
 
@@ -203,10 +203,10 @@ def open_player(
 
 
 def examine_output(which: Callable[[str], str | None] = shutil.which) -> tuple[str, str]:
-    """Try, with a moment of silence, whether anything could be heard here.
+    """Test with a moment of silence whether sound can be played.
 
     Returns:
-        The player's program, and the problem if there is none; one of them is "".
+        The program, and the problem if none works; one of them is "".
     """
     problem = ABSENT
     for program, *options in _installed(which):
@@ -217,7 +217,7 @@ def examine_output(which: Callable[[str], str | None] = shutil.which) -> tuple[s
 
 
 async def _let_end(process: asyncio.subprocess.Process) -> None:
-    """Wait for a player that was let go of; kill all of its group if it does not end."""
+    """Wait for a released player; kill its process group if it does not exit."""
     try:
         await asyncio.wait_for(process.wait(), END_SECONDS)
     except TimeoutError:
@@ -257,6 +257,6 @@ def _installed(which: Callable[[str], str | None], *names: str) -> list[tuple[st
 
 
 def _last_line(said: bytes) -> str:
-    """Return what a program said last, without the place in its code where it said so."""
+    """Return a program's last message, without the location in its code."""
     lines = [line for line in said.decode(errors="replace").splitlines() if line.strip()]
     return plain(re.sub(r"^\w+: main:\d+: ", "", lines[-1])).strip(" .")[-120:] if lines else ""

@@ -1,8 +1,7 @@
-"""A unix socket that only its owner reaches: made whole, never two at one place, found by a path.
+"""A unix socket that only its owner can reach, at most one per path.
 
-It is bound in a folder that nobody else can enter and given its mode there, and only then moved to
-its place. A lock beside it, which dies with its holder, tells a socket that somebody listens at
-from one that was left behind.
+It is bound and given its mode in a folder that nobody else can enter, and only then moved to its
+path. A lock file, released when its holder dies, distinguishes a socket in use from a stale one.
 """
 
 from __future__ import annotations
@@ -22,25 +21,25 @@ from pathlib import Path
 from tangy_hw.audio.wav import SoundError
 from tangy_profiles.reading import plain
 
-LONGEST_ADDRESS = 103  # bytes, which every system takes; Linux takes 107
-HALF_OPEN = 8  # connections that may wait until they are looked at
+LONGEST_ADDRESS = 103  # bytes that every system supports; Linux supports 107
+HALF_OPEN = 8  # backlog of pending connections
 
 
 class Place:
     """A socket that listens at a path until it is closed."""
 
     def __init__(self, path: Path) -> None:
-        """Listen at a path; a socket that nobody listens at any more is replaced.
+        """Listen at a path; a stale socket is replaced.
 
         Raises:
-            SoundError: somebody listens there, or nobody can.
+            SoundError: another program listens there, or it is impossible.
         """
         self.path = path.absolute()
         try:
             self._lock = _locked(self._beside)
             try:
                 with _address(self.path):
-                    pass  # for clients; a path that is too long is refused here
+                    pass  # for clients: refuse a path that is too long
                 _clear(self.path)
                 self.socket = _bound(self.path)
                 self._made = self.path.lstat()
@@ -56,7 +55,7 @@ class Place:
         return self.path.with_name(self.path.name + ".lock")
 
     def close(self) -> None:
-        """Listen no more, and remove the socket."""
+        """Stop listening, and remove the socket."""
         self.socket.close()
         with contextlib.suppress(OSError):
             if os.path.samestat(self.path.lstat(), self._made):
@@ -75,7 +74,7 @@ def connect(path: Path) -> socket.socket | None:
     """Connect to the listener at a path; None if there is none.
 
     Raises:
-        SoundError: it is somebody else's, or no socket.
+        SoundError: it belongs to another user, or is not a socket.
     """
     path = path.absolute()
     connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -106,9 +105,9 @@ def connect(path: Path) -> socket.socket | None:
 
 
 def same_user(connection: socket.socket) -> bool:
-    """Say whether the other end is this user's or the administrator's.
+    """Return whether the peer belongs to this user or root.
 
-    Where the system does not tell, the mode of the socket has decided already.
+    On systems without peer credentials, the mode of the socket has to suffice.
     """
     if sys.platform != "linux":
         return True
@@ -120,7 +119,7 @@ def same_user(connection: socket.socket) -> bool:
 
 
 def _locked(path: Path) -> int:
-    """Take the lock, and return the file descriptor that holds it."""
+    """Acquire the lock, and return the file descriptor that holds it."""
     while True:
         lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600)
         try:
@@ -138,7 +137,7 @@ def _locked(path: Path) -> int:
 
 
 def _clear(path: Path) -> None:
-    """Refuse a path at which something else is; a socket that was left behind may be replaced."""
+    """Reject a path in use; a stale socket may be replaced."""
     try:
         kind = path.lstat().st_mode
     except FileNotFoundError:
@@ -158,7 +157,7 @@ def _clear(path: Path) -> None:
 
 
 def _bound(path: Path) -> socket.socket:
-    """Make the socket where nobody else can reach it, then move it to its place."""
+    """Create the socket where nobody else can reach it, then move it to its path."""
     listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     apart = Path(tempfile.mkdtemp(prefix=".mic-", dir=path.parent))  # 0700
     made = apart / "s"
@@ -182,7 +181,7 @@ def _bound(path: Path) -> socket.socket:
 
 @contextmanager
 def _address(path: Path) -> Iterator[str]:
-    """Give an address for a path: a socket's is short, so a long folder goes by its number."""
+    """Yield a socket address for a path; a long folder is replaced by its descriptor in /proc."""
     if len(os.fsencode(path)) <= LONGEST_ADDRESS:
         yield str(path)
         return

@@ -1,8 +1,7 @@
-"""A laptop's microphone, far away: what `tangy mic` hands on, through a unix socket.
+"""A remote laptop's microphone, which `tangy mic` forwards through a unix socket.
 
-Each client receives a line when its sound is taken. The newest connection counts: a lost link
-leaves an older one open that is silent. What arrives is raw
-samples and nothing else.
+Each client receives a line when its sound is accepted. The newest connection replaces the current
+one, because a lost link leaves a silent connection open. Clients send raw samples and nothing else.
 """
 
 from __future__ import annotations
@@ -17,21 +16,21 @@ from tangy_hw.audio.source import Chunks, Source, WholeSamples
 from tangy_hw.audio.wav import SoundError
 from tangy_profiles.reading import plain
 
-LISTENING = b"listening\n"  # sent to a client when its sound is taken
-TAKEN = b"taken\n"  # and when another replaces it
+LISTENING = b"listening\n"  # sent to a client when its sound is accepted
+TAKEN = b"taken\n"  # and when another client replaces it
 PIECE = 3_200  # bytes, 100 ms
 QUIET = 10  # pieces
-AFTER_ERROR = 1.0  # s until the next try when a connection cannot be accepted
+AFTER_ERROR = 1.0  # s until the next attempt after a failed accept
 
 
 class LaptopMicrophone(Source):
-    """Listens at a socket, to one stream at a time; when that ends, to the next."""
+    """Listens at a socket to one stream at a time."""
 
     def __init__(self, name: str, path: Path) -> None:
-        """Listen at a path; its folder is made if need be.
+        """Listen at a path; its folder is created if necessary.
 
         Raises:
-            SoundError: another Tangy listens there, or nobody can.
+            SoundError: another Tangy listens there, or it is impossible.
         """
         super().__init__(name, live=True)
         try:
@@ -46,7 +45,7 @@ class LaptopMicrophone(Source):
 
     @property
     def path(self) -> Path:
-        """Where it listens."""
+        """Path of the socket."""
         return self._place.path
 
     async def _sound(self) -> Chunks:
@@ -67,7 +66,7 @@ class LaptopMicrophone(Source):
                     self.tell("The laptop's microphone has gone; waiting for it to come back.")
                 else:
                     self.tell("Another microphone has connected, and takes the place of this one.")
-                for _ in range(QUIET):  # what was said last ends with the connection
+                for _ in range(QUIET):  # silence ends the last utterance
                     yield bytes(PIECE)
         finally:
             accepting.cancel()
@@ -80,7 +79,7 @@ class LaptopMicrophone(Source):
         self._place.close()
 
     async def _stream(self, connection: socket.socket) -> Chunks:
-        """Give what one connection sends, until it ends or another takes its place."""
+        """Yield the data of one connection, until it ends or is replaced."""
         loop = asyncio.get_running_loop()
         whole = WholeSamples()
         self._heard = connection
@@ -98,7 +97,7 @@ class LaptopMicrophone(Source):
         while True:
             try:
                 connection, _ = await loop.sock_accept(self._place.socket)
-            except OSError:  # too many files are open
+            except OSError:  # too many open files
                 await asyncio.sleep(AFTER_ERROR)
                 continue
             if not same_user(connection):
@@ -117,7 +116,7 @@ class LaptopMicrophone(Source):
 
 
 def _dismiss(connection: socket.socket) -> None:
-    """End a stream; its reader reads on to the end."""
+    """End a stream; its reader reads to the end."""
     with contextlib.suppress(OSError):
         connection.send(TAKEN)
     with contextlib.suppress(OSError):

@@ -1,7 +1,7 @@
-"""The interface of a sound source.
+"""Interface of a sound source.
 
-Sound is 16-bit little-endian samples, 16,000 a second, one channel: what the acoustic model of
-III-A-1 was trained on.
+Sound is 16-bit little-endian samples, 16,000 a second, one channel, as in the training data of the
+acoustic model (III-A-1).
 """
 
 from __future__ import annotations
@@ -13,29 +13,29 @@ from collections.abc import AsyncGenerator, AsyncIterator, Callable
 Chunks = AsyncGenerator[bytes, None]
 
 BYTES_PER_SECOND = 2 * 16_000
-SPOKEN_PIECE = BYTES_PER_SECOND // 20  # bytes; 50 ms, as a microphone hands them on
+SPOKEN_PIECE = BYTES_PER_SECOND // 20  # bytes; 50 ms, as from a microphone
 
 
 def _nobody(sentence: str) -> None:
-    """Tell nobody."""
+    """Ignore the sentence."""
 
 
 class Source:
-    """Chunks of sound, of any even size: `async for chunk in source`. Close it in the end.
+    """Chunks of sound, of any even size: `async for chunk in source`; close it at the end.
 
-    It listens from the first chunk that is asked for until it is closed. A recording comes in one
-    chunk; live sound arrives as it is spoken, and is buffered for the consumer.
+    It records from the first requested chunk until it is closed. A recording is one chunk; live
+    sound arrives as it is spoken, and waits for the consumer.
     """
 
     def __init__(self, name: str, *, live: bool) -> None:
         self.name = name
-        """As it was given: FILE.wav, -, arecord, socket."""
+        """As given: FILE.wav, -, arecord, socket."""
         self.live = live
-        """Whether somebody is speaking now, rather than on a recording."""
+        """Whether chunks arrive at the speed of speech, rather than all at once."""
         self.recorded = not live
-        """Whether it was spoken at another time."""
+        """Whether the sound was recorded earlier."""
         self.tell: Callable[[str], None] = _nobody
-        """Is called with a sentence when something must be said about the source."""
+        """Called with a sentence about each change of the source."""
         self._taken: asyncio.Queue[bytes] = asyncio.Queue(1)
         self._task: asyncio.Task[None] | None = None
         self._error: BaseException | None = None
@@ -48,7 +48,7 @@ class Source:
         """Return the next chunk.
 
         Raises:
-            SoundError: once, when it cannot go on.
+            SoundError: once, if the source cannot go on.
         """
         if self._task is None and not self._closed:
             self._task = asyncio.create_task(self._listen())
@@ -65,7 +65,7 @@ class Source:
         raise StopAsyncIteration
 
     async def close(self) -> None:
-        """Stop listening for good, and end the recorder; a waiting consumer gets no chunk."""
+        """Stop for good, and end the recorder; a waiting consumer gets no chunk."""
         self._closed = True
         if self._task is not None:
             self._task.cancel()
@@ -73,10 +73,10 @@ class Source:
         self._release()
 
     def begin(self) -> None:
-        """Begin to speak, where that is waited for: nowhere but with a recording."""
+        """Start to speak; only `SpokenRecording` waits for this."""
 
     def _sound(self) -> Chunks:
-        """Give the sound; each kind of source does it in its own way."""
+        """Yield the sound; implemented by each kind of source."""
         raise NotImplementedError
 
     def _release(self) -> None:
@@ -95,14 +95,14 @@ class Source:
 
 
 class Recording(Source):
-    """Sound that is there already, as a whole."""
+    """A recording as a whole."""
 
     def __init__(self, name: str, pcm: bytes) -> None:
         super().__init__(name, live=False)
         self._pcm = pcm
 
     def spoken(self) -> SpokenRecording:
-        """Return it as somebody would say it now."""
+        """Return it as a source at the speed of speech."""
         return SpokenRecording(self.name, self._pcm)
 
     async def _sound(self) -> Chunks:
@@ -110,7 +110,7 @@ class Recording(Source):
 
 
 class SpokenRecording(Source):
-    """A recording that comes as fast as it was spoken, once it is begun."""
+    """A recording at the speed of speech, from `begin` on."""
 
     def __init__(self, name: str, pcm: bytes) -> None:
         super().__init__(name, live=True)
@@ -119,7 +119,7 @@ class SpokenRecording(Source):
         self._begun = asyncio.Event()
 
     def begin(self) -> None:
-        """Begin to speak."""
+        """Start to speak."""
         self._begun.set()
 
     async def _sound(self) -> Chunks:
@@ -133,13 +133,13 @@ class SpokenRecording(Source):
 
 
 class WholeSamples:
-    """Joins what arrives in pieces of any size to pieces of whole samples."""
+    """Joins chunks of any size to chunks of whole samples."""
 
     def __init__(self) -> None:
         self._rest = b""
 
     def of(self, chunk: bytes) -> bytes:
-        """Return the samples that this piece completes."""
+        """Return the samples that this chunk completes."""
         if not self._rest and len(chunk) % 2 == 0:
             return chunk
         chunk = self._rest + chunk

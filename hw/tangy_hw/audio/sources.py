@@ -1,11 +1,11 @@
-"""Where a teacher's voice comes from, by name.
+"""Opens sources of a teacher's voice by name.
 
     FILE.wav          a recording
     -                 standard input, raw samples or a WAV
-    arecord           the local microphone; arecord:DEVICE for one of several
-    socket            a laptop's microphone, handed on by `tangy mic`; socket:PATH for another place
+    arecord           the local microphone; arecord:DEVICE if there are several
+    socket            a laptop's microphone, forwarded by `tangy mic`; socket:PATH for another path
 
-With `-` the keys must come from elsewhere: see `tangy_tui.console.inputs`.
+With `-` keys must come from elsewhere: see `tangy_tui.console.inputs`.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ def open_source(
 
     Args:
         name: one of those above.
-        stdin: the file descriptor that `-` stands for.
-        folder: the data folder, which `socket` is in.
-        spoken: a recording comes as if somebody said it now (see `Recording.spoken`).
+        stdin: the file descriptor of `-`.
+        folder: the data folder, which contains `socket`.
+        spoken: play a recording at the speed of speech (see `Recording.spoken`).
 
     Raises:
         SoundError: it cannot be used; one sentence that says why.

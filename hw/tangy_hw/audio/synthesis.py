@@ -1,4 +1,4 @@
-"""From a text to a WAV: espeak-ng in a process of its own, and a cache of what it made before."""
+"""Synthesises text as WAV files with espeak-ng, and caches them."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from tangy_profiles.reading import nearest, plain
 from tangy_profiles.voice import VoicePreference
 
 PROGRAM = "espeak-ng"
-USUAL = VoicePreference(rate=140, voice="en-us")  # espeak-ng itself would speak at 175
+USUAL = VoicePreference(rate=140, voice="en-us")  # espeak-ng's default is 175
 ABSENT = f"{PROGRAM} is not installed; until it is, what Tangy says is shown as text."
-SECONDS = 10.0  # for a line: 15 ms when nothing else runs
-LONGEST = 5_000  # characters of a text with its mark-up: some five minutes
-MOST_BYTES = 200_000_000  # of the cache; the oldest go first
-UNFINISHED_SECONDS = 60.0  # after which a file that is not finished was left behind
-HEADER = 44  # bytes before the samples of a WAV as this room writes it
+SECONDS = 10.0  # timeout for a text: 15 ms on an idle machine
+LONGEST = 5_000  # characters of SSML: some five minutes
+MOST_BYTES = 200_000_000  # of the cache; the oldest files are deleted first
+UNFINISHED_SECONDS = 60.0  # after which an unfinished file is abandoned
+HEADER = 44  # bytes before the samples of a WAV as written here
 
 
 class VoiceError(TangyError):
@@ -37,13 +37,13 @@ class VoiceError(TangyError):
 
 
 class NoSuchVoice(VoiceError):
-    """A voice that is not there was asked for; says which is nearest."""
+    """The requested voice does not exist; the message names the nearest."""
 
 
 class Synthesiser:
     """Synthesises texts as WAV files, or finds them in its cache.
 
-    Its methods wait for a process, and may be called from several threads at once.
+    Methods block on a process, and may be called from several threads at once.
     """
 
     def __init__(
@@ -54,19 +54,19 @@ class Synthesiser:
         most_bytes: int = MOST_BYTES,
         seconds: float = SECONDS,
     ) -> None:
-        """Look for espeak-ng; nothing is started yet.
+        """Find espeak-ng, without starting it.
 
         Args:
-            folder: where the WAV files are kept; the user's cache folder if not given.
+            folder: cache for the WAV files; None: the user's cache folder.
             which: finds a program on the path.
-            most_bytes: how large the folder may grow.
-            seconds: after which a line is given up.
+            most_bytes: maximum size of the cache.
+            seconds: timeout for a text.
         """
         self.folder = folder or cache_folder()
         self._program = which(PROGRAM)
         self._most = most_bytes
         self._seconds = seconds
-        self._asking = threading.Lock()  # held while a fact is asked of espeak-ng
+        self._asking = threading.Lock()  # held during queries to espeak-ng
         self._lock = threading.Lock()  # held for moments only
         self._version: str | None = None
         self._voices: Mapping[str, str] | None = None
@@ -76,12 +76,12 @@ class Synthesiser:
 
     @property
     def reason(self) -> str:
-        """Why nothing can be spoken here, in one sentence; "" if it can."""
+        """Why nothing can be spoken, in one sentence; "" if it can."""
         return "" if self._program else ABSENT
 
     @property
     def version(self) -> str:
-        """The version of espeak-ng.
+        """Version of espeak-ng.
 
         Raises:
             VoiceError: it is not installed, or cannot be run.
@@ -95,7 +95,7 @@ class Synthesiser:
 
     @property
     def voices(self) -> Mapping[str, str]:
-        """The voices there are: for each name, whose language it is.
+        """Available voices: language by name.
 
         Raises:
             VoiceError: as for `version`.
@@ -107,7 +107,7 @@ class Synthesiser:
 
     @property
     def variants(self) -> frozenset[str]:
-        """Variants that can follow every voice after a plus: other speakers.
+        """Variants (other speakers) that can follow every voice after a plus.
 
         Raises:
             VoiceError: as for `version`.
@@ -119,10 +119,10 @@ class Synthesiser:
             return self._variants
 
     def check(self, preference: VoicePreference) -> None:
-        """Check that a voice is there; espeak-ng itself passes over a variant it does not have.
+        """Check that a voice exists; espeak-ng itself ignores an unknown variant.
 
         Raises:
-            NoSuchVoice: there is no such voice; says which is nearest.
+            NoSuchVoice: there is no such voice; the message names the nearest.
             VoiceError: as for `version`.
         """
         name, _, variant = (preference.voice or "").partition("+")
@@ -134,11 +134,11 @@ class Synthesiser:
             raise NoSuchVoice(f"No voice has a variant {variant!r}: {near}{listed}")
 
     def render(self, marked_up: str, preference: VoicePreference = USUAL) -> Path:
-        """Return a WAV of a text that was marked up, made now or before.
+        """Return a WAV of an SSML text, from the cache or new.
 
         Raises:
-            VoiceError: espeak-ng is absent or fails, there is no such voice, or nothing can be
-                kept in the folder.
+            VoiceError: espeak-ng is missing or fails, there is no such voice, or the cache cannot
+                be written.
         """
         chosen = preference.over(USUAL)
         path = self.folder / f"{self._key(marked_up, chosen)}.wav"
@@ -161,10 +161,10 @@ class Synthesiser:
                 _kill(process)
 
     def clear(self) -> int:
-        """Forget every WAV, for names were spoken in them, and return how many there were.
+        """Delete every WAV, because they may contain names, and return their number.
 
         Raises:
-            VoiceError: one of them cannot be deleted.
+            VoiceError: a file cannot be deleted.
         """
         count = 0
         try:
@@ -188,7 +188,7 @@ class Synthesiser:
         if self._program is None:
             raise VoiceError(ABSENT)
         try:
-            with self._lock:  # so that `end` finds it from its first moment on
+            with self._lock:  # so that `end` finds it from the start
                 process = subprocess.Popen(  # noqa: S603 - found on the path; text goes to its stdin
                     [self._program, *arguments],
                     stdin=subprocess.PIPE,
@@ -214,14 +214,14 @@ class Synthesiser:
         return made
 
     def _keep(self, path: Path, content: bytes) -> None:
-        """Write a file so that it is there as a whole or not at all, and drop the oldest."""
+        """Write a file atomically, and delete the oldest."""
         try:
             self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             descriptor, unfinished = tempfile.mkstemp(".tmp", dir=self.folder)
             try:
                 with os.fdopen(descriptor, "wb") as file:
                     file.write(content)
-                os.replace(unfinished, path)  # noqa: PTH105 - the one call that swaps a file
+                os.replace(unfinished, path)  # noqa: PTH105 - replaces a file atomically
             except BaseException:
                 Path(unfinished).unlink(missing_ok=True)
                 raise
@@ -238,7 +238,7 @@ class Synthesiser:
                 self._bytes = self._trim(path)
 
     def _trim(self, newest: Path) -> int:
-        """Delete the oldest files until a tenth of the space is free; return the rest in bytes."""
+        """Delete the oldest files until a tenth of the space is free; return the bytes left."""
         kept = sorted(self._kept(), key=lambda entry: entry[2])
         left = sum(size for _, size, _ in kept)
         for path, size, _ in kept:
@@ -250,9 +250,9 @@ class Synthesiser:
         return left
 
     def _kept(self) -> list[tuple[Path, int, float]]:
-        """List the files in the folder, with bytes and time; another process may drop some.
+        """Return the cached files, with bytes and time; another process may delete some.
 
-        An unfinished one counts when nobody can be writing it any more.
+        Unfinished files count once they are abandoned.
         """
         kept: list[tuple[Path, int, float]] = []
         for path in (*self.folder.glob("*.wav"), *self.folder.glob("*.tmp")):
@@ -264,14 +264,14 @@ class Synthesiser:
 
 
 def cache_folder() -> Path:
-    """Return the folder of the user's cache in which spoken texts are kept."""
+    """Return the cache folder for spoken texts."""
     from platformdirs import user_cache_path
 
     return user_cache_path("tangy", appauthor=False) / "voice"
 
 
 def clear_cache() -> None:
-    """Empty the cache of spoken texts, if there is one: they may hold the names of people."""
+    """Empty the cache of spoken texts, if there is one: they may contain people's names."""
     folder = cache_folder()
     with contextlib.suppress(OSError, VoiceError):
         if folder.is_dir():
@@ -279,11 +279,11 @@ def clear_cache() -> None:
 
 
 def examine_voice(which: Callable[[str], str | None] = shutil.which) -> tuple[str, str]:
-    """Try whether a word can be spoken here; nothing is played, and nothing kept.
+    """Test whether a word can be synthesised, without playing or storing it.
 
     Returns:
-        The program with its version ("" if it is not installed), and its problem
-        ("" if there is none).
+        The program with its version ("" if it is not installed), and its problem ("" if there is
+        none).
     """
     with tempfile.TemporaryDirectory() as folder:
         synthesiser = Synthesiser(Path(folder), which=which)
@@ -299,7 +299,7 @@ def examine_voice(which: Callable[[str], str | None] = shutil.which) -> tuple[st
 
 
 def _mended(made: bytes) -> bytes:
-    """Write the true length into a WAV from a pipe, in which it could not be known."""
+    """Write the true length into a WAV from a pipe, which lacks it."""
     mended = io.BytesIO()
     try:
         with wave.open(io.BytesIO(made)) as source, wave.open(mended, "wb") as target:
@@ -314,7 +314,7 @@ def _mended(made: bytes) -> bytes:
 
 
 def _is_whole(path: Path) -> bool:
-    """Say whether a file is a WAV of this room, with all its samples."""
+    """Return whether a file is a complete WAV as written here."""
     try:
         with path.open("rb") as file:
             head = file.read(HEADER)
@@ -327,9 +327,9 @@ def _is_whole(path: Path) -> bool:
 
 
 def _read_voices(listed: bytes) -> dict[str, str]:
-    """Read a list of voices: by language, and by the wider languages that a voice stands for.
+    """Parse a list of voices: by language, and by the wider languages that a voice supports.
 
-    Several may stand for one; the one with the lowest number is used, as espeak-ng does.
+    If several support one, the one with the lowest number is used, as espeak-ng does.
     """
     voices: dict[str, str] = {}
     wider: dict[str, tuple[int, str]] = {}

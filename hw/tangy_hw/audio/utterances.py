@@ -1,4 +1,4 @@
-"""Where voices begin and end in a recording, by how loud it is: utterances, cut at the pauses.
+"""Splits a recording into utterances at its pauses, by loudness.
 
 Samples are 16-bit little-endian, 16,000 a second, one channel.
 """
@@ -9,29 +9,29 @@ from collections import deque
 
 from tangy_hw.audio.wav import RATE
 
-FRAME = 320  # samples, 20 ms: the pieces that are called loud or quiet
-LONGEST = 6.0  # s; a longer utterance is cut here, because babble never pauses
+FRAME = 320  # samples, 20 ms: unit of the loudness decision
+LONGEST = 6.0  # s; a longer utterance is cut here, because babble has no pauses
 PAUSE = 0.5  # s of quiet that end an utterance
-MARGIN = 0.2  # s of sound that are kept before and after it
+MARGIN = 0.2  # s of sound kept before and after it
 SHORTEST = 0.12  # s of loud frames; less is a click
 AFTER = round(MARGIN * RATE / FRAME)  # frames
-BEFORE = AFTER + 5  # of which the last five tell that it has begun
+BEFORE = AFTER + 5  # the last five decide that it has begun
 
 QUIETEST = 40.0  # of 32,768 (-58 dB); anything below is silence in every room
 LOUDER = 2.5  # a loud frame is 8 dB above the floor
-FLOOR_SECONDS = 3.0  # the floor is the tenth percentile of that time
+FLOOR_SECONDS = 3.0  # the floor is the tenth percentile of this window
 
 
 def split(pcm: bytes) -> list[bytes]:
-    """Split a recording into its utterances by how loud it is; one that is all quiet has none.
+    """Split a recording into its utterances by loudness; quiet recordings have none.
 
-    The floor is followed, so a steady hum is quiet, and so are people who talk further away, which
-    a detector of voices takes for one utterance without an end.
+    The noise floor is tracked, so a steady hum is quiet, and so are people who talk further away,
+    which a voice activity detector would join to one endless utterance.
     """
     levels = deque[float](maxlen=round(FLOOR_SECONDS * RATE / FRAME))
     levels.extend([_floor_of(pcm)] * (levels.maxlen or 1))
     found: list[bytes] = []
-    begin, loud, quiet = -1, 0, 0  # where an utterance began, and its loud and last quiet frames
+    begin, loud, quiet = -1, 0, 0  # start of an utterance; its loud and trailing quiet frames
     recent: deque[bool] = deque(maxlen=BEFORE)
     place = 0
     for place, level in enumerate(_levels(pcm), 1):
@@ -53,13 +53,13 @@ def split(pcm: bytes) -> list[bytes]:
 
 
 def _utterance(pcm: bytes, begin: int, end: int, loud: int, quiet: int) -> list[bytes]:
-    """Return an utterance between two frames, without most of its last quiet; clicks are none."""
+    """Return an utterance between two frames, without most of its trailing quiet; drop clicks."""
     end -= max(0, quiet - AFTER)
     return [pcm[2 * FRAME * begin : 2 * FRAME * end]] if loud * FRAME >= SHORTEST * RATE else []
 
 
 def _levels(pcm: bytes) -> list[float]:
-    """Return the root mean square of every frame, its mean (a bias of the device) taken out."""
+    """Return the root mean square of every frame without its mean (the device's offset)."""
     import numpy as np
 
     whole = len(pcm) // (2 * FRAME) * (2 * FRAME)
@@ -69,9 +69,9 @@ def _levels(pcm: bytes) -> list[float]:
 
 
 def _floor_of(pcm: bytes) -> float:
-    """Guess how loud the pauses of a recording are: its quietest tenth, but far below its loudest.
+    """Estimate the noise floor of a recording: its quietest tenth, but far below its loudest frame.
 
-    A recording without any loud and quiet in it is all hum: no voice is as even as that.
+    A recording of even loudness is all hum: no voice is that even.
     """
     levels = sorted(_levels(pcm)) or [0.0]
     quiet, loudest = levels[len(levels) // 10], levels[-1]

@@ -1,4 +1,4 @@
-"""Tangy's voice: lines that are queued, spoken one after the other, and can be cut at once."""
+"""Tangy's voice: a queue of lines, spoken one after the other, that can be cut at once."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ class _Line:
     preference: VoicePreference
     heard: asyncio.Future[bool]
     sound: Path | None = None
-    """A WAV file that is played in place of a text."""
+    """WAV file to play instead of a text."""
 
 
 class SpeechVoice:
-    """Speaks lines one after the other; a game that talks through it never sees it fail.
+    """Speaks lines one after the other; it never raises an error in a game.
 
-    It belongs to one event loop. It reports a problem once, in a sentence. Without sound it
+    It belongs to one event loop. It reports each problem once, in a sentence. Without sound it
     stops trying, and people have the text on the screen.
     """
 
@@ -57,12 +57,12 @@ class SpeechVoice:
 
         Args:
             synthesiser: makes the WAV files.
-            player: on which they are heard; none: nothing is.
-            deck: whose calls are said as a caller says them.
-            usual: rate and voice where a line has no preference.
-            on_begin: is called before sound comes out (a microphone is shut).
-            on_end: is called when no more comes, for any reason (it is opened).
-            tell: is called with a sentence about what went wrong, once for each.
+            player: plays them; None: nothing is played.
+            deck: deck whose calls are pronounced as a caller says them.
+            usual: rate and voice of lines without a preference.
+            on_begin: called before sound starts (a microphone is muted).
+            on_end: called after sound has ended, for any reason (a microphone is opened).
+            tell: called with a sentence about each problem, once.
         """
         self._synthesiser = synthesiser
         self._player = player
@@ -84,12 +84,12 @@ class SpeechVoice:
 
     @property
     def speaking(self) -> bool:
-        """Whether a line is being spoken, or waits to be."""
+        """Whether a line is being spoken, or queued."""
         return self._speaking is not None or bool(self._queue)
 
     @property
     def silent(self) -> str:
-        """Why nothing is heard, in one sentence; "" if something is."""
+        """Why nothing is heard, in one sentence; "" if sound works."""
         return self._synthesiser.reason or ("" if self._player else "No sound comes out.")
 
     def say(
@@ -99,7 +99,7 @@ class SpeechVoice:
 
         Returns:
             A future that need not be awaited and never fails: whether the line was heard to its
-            end. It is false at once where nothing can be heard.
+            end. It is False at once if nothing can be heard.
         """
         if interrupt:
             self.hush()
@@ -135,7 +135,7 @@ class SpeechVoice:
             self._speaking.cancel()
 
     async def quiet(self) -> None:
-        """Wait until nothing is spoken any more, and `on_end` was called."""
+        """Wait until nothing is spoken, and `on_end` was called."""
         await self._quiet.wait()
 
     def prerender(
@@ -144,16 +144,16 @@ class SpeechVoice:
         preference: VoicePreference | None = None,
         progress: Callable[[int, int], None] | None = None,
     ) -> asyncio.Task[Rendered]:
-        """Make the WAV files of texts beforehand, in the background, one at a time.
+        """Synthesise texts in advance, in the background, one at a time.
 
         Args:
-            texts: what will be said.
+            texts: the texts.
             preference: rate and voice, as for `say`.
-            progress: is called after each text with how many are done, and of how many.
+            progress: called after each text with the number of finished texts, and of all.
 
         Returns:
-            A task that never fails: what was made, or found made before. It stops at the first
-            text that cannot be synthesised, which is reported.
+            A task that never fails: what was made, or found in the cache. It stops at the first
+            text that cannot be synthesised, and reports it.
         """
         wanted = (preference or self._usual).over(self._usual)
         task = asyncio.create_task(self._prerender(tuple(texts), wanted, progress))
@@ -162,7 +162,7 @@ class SpeechVoice:
         return task
 
     async def close(self) -> None:
-        """Cut everything, and end what runs for this voice."""
+        """Cut everything, and end all tasks of this voice."""
         self._closed = True
         self.hush()
         self._synthesiser.end()
@@ -209,7 +209,7 @@ class SpeechVoice:
                         raise
                     if wav == line.sound:
                         raise VoiceError(f"{plain(wav.name)} is not there any more.") from None
-                    # Somebody has just emptied the cache, which is not the player's fault.
+                    # The cache has just been emptied, which is not the player's fault.
         except PlayerError as error:
             self._player = None
             self._tell_once(f"{error} What Tangy says is shown as text.")
@@ -220,7 +220,7 @@ class SpeechVoice:
         return False
 
     async def _made(self, text: str, preference: VoicePreference) -> Path | None:
-        """Return the WAV of a text (None: there is nothing to say), in the usual voice at need."""
+        """Return the WAV of a text (None: nothing to say), if necessary in the default voice."""
         written = marked_up(as_called(text, self._deck))
         if not written:
             return None
@@ -267,7 +267,7 @@ class SpeechVoice:
             if self._on_end is not None:
                 try:
                     self._on_end()
-                except Exception as error:  # the next line is to be spoken all the same
+                except Exception as error:  # the next line must still be spoken
                     self._tell_once(f"The voice failed ({type(error).__name__}: {error}).")
 
     def _tell_once(self, sentence: str) -> None:

@@ -1,4 +1,4 @@
-"""WAV files of any usual kind, turned into what the decoder hears: 16 kHz, one channel, s16le."""
+"""Reads WAV files of common formats as the decoder's input: 16 kHz, one channel, s16le."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     Samples = NDArray[np.float64]
 
 RATE = 16_000  # samples a second
-HEADER = 65_536  # bytes in which the samples begin, mostly after 44
-UNKNOWN_SIZE = 0x7FFF_0000  # bytes of samples, or more: what recorders write who cannot know yet
+HEADER = 65_536  # bytes that contain the header, mostly 44
+UNKNOWN_SIZE = 0x7FFF_0000  # bytes from which a length is a recorder's placeholder
 LARGEST_WAV = 100_000_000  # bytes: 17 minutes of 48 kHz stereo
-KERNEL = 16  # zero crossings of the resampling kernel to each side
+KERNEL = 16  # zero crossings of the resampling kernel on each side
 HOW_TO_RECORD = "record one with: arecord -f S16_LE -r 16000 -c 1 FILE.wav"
-A_LAW, MU_LAW = 6, 7  # codecs of telephones, 8 bits a sample
+A_LAW, MU_LAW = 6, 7  # telephone codecs, 8 bits a sample
 CODECS = {2: "ADPCM", 0x11: "ADPCM", 0x31: "GSM", 0x55: "MP3"}
 
 
 class SoundError(TangyError):
-    """A source gives no sound that can be used; one sentence that names it."""
+    """A source without usable sound; one sentence that names it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """How a WAV file writes its samples."""
+    """Sample format of a WAV file."""
 
     codec: int  # 1 integers, 3 floating point, 6 A-law, 7 mu-law
     channels: int
@@ -43,22 +43,22 @@ class Format:
 
     @property
     def native(self) -> bool:
-        """Whether it is of the kind that is worked with: 16 kHz, mono, 16 bits."""
+        """Whether it is the decoder's format: 16 kHz, mono, 16 bits."""
         return (self.codec, self.channels, self.rate, self.bits) == (1, 1, RATE, 16)
 
 
 def read_wav(path: Path) -> bytes:
-    """Read a WAV file of any usual kind as 16 kHz mono samples (s16le).
+    """Read a WAV file of a common format as 16 kHz mono samples (s16le).
 
     Raises:
-        SoundError: the file is missing, too large, not a WAV, or of a kind that is not read.
+        SoundError: the file is missing, too large, not a WAV, or of an unsupported format.
     """
     name = plain(str(path))
     return decode_wav(read_given(path, LARGEST_WAV, SoundError), name)
 
 
 def decode_wav(content: bytes, name: str) -> bytes:
-    """Turn the content of a WAV file into 16 kHz mono samples (s16le).
+    """Convert the content of a WAV file to 16 kHz mono samples (s16le).
 
     Raises:
         SoundError: as for `read_wav`.
@@ -78,10 +78,10 @@ def decode_wav(content: bytes, name: str) -> bytes:
 
 
 def seconds_cut_off(path: Path) -> float:
-    """Return the s of sound that a WAV file lacks at its end of what it says it holds; 0 if none.
+    """Return the s of sound that a WAV file lacks compared with its header; 0 if complete.
 
-    A file written during recording often has length 0, or the largest length; both count as 0, and
-    so does a file that is no WAV.
+    A file written during recording often has length 0, or the largest length; both count as
+    complete, and so does a file that is not a WAV.
     """
     name = plain(str(path))
     try:
@@ -98,9 +98,9 @@ def seconds_cut_off(path: Path) -> float:
 
 
 def read_header(content: bytes, name: str) -> tuple[Format, int, int] | None:
-    """Return the format, and where the samples start and how many bytes they are.
+    """Return the format, and the offset and number of bytes of the samples.
 
-    None if the content breaks off before the samples begin.
+    None if the content ends before the samples begin.
     """
     if content[:4] != b"RIFF"[: len(content)] or content[8:12] not in (b"WAVE", b""):
         raise SoundError(f"{name}: is not a WAV file; {HOW_TO_RECORD}.")
@@ -111,7 +111,7 @@ def read_header(content: bytes, name: str) -> tuple[Format, int, int] | None:
         if chunk == b"data":
             if form is None:
                 raise SoundError(f"{name}: does not say how its samples are written.")
-            return form, place, size or UNKNOWN_SIZE  # 0 is also written where nobody knows yet
+            return form, place, size or UNKNOWN_SIZE  # 0 is also a placeholder
         if chunk == b"fmt ":
             if place + min(size, 40) > len(content):
                 return None
@@ -145,7 +145,7 @@ def _format(chunk: bytes, name: str) -> Format:
 
 
 def _mono(sound: bytes, form: Format) -> Samples:
-    """Return the samples from -1 to 1, the channels averaged."""
+    """Return the samples (n,) from -1 to 1, averaged over channels."""
     import numpy as np
 
     width = form.bits // 8
@@ -168,7 +168,7 @@ def _mono(sound: bytes, form: Format) -> Samples:
 
 
 def _expanded(codes: NDArray[np.uint8], codec: int) -> Samples:
-    """Return the samples from -1 to 1, of shape (codes,), for the codes of telephones (G.711)."""
+    """Return the samples (codes,) from -1 to 1 of telephone codes (G.711)."""
     import numpy as np
 
     turned = (codes ^ (0x55 if codec == A_LAW else 0xFF)).astype(np.int64)
@@ -185,7 +185,7 @@ def _expanded(codes: NDArray[np.uint8], codec: int) -> Samples:
 
 
 def _resampled(samples: Samples, rate: int) -> Samples:
-    """Bring samples to 16 kHz with a windowed sinc, which cuts off what 16 kHz cannot hold."""
+    """Resample (n,) to 16 kHz with a windowed sinc, which removes higher frequencies."""
     import numpy as np
 
     if rate == RATE or not len(samples):
@@ -196,7 +196,7 @@ def _resampled(samples: Samples, rate: int) -> Samples:
     offsets = np.arange(-reach, reach + 1)
     padded = np.pad(samples, reach + 1)
     made = np.empty(int(len(samples) / step))
-    for first in range(0, len(made), RATE):  # a second at a time keeps the table small
+    for first in range(0, len(made), RATE):  # one second at a time limits memory
         places = np.arange(first, min(first + RATE, len(made))) * step
         near = np.rint(places).astype(np.int64)
         distance = (offsets[None, :] + (near - places)[:, None]) * cut
