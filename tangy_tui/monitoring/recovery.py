@@ -272,8 +272,8 @@ class Recovery:
         """Return whether a fault is gone, as observed now."""
         rule = self._rules[fault.id]
         devices = self._detector.watch(self._game.world.health())
-        if devices.get(f"{LINK}.state") == STALE and LINK not in rule.devices:
-            return False  # it cannot be observed through a lost link
+        if any(devices.get(f"{device}.state") == STALE for device in (LINK, *rule.devices)):
+            return False  # a silent device does not show that it is gone
         if rule.fallback:
             return not symptoms({key: devices[key] for key in fault.evidence if key in devices})
         if rule.solved == "evidence gone" or fault.person is None:

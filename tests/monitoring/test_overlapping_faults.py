@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
+from tangy_profiles.health import Health
+from tangy_sim.worlds.faulty_world import FaultyWorld
 from tests.monitoring.conftest import Supervise
 from tests.support.games import codes, ended, play
 
@@ -25,3 +29,21 @@ def test_both_are_told_once_and_nothing_else_is(
     events = play(supervise(first, second, seed=seed))
     assert codes(events) == [first.partition("@")[0], second.partition("@")[0]]
     assert ended(events).stopped is None
+
+
+def test_what_a_silent_device_would_show_is_not_taken_for_gone(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A real scanner without its cable does not say any more that it is covered."""
+    for seed in (14, 15):  # nobody uncovers it at once
+        game = supervise("laser-occluded@7", "laser-disconnected@recovery", seed=seed)
+        world = game.world
+        assert isinstance(world, FaultyWorld)
+
+        def health(world: FaultyWorld = world, told: Callable[[], Health] = world.health) -> Health:
+            silent = "laser-disconnected" in world.present
+            bare = {"laser"} if silent else set()
+            return tuple(r._replace(facts={}) if r.device in bare else r for r in told())
+
+        monkeypatch.setattr(world, "health", health)
+        assert codes(play(game)) == ["laser-occluded", "laser-disconnected"]
