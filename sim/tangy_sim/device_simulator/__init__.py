@@ -1,5 +1,5 @@
-"""The bench: one simulated room with a robot's devices and people, served over real wires.
+"""The bench: a simulated room whose robot devices speak the real protocols.
 
-Drivers of the hardware floor talk to it as to the devices themselves, so that they are exercised
-and not bypassed. `world.py` is the room, `serving.py` its wires, `__main__.py` the process.
+Drivers in `tangy_hw` talk to it as to real devices, so they are tested rather than bypassed.
+`world.py` is the room, `device_servers.py` serves the protocols, and `__main__.py` is the process.
 """

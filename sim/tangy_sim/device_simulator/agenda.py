@@ -1,4 +1,4 @@
-"""The events scheduled on the bench."""
+"""Schedule of events on the bench."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from itertools import count
 
 
 class Agenda:
-    """Things that happen later: each at its time, those of one time in the order they were made."""
+    """A queue of events by time; simultaneous events run in the order of their insertion."""
 
     def __init__(self) -> None:
         self._coming: list[tuple[float, int, Callable[[], object]]] = []
         self._numbers = count()
 
     def at(self, time: float, happens: Callable[[], object]) -> None:
-        """Let something happen at a time (s)."""
+        """Schedule an event at a time (s)."""
         heapq.heappush(self._coming, (time, next(self._numbers), happens))
 
     def run(self, now: float) -> None:
-        """Run all events due at a time (s), and those that they schedule if due, too."""
+        """Run all events due at a time (s), including due events that they schedule."""
         while self._coming and self._coming[0][0] <= now:
             heapq.heappop(self._coming)[2]()
 
     def clear(self) -> None:
-        """Let nothing of it happen."""
+        """Drop all events."""
         self._coming.clear()

@@ -1,7 +1,7 @@
-"""The bench's two cameras while they run: frames are drawn in a thread, and streamed.
+"""Streams of the bench's two cameras; a thread draws their frames.
 
-They run in the machine's time even where the bench's goes in steps: a robot that looks closely
-takes pictures while nothing happens. No picture from before a change goes out after it.
+They run in real time even on a stepped bench: a robot that looks closely takes pictures while no
+bench time passes. After a change of the scene, no frame from before is sent.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from tangy_sim.device_simulator.world import BenchWorld, HeadScene
 from tangy_sim.servers.mjpeg_server import MjpegServer
 
 HEAD, INFRARED = "/head", "/infrared"
-PAUSE = 0.08  # s of real time from one frame of the head's camera to the next
-SIGNS_PAUSE = 0.05  # s, of the infrared camera
+PAUSE = 0.08  # s of real time between two frames of the head camera
+SIGNS_PAUSE = 0.05  # s, for the infrared camera
 CLOSE_UP = ("card", "face")
 
 
 class Film:
-    """Streams what the cameras of a world see."""
+    """Streams the cameras of a world."""
 
     def __init__(self, world: BenchWorld, faces: Mapping[str, int], *, seed: int) -> None:
         people = world.people.ids
@@ -36,7 +36,7 @@ class Film:
 
     @property
     def sent(self) -> dict[str, int]:
-        """How many frames each camera took so far."""
+        """Number of frames that each camera has sent."""
         return {path.strip("/"): self._server.camera[path].pushed for path in (HEAD, INFRARED)}
 
     def url(self, path: str) -> str:
@@ -44,12 +44,12 @@ class Film:
         return self._server.url(path)
 
     async def start(self) -> None:
-        """Begin to film."""
+        """Start streaming."""
         await self._server.start()
         self._tasks = [asyncio.create_task(self._film_head()), asyncio.create_task(self._watch())]
 
     async def close(self) -> None:
-        """End."""
+        """Stop streaming."""
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
@@ -57,13 +57,13 @@ class Film:
         await self._server.close()
 
     def silence(self, *, head_pulled: bool, head: bool, infrared: bool) -> None:
-        """Freeze or resume streams; a camera with a pulled cable cuts them off."""
+        """Freeze or resume streams; a camera with an unplugged cable disconnects its viewers."""
         self._server.camera[HEAD].closed = head_pulled
         self._server.camera[HEAD].hangs = head
         self._server.camera[INFRARED].hangs = infrared
 
     def show_signs(self) -> None:
-        """Take a frame of the signs now."""
+        """Send a frame of the signs now."""
         camera = self._server.camera[INFRARED]
         if camera.viewers and not camera.hangs:
             camera.push(self._signs.frame(self._world.asking))
@@ -83,7 +83,7 @@ class Film:
                     game = self._world.games
                     people = self._world.people.sitters.values()
                     ahead = [(n, one.card) for n, one in enumerate(people) if one.card]
-                elif ahead:  # one between two frames, so that the stream never stands still
+                elif ahead:  # draw one between two frames, so that the stream goes on
                     who, card = ahead.pop(0)
                     await loop.run_in_executor(self._thread, self._head.prepare, game, who, card)
                 scene = self._world.head_scene()
@@ -96,5 +96,5 @@ class Film:
 
 
 def _outdated(scene: HeadScene, now: HeadScene) -> bool:
-    """Say whether a frame would show a card or a face as it was, or was not, before."""
+    """Return whether a frame would show an outdated card or face, or hide a current one."""
     return scene != now and (scene.kind in CLOSE_UP or now.kind in CLOSE_UP)

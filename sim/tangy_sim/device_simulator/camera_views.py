@@ -1,7 +1,7 @@
-"""Views of the bench's cameras: cards and faces before the head, signs before the infrared camera.
+"""Images of the bench's cameras: cards and faces for the head, signs for the infrared camera.
 
-A picture is drawn once for a scene, and sent with other noise again and again, as cameras do.
-Drawing takes a tenth of a second at most, the same scene again some milliseconds.
+An image is drawn once for a scene, and then sent with varying noise. Drawing takes at most .1 s,
+another frame of the same scene some milliseconds.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ if TYPE_CHECKING:
     Draws = Callable[[HeadScene], "list[Picture]"]
 
 SIZE = (1280, 720)
-MAT = 440  # pixels to a side of what lies under a card
+MAT = 440  # pixels per side of the mat under a card
 QUALITY = 88  # of the head camera's JPEG
 NOISE = 2.5  # grey levels
-VARIANTS = 6  # frames of one scene with other noise, which then come round again
-SCENES = 12  # of which frames are kept
-FACE = 300  # pixels of a drawn face with its surroundings
-FACE_PICTURES = 4  # of one person, one after the other
-FIRST_PICTURE = 1_000  # so that nobody was enrolled by the very pictures that are shown
-DEGREE = 12  # pixels of the room all around to a degree
+VARIANTS = 6  # frames of a scene with different noise, sent in rotation
+SCENES = 12  # scenes whose frames are cached
+FACE = 300  # pixels of a face with its surroundings
+FACE_PICTURES = 4  # of one person, in rotation
+FIRST_PICTURE = 1_000  # differs from the images of enrolment
+DEGREE = 12  # pixels of the panorama per degree
 CHIPS = (0.0, 215.0, 130.0, 285.0, 24.0, 335.0, 50.0, 180.0)  # hues, by seat
 
 
 class HeadCamera:
-    """Makes the frames of the camera in the head, as JPEG."""
+    """Produces the frames of the head camera, as JPEG."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class HeadCamera:
         seed: int,
         title: str = "",
     ) -> None:
-        """Prepare; `faces` are the numbers of people's drawn faces."""
+        """Prepare the camera; `faces` are the numbers of people's drawn faces."""
         self._people = list(people)
         self._faces = dict(faces)
         self._seed = seed
@@ -65,7 +65,7 @@ class HeadCamera:
         self._last = b""
 
     def frame(self, scene: HeadScene) -> bytes:
-        """Return the next frame of a scene; a frozen camera gives the last one for ever."""
+        """Return the next frame of a scene; a frozen camera repeats its last frame."""
         if scene.kind == "frozen":
             return self._last or self.frame(HeadScene("room"))
         frames = self._frames.setdefault(scene, deque())
@@ -92,7 +92,7 @@ class HeadCamera:
         return self._pictures[scene]
 
     def _exposed(self, picture: Picture) -> bytes:
-        """Add a camera's noise and pack the picture; the noise is a window of a larger sheet."""
+        """Add sensor noise and encode the image; the noise is a window of a larger sheet."""
         x, y = self._noise.integers(0, 64, 2)
         grain = self._sheet[y : y + picture.shape[0], x : x + picture.shape[1]]
         grainy = cv2.add(picture, grain, dtype=cv2.CV_8U)
@@ -107,7 +107,7 @@ class HeadCamera:
     # ------------------------------------------------------------------------------ scenes
 
     def _card(self, scene: HeadScene) -> list[Picture]:
-        """Draw the card before a person on a mat: in good light, a little turned and tilted."""
+        """Draw the card before a person on a mat, in good light, slightly rotated and tilted."""
         who = self._people.index(scene.person)
         now = np.random.default_rng([self._seed, 5, scene.game, who, scene.moved])
         picture = self._table(scene.game, who).copy()
@@ -139,7 +139,7 @@ class HeadCamera:
         return np.array(frame.picture, np.uint8), np.array(frame.corners, np.float32)
 
     def _table(self, game: int, who: int) -> Picture:
-        """Draw the table before a person, which stays as it is for a game."""
+        """Draw the table before a person, which stays the same for a game."""
         key = game, who
         if key not in self._tables:
             random = np.random.default_rng([self._seed, 9, game, who])
@@ -156,7 +156,7 @@ class HeadCamera:
         self._camera.take(card, {}, _view(random), random)
 
     def _face(self, scene: HeadScene) -> list[Picture]:
-        """Draw a person before the room, in a few pictures."""
+        """Draw a person in front of the room, in several images."""
         behind = self._window(90)
         x, y = (SIZE[0] - FACE) // 2, 130
         inner = np.zeros((FACE, FACE), np.float32)
@@ -186,7 +186,7 @@ class HeadCamera:
 
     @cached_property
     def _around(self) -> Picture:
-        """Draw the room all around: walls with windows and pictures, a floor."""
+        """Draw the panorama of the room: walls with windows and pictures, a floor."""
         random = np.random.default_rng([self._seed, 7])
         across = 360 * DEGREE
         wall = np.array(random.uniform(130, 190, 3))
@@ -204,7 +204,7 @@ class HeadCamera:
 
 
 def _view(random: np.random.Generator) -> View:
-    """Draw how a camera over a mat sees the card on it."""
+    """Return the view of a camera over a mat on a card."""
     return View(
         pixels=float(random.uniform(27, 34)),
         tilt=float(random.uniform(5, 25)),
@@ -223,7 +223,7 @@ def _view(random: np.random.Generator) -> View:
 
 
 def _with_napkin(picture: Picture, random: np.random.Generator) -> Picture:
-    """Lay a checked napkin on the table, by which an eye knows that it sees sharply."""
+    """Add a checked napkin, whose edges show that the camera is in focus."""
     check, across, down = 26, 18, 9
     x = int(random.uniform(40, SIZE[0] - check * across - 40))
     y = int(random.uniform(20, 180))
@@ -237,7 +237,7 @@ def _with_napkin(picture: Picture, random: np.random.Generator) -> Picture:
 
 
 def _chip(seat: int) -> Chip:
-    """Return the chips that lie at a seat: of one colour, 18 mm wide."""
+    """Return the chips at a seat: of one colour, 18 mm wide."""
     tone = tone_of(CHIPS[seat % len(CHIPS)], 0.85, 0.75)
     return Chip(radius=9.0, tone=tone, clear=0.0, thick=1.5, rim=-0.15)
 

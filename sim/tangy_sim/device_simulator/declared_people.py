@@ -1,8 +1,8 @@
 """The bench's people in an activity declared by facts.
 
-They follow the game by what the robot says, with the same interpreter, and do things some seconds
-after it has spoken, by the chances of the activity's file. The wish for help is a sign; what else
-they do is passed to `acts`.
+They follow the game by the robot's speech, with the same interpreter, and act some seconds later,
+with the probabilities in the activity's file. A wish for help is a sign; other actions are in
+`acts`.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from tangy_sim.worlds.clarity import UNCLEAR, Clarity
 from tangy_sim.worlds.compliance import respond
 from tangy_sim.worlds.users import SimulatedUser
 
-ACTS = (1.0, 6.0)  # s after a sentence in which somebody does something about it
+ACTS = (1.0, 6.0)  # s between a sentence and an action that follows it
 
 
 class DeclaredPeople(People):
-    """The group of such an activity: nobody has a card, and all follow the game by ear."""
+    """The group in such an activity: nobody has a card, and all follow the game by ear."""
 
     def __init__(
         self, activity: DeclaredActivity, people: Sequence[Person], faults: Faults, *, seed: int
@@ -43,14 +43,14 @@ class DeclaredPeople(People):
         """Begin a game at a time in s."""
         super().begin(now)
         self._began = now
-        self._unheard: dict[str, Act] = {}  # what each answered that was not clear
+        self._unheard: dict[str, Act] = {}  # unclear answer of each person
         self.perceived: tuple[int, ...] = ()
-        """The rows of the items whose picture or sound comes with the next sentence."""
+        """Rows of the items whose picture or sound comes with the next sentence."""
         self.known = DeclaredGame(self._declaration, self.ids)
-        """The game as the people at the table understand it."""
+        """State of the game as the people understand it."""
 
     def remember(self, memory: GameMemory) -> None:
-        """Go on from where an interrupted game stood, in a room in which nobody holds up a sign."""
+        """Restore an interrupted game, in a room in which nobody holds up a sign."""
         game = game_from(self._declaration, tuple(self.ids), memory)
         if game is not None:
             self.known = game
@@ -58,7 +58,7 @@ class DeclaredPeople(People):
             self.game.opened = True
 
     def notice_away(self) -> None:
-        """Know who has left, and who has come back."""
+        """Update who has left, and who has come back."""
         for person in self.ids:
             self.known.observe(HERE, person, NO if person in self.away else YES)
 
@@ -67,18 +67,18 @@ class DeclaredPeople(People):
         return {person: Sitter(SimulatedUser(person, deck, ()), 0) for person in self.ids}
 
     def judged(self, person: str) -> str:
-        """Return the user activity state of somebody without a card."""
+        """Return the user activity state of a person without a card."""
         return self.activity.unread
 
     # -------------------------------------------------------------- what the robot does
 
     def step(self, now: float) -> None:
-        """Let time pass until `now`, in s."""
+        """Advance the time to `now`, in s."""
         self.known.now = now - self._began
         super().step(now)
 
     def hear(self, heard: Heard) -> None:
-        """Understand a sentence of the robot, now that it was said, and act on it."""
+        """React to a sentence that the robot has finished."""
         if heard.fault:
             self._asked_to_help(heard)
             return
@@ -111,7 +111,7 @@ class DeclaredPeople(People):
                 self._after(ACTS, partial(self._acts, act))
 
     def _asked_again(self, person: str) -> None:
-        """Let a person repeat an unclear answer, or perhaps answer after saying nothing."""
+        """Let a person repeat an unclear answer, or answer after all."""
         act = self._unheard.pop(person, None)
         if self.game.over:
             return
@@ -134,7 +134,7 @@ class DeclaredPeople(People):
             self._agenda.at(self.now + seconds, partial(self._acts, act))
 
     def _acts(self, act: Act) -> None:
-        """Let somebody do something, if there is still a reason to."""
+        """Let a person act, if there is still a reason to."""
         game = self.known
         if not self._may(act):
             return
@@ -155,7 +155,7 @@ class DeclaredPeople(People):
             self.game.acts.append((act.fact, act.who or "", said, sure))
 
     def _may(self, act: Act) -> bool:
-        """Say whether people have reason to do something now, where their habit says when."""
+        """Return whether the conditions of the habits for an action hold now."""
         habits = (one for one in self._declaration.habits if one.fact == act.fact)
         when = [condition for habit in habits for condition in habit.when]
         return all(self.known.holds(one, act.who) for one in when)

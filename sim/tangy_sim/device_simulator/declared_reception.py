@@ -1,6 +1,6 @@
-"""How people understand the robot's words in an activity declared by facts.
+"""How people understand the robot's speech in an activity declared by facts.
 
-They know its sentences, and the rows of its items: by a question they know which row it is.
+They know its sentences, and the rows of its items: a question identifies its row.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from tangy_sim.device_simulator.speech_reception import Heard, called
 class _Sentence(NamedTuple):
     pattern: re.Pattern[str]
     columns: tuple[str, ...]
-    """The columns of the items in it, each as often as it stands there."""
+    """Columns of the items in it, in order, with repetitions."""
     letters: int
-    """How many letters are no slot's."""
+    """Number of letters outside slots."""
     behaviour: Behaviour
     strategy: str
 
 
 class DeclaredReception:
-    """The ears of a group that plays such an activity with a robot."""
+    """Speech understanding of a group that plays such an activity."""
 
     def __init__(
         self, activity: DeclaredActivity, people: Sequence[Person], seat: str = SEAT
@@ -57,7 +57,7 @@ class DeclaredReception:
         self._sentences = sorted(sentences, key=lambda one: -one.letters)
 
     def hear(self, text: str) -> Heard | None:
-        """Understand a sentence; None: it is none that people know."""
+        """Parse a sentence; return None if it is unknown."""
         plain = _plain(text)
         for one in self._sentences:
             found = one.pattern.fullmatch(plain)
@@ -77,7 +77,7 @@ class DeclaredReception:
         return Heard(person=self._people.get(asked.groupdict().get("name") or "", ""), again=True)
 
     def _rows(self, columns: tuple[str, ...], said: Mapping[str, str]) -> list[int]:
-        """Return the rows of the items with a said text in their columns."""
+        """Return the rows of the items whose columns match the spoken texts."""
         return [
             row
             for row in range(len(self._items.rows) if columns else 0)
@@ -93,7 +93,7 @@ def _plain(text: str) -> str:
 
 
 def _cells(items: Items, column: str) -> str:
-    """Return a pattern of what can be said of a column, the longest first."""
+    """Return a pattern of the texts of a column, the longest first."""
     said = {_plain(items.value(row, column).split("|")[0]) for row in range(len(items.rows))}
     return "|".join(re.escape(one) for one in sorted(said, key=len, reverse=True) if one)
 

@@ -1,10 +1,9 @@
-"""The bench's wires: a rosbridge server, a laser scanner on the network, two video streams.
+"""Servers of the bench's devices: rosbridge, a network laser scanner, and two video streams.
 
-In its own (stepped) time the service `/bench/advance` {"seconds": dt} lets time pass: `/clock` is
-published, then all due messages are sent on all connections, then the answer
-{"time": t, "sent": {...}} goes out, with the numbers of scans and pictures sent so far. The service
-and the clock also work while the robot's link is lost, because time goes on. Otherwise time is the
-machine's.
+On a stepped bench, the service `/bench/advance` {"seconds": dt} advances the time: `/clock` is
+published, then all due messages are sent on all connections, then the answer {"time": t, "sent":
+{...}}, with the numbers of scans and frames sent so far. The service and the clock also work while
+the robot's link is lost. Otherwise the bench runs in real time.
 """
 
 from __future__ import annotations
@@ -24,17 +23,17 @@ from tangy_sim.servers.scip_session import Scanner
 from tangy_sim.worlds.injection import KINDS
 
 SCANNER = Scanner("UTM-30LX", 0.02, 30.0, 480, 360, 180, 10.0, 1)
-"""360 beams over 270 degrees, ten times a second; nearer than such a one is, to see a cloth."""
+"""360 beams over 270 degrees at 10 Hz; its short minimum range lets it see a cloth."""
 
-TICK = 0.05  # s of the bench's time, between two odometries
-LONGEST = 60.0  # s that one step may be asked for
-BEHIND = 0.5  # s that a busy machine may be behind; more of it is lost
+TICK = 0.05  # s of bench time between two odometry messages
+LONGEST = 60.0  # s that one step may request
+BEHIND = 0.5  # s of delay on a busy machine that are caught up; more is dropped
 EVERY = {"laser": 0.1, "joints": 0.1, "stop": 0.1, "diagnostics": 0.25, "infrared": 0.2}  # s
 ALWAYS = ("/bench/advance", "/clock")
 
 
 class DeviceServers:
-    """Serves a world. `start` it, then `run` (in the machine's time) or be advanced (in steps)."""
+    """Serves a world. After `start`, call `run` (real time), or advance it (stepped)."""
 
     def __init__(
         self, world: BenchWorld, *, stepped: bool, faces: Mapping[str, int], seed: int = 1
@@ -47,8 +46,8 @@ class DeviceServers:
         self.film = Film(world, faces, seed=seed)
         self._due = dict.fromkeys(EVERY, 0.0)
         self._turn = asyncio.Lock()
-        self._lost = False  # whether the link is
-        self._odometries = 0  # that could arrive
+        self._lost = False  # whether the link is lost
+        self._odometries = 0  # messages that could arrive
         self._commands: dict[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
             "begin": lambda _: {"cards": world.begin()},
             "inject": lambda told: self._injected(str(told["kind"])),
@@ -62,7 +61,7 @@ class DeviceServers:
         }
 
     async def start(self) -> dict[str, Any]:
-        """Listen on all wires; return where, as the "ready" line tells it."""
+        """Start all servers; return their addresses, as in the "ready" line."""
         ros = self.ros
         ros.on_message("/cmd_vel", self._driven)
         ros.on_message("/joint_trajectory", self._posed)
@@ -84,13 +83,13 @@ class DeviceServers:
         }
 
     async def close(self) -> None:
-        """End, on all wires."""
+        """Stop all servers."""
         await self.film.close()
         await self.scip.close()
         await self.ros.close()
 
     async def run(self) -> None:
-        """Let the bench's time pass as the machine's does, until it is cancelled."""
+        """Advance the bench in real time, until cancelled."""
         loop = asyncio.get_running_loop()
         due = loop.time()
         while True:
@@ -99,10 +98,10 @@ class DeviceServers:
             self._pass(TICK)
 
     def do(self, told: Mapping[str, Any]) -> dict[str, Any]:
-        """Carry out a command of the bench's owner, and return the answer.
+        """Execute a command of the bench's owner, and return the answer.
 
         Raises:
-            KeyError: there is no such command or kind, or something is missing.
+            KeyError: an unknown command or kind, or a missing argument.
         """
         done = self._commands[str(told["do"])](told)
         self._heed_faults()
@@ -164,7 +163,7 @@ class DeviceServers:
         self.world.drive(float(twist["linear"]["x"]), float(twist["angular"]["z"]))
 
     def _posed(self, told: Mapping[str, Any]) -> None:
-        """Take a trajectory; an empty one has joints hold, as joint_trajectory_controller does."""
+        """Execute a trajectory; an empty one means hold, as in joint_trajectory_controller."""
         if told["points"]:
             self.world.joints.move(*messages.trajectory(told))
         else:
@@ -196,7 +195,7 @@ class DeviceServers:
         } | {"base": (messages.OK, ""), "stop_button": (messages.OK, "")}
 
     def _heed_faults(self) -> None:
-        """Silence the wires that have to be, and let the others talk."""
+        """Silence the servers affected by faults, and resume the others."""
         faults = self.world.faults
         lost = "link-lost" in faults
         self.scip.silent = lost or "laser-disconnected" in faults

@@ -1,4 +1,4 @@
-"""The bench's wheels: a differential drive with odometry, which can stick, slip and bump."""
+"""The bench's base: a differential drive with odometry, which can get stuck, slip and bump."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ if TYPE_CHECKING:
     import numpy as np
 
 SILENCE = 0.5  # s after the last command until the base stops by itself
-RADIUS = 0.25  # m, of the robot's foot
-TRACK = 0.4  # m from one wheel to the other
+RADIUS = 0.25  # m, of the robot's footprint
+TRACK = 0.4  # m between the wheels
 FASTEST, FASTEST_TURN = 1.0, 2.0  # m/s, rad/s
 SPEEDS_UP, BRAKES, TURNS_UP = 0.8, 1.6, 4.0  # m/s^2, m/s^2, rad/s^2
-STEP = 0.025  # s, the longest step of the integration
+STEP = 0.025  # s, maximum step of the integration
 
 
 @dataclass(frozen=True)
 class Odometer:
-    """How wrong each wheel counts: shares of what it turns, one that stays and one that varies."""
+    """Relative errors of each wheel's odometry: a constant one, and a random one."""
 
     stays: float = 0.002
     varies: float = 0.03
@@ -31,10 +31,10 @@ EXACT = Odometer(0.0, 0.0)
 
 
 class SimulatedWheels:
-    """A base on two driven wheels that stands on a floor.
+    """A base with two driven wheels.
 
-    `pose` is the truth in the room, `odometry` what the wheels counted since they were switched
-    on, `forward` (m/s) and `turn` (rad/s) how fast the wheels turn now.
+    `pose` is the true pose in the room, `odometry` the pose counted since switching on, `forward`
+    (m/s) and `turn` (rad/s) the current speeds.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class SimulatedWheels:
         self.odometry = FloorPose(0.0, 0.0, 0.0)
         self.forward = self.turn = 0.0
         self.bumped = False
-        """Whether it stands against something that it was told to drive into."""
+        """Whether it is blocked by an obstacle that it was commanded to drive into."""
         self._random = random
         self._odometer = odometer
         self._wrong = random.normal(0.0, 1.0, 2) * odometer.stays
@@ -57,7 +57,7 @@ class SimulatedWheels:
         self._told: float | None = None
 
     def drive(self, forward: float, turn: float, now: float) -> None:
-        """Take a command, which holds for half a second."""
+        """Set the command (m/s, rad/s), which is valid for half a second; `now` in s."""
         self._wanted = (
             max(-FASTEST, min(FASTEST, forward)),
             max(-FASTEST_TURN, min(FASTEST_TURN, turn)),
@@ -66,22 +66,22 @@ class SimulatedWheels:
 
     @property
     def commanded(self) -> tuple[float, float]:
-        """The command that holds, in m/s and rad/s; zeros where none does."""
+        """Valid command in m/s and rad/s; zeros if there is none."""
         return self._wanted if self._told is not None else (0.0, 0.0)
 
     def halt(self) -> None:
-        """Stand still at once, as with the power cut."""
+        """Stop at once, as with the power cut."""
         self.forward = self.turn = 0.0
         self._told = None
 
     def step(self, now: float, seconds: float, *, stuck: bool = False, grip: float = 1.0) -> None:
-        """Drive on until `now`, which is `seconds` after the last step.
+        """Drive until `now`, `seconds` after the last step.
 
         Args:
-            now: the time of the world, in s.
-            seconds: since the last step, in s.
-            stuck: the wheels cannot turn.
-            grip: how much of what the wheels turn the robot goes along, 0 to 1.
+            now: time of the world, in s.
+            seconds: time since the last step, in s.
+            stuck: whether the wheels are blocked.
+            grip: ratio of the robot's movement to that of the wheels, 0 to 1.
         """
         if self._told is None and not self.forward and not self.turn:
             return
@@ -118,7 +118,7 @@ class SimulatedWheels:
         self.odometry = moved(self.odometry, gone, turned)
 
     def _leads_out(self, there: FloorPose) -> bool:
-        """Say whether a move leads away from what the robot stands against already."""
+        """Return whether a move leads away from an obstacle that the robot touches."""
         if self.floor.clear(self.pose.x, self.pose.y, RADIUS):
             return False
         ahead = moved(there, 0.0, 0.0)
@@ -128,7 +128,7 @@ class SimulatedWheels:
 
 
 def moved(pose: FloorPose, gone: float, turned: float) -> FloorPose:
-    """Return a pose after a short way along an arc: so many m, turning by so many radians."""
+    """Return a pose after a short arc: so many m, turning by so many rad."""
     middle = pose.heading + turned / 2
     heading = (pose.heading + turned + pi) % (2 * pi) - pi
     return FloorPose(pose.x + gone * cos(middle), pose.y + gone * sin(middle), heading)

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from tangy_sim.worlds.injection import KINDS, Kind
 
 MUTE = ("voice-dead", "screen-dead")
-"""The faults that end together when a lost connection returns."""
+"""Faults that end together when a lost connection returns."""
 COMES_BACK = 0.5
-"""P(a device comes back when it is started again)."""
+"""P(a device works again after a restart)."""
 
 
 @dataclass
 class SimulatedFault:
-    """A fault that is there: since when (s), with whom, and whether it has shown."""
+    """An active fault: its start (s), the person it concerns, and whether it has shown."""
 
     kind: Kind
     since: float
@@ -27,23 +27,23 @@ class SimulatedFault:
 
 
 class Faults:
-    """The faults of one game."""
+    """Faults of one game."""
 
     def __init__(self) -> None:
         self.present: dict[str, SimulatedFault] = {}
         self.lifted: list[SimulatedFault] = []
-        """Faults ended since the last look; the part that handles them empties it."""
+        """Faults that have ended and not been handled yet; the handler empties the list."""
 
     def __contains__(self, kind: str) -> bool:
         return kind in self.present
 
     def clear(self) -> None:
-        """Put everything right."""
+        """End all faults."""
         for kind in list(self.present):
             self.lift(kind)
 
     def inject(self, kind: str, now: float) -> SimulatedFault:
-        """Bring about a fault at a time in s.
+        """Start a fault at a time in s.
 
         Raises:
             KeyError: there is no such kind.
@@ -51,23 +51,23 @@ class Faults:
         return self.present.setdefault(kind, SimulatedFault(KINDS[kind], now))
 
     def lift(self, kind: str) -> bool:
-        """Put a fault right; say whether it was there."""
+        """End a fault; return whether it was active."""
         fault = self.present.pop(kind, None)
         if fault is not None:
             self.lifted.append(fault)
         return fault is not None
 
     def of(self, code: str) -> list[str]:
-        """Return the kinds that are there of which a diagnosis is right."""
+        """Return the active kinds with a diagnosis code."""
         kinds = [name for name, fault in self.present.items() if fault.kind.code == code]
         return kinds or [kind for kind in MUTE if code == "mute" and kind in self.present]
 
     def helped(self, code: str) -> list[str]:
-        """Return the kinds that are there, and that people at the table can put right."""
+        """Return the active kinds with a diagnosis code that people at the table can fix."""
         return [kind for kind in self.of(code) if KINDS[kind].helped]
 
     def concerns(self, kind: str, person: str) -> bool:
-        """Say whether somebody is the one whom a fault is about; the first one asked becomes it."""
+        """Return whether a fault concerns a person; it is assigned to the first one asked about."""
         fault = self.present.get(kind)
         if fault is None:
             return False

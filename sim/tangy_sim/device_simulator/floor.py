@@ -1,7 +1,7 @@
-"""Obstacles on the bench's floor: walls, the table, chairs, people's legs, dropped things.
+"""Obstacles on the bench's floor: walls, the table, chairs, people's legs, dropped objects.
 
-The laser sees legs and walls; the robot bumps into those and into the table's top as well.
-Coordinates are metres in the room's frame (see `tangy_profiles.room`).
+The laser sees legs and walls; the robot also bumps into the table top. Coordinates are in m in the
+room's frame (see `tangy_profiles.room`).
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     Real = NDArray[np.float64]
 
 TABLE_LEG = 0.033  # m, radius
-LEG_INSET = 0.1  # m from the table's edges to the middle of its legs
-LEG = 0.06  # m, radius of a person's leg, a hand's breadth above the floor
+LEG_INSET = 0.1  # m from the table's edges to the centres of its legs
+LEG = 0.06  # m, radius of a person's leg at scanner height
 CHAIR_LEG = 0.02  # m, radius
-CHAIR = 0.42  # m from one leg of a chair to the next
-FIDGETS = 0.2  # times a second that a leg is moved
-RING = 1.0  # m from the robot at which chairs are put around it
+CHAIR = 0.42  # m between neighbouring legs of a chair
+FIDGETS = 0.2  # leg movements per second and leg
+RING = 1.0  # m from the robot to the chairs around it
 
 
 class FloorPose(NamedTuple):
-    """Where something stands and which way it faces; heading 0 is along x, in radians."""
+    """Position and heading; heading 0 is along x, in rad."""
 
     x: float
     y: float
@@ -37,7 +37,7 @@ class FloorPose(NamedTuple):
 
 
 class Circle(NamedTuple):
-    """Something round that stands on the floor."""
+    """A round obstacle."""
 
     x: float
     y: float
@@ -45,7 +45,7 @@ class Circle(NamedTuple):
 
 
 def chair(x: float, y: float, turned: float = 0.0) -> tuple[Circle, ...]:
-    """Return the legs of a chair whose middle is at (x, y) in m, turned by rad."""
+    """Return the legs of a chair with its centre at (x, y) in m, rotated by rad."""
     half = CHAIR / 2**0.5
     return tuple(
         Circle(x + half * cos(angle), y + half * sin(angle), CHAIR_LEG)
@@ -54,7 +54,7 @@ def chair(x: float, y: float, turned: float = 0.0) -> tuple[Circle, ...]:
 
 
 class Floor:
-    """The floor of one room at which so many people sit."""
+    """The floor of a room with seated people."""
 
     def __init__(self, room: Room, people: int, random: np.random.Generator) -> None:
         self.room = room
@@ -70,7 +70,7 @@ class Floor:
             ],
             float,
         )
-        """Segments (n, 4): x and y of one end and of the other."""
+        """Segments (n, 4): x and y of both ends."""
         inset = LEG_INSET
         self._still = [
             Circle(x, y, TABLE_LEG)
@@ -86,12 +86,12 @@ class Floor:
         self.changed()
 
     def _placed(self, seat: Point, side: int) -> Circle:
-        """Put a person's foot down before the chair, a little elsewhere each time."""
+        """Place a person's foot before the chair, at a slightly different place each time."""
         dx, dy = self._random.uniform(-0.06, 0.06), self._random.uniform(-0.12, 0.08)
         return Circle(seat.x + 0.13 * side + dx, seat.y - 0.3 + dy, LEG)
 
     def changed(self) -> None:
-        """Take note that something stands elsewhere now."""
+        """Update the obstacles after a change."""
         self.circles: Real = np.array([*self._still, *self._legs, *self.dropped], float)
 
     def step(self, seconds: float) -> None:
@@ -105,11 +105,11 @@ class Floor:
             self.changed()
 
     def _waiting(self) -> float:
-        """Draw how long nobody moves a leg, in s."""
+        """Draw the time until the next leg movement, in s."""
         return float(self._random.exponential(1 / (FIDGETS * len(self._legs))))
 
     def clear(self, x: float, y: float, radius: float) -> bool:
-        """Say whether something round (m) can stand there: in the room, off all the rest."""
+        """Return whether a round object (m) fits there: in the room, clear of all obstacles."""
         room = self.room
         if not (radius <= x <= room.width - radius and radius <= y <= room.depth - radius):
             return False
@@ -120,15 +120,15 @@ class Floor:
         return bool((away > radius + self.circles[:, 2]).all())
 
     def block(self, pose: FloorPose) -> None:
-        """Put chairs all around the robot, so close that it cannot get out between them."""
+        """Put chairs around the robot, too close to get out between them."""
         count = int(2 * pi * RING / 0.45)
         ways = [2 * pi * number / count for number in range(count)]
         self._drop(Circle(pose.x + RING * cos(way), pose.y + RING * sin(way), 0.2) for way in ways)
 
     def drop_ahead(self, pose: FloorPose, ahead: float) -> bool:
-        """Put a chair in the robot's way, so many m ahead; say whether there was room for it."""
+        """Put a chair so many m ahead of the robot; return whether there was room for it."""
         x, y = pose.x + ahead * cos(pose.heading), pose.y + ahead * sin(pose.heading)
-        if not self.clear(x, y, 0.9):  # it must leave a way round
+        if not self.clear(x, y, 0.9):  # leave a way round
             return False
         self._drop([Circle(x, y, 0.22)])
         return True
@@ -139,6 +139,6 @@ class Floor:
         self.changed()
 
     def tidy(self) -> None:
-        """Take away whatever was put in the robot's way."""
+        """Remove everything that was put in the robot's way."""
         self.dropped.clear()
         self.changed()

@@ -1,6 +1,6 @@
-"""News for the bench's people between the robot's sentences: the pattern, winners, who left.
+"""Tells the bench's people what the host would announce: the pattern, winners, who left.
 
-In a room people know that from the host, or from each other; the robot's words need not say it.
+People in a real room know this without the robot.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
 
     Args:
         people: the group.
-        told: `patterns` and `together` of what wins; `done`, whose sign comes down; `away`, who is
-            not here; `taken_back`, a number that counts as not called; `memory`, where an
-            interrupted game by facts goes on; `rows`, the rows of the items whose picture or sound
-            they see or hear with the next sentence. Each may be left out.
+        told: optional keys: `patterns` and `together` of what wins; `done`, the person whose sign
+            comes down; `away`, the absent people; `taken_back`, a number that counts as not called;
+            `memory`, an interrupted game by facts to go on with; `rows`, the rows of the items
+            whose picture or sound comes with the next sentence.
 
     Raises:
-        KeyError: somebody or some pattern is not known.
-        Unreadable: what is told of the interrupted game is not valid.
+        KeyError: an unknown person or pattern.
+        Unreadable: the interrupted game is invalid.
     """
     if "memory" in told and isinstance(people, DeclaredPeople):
         people.remember(read(GameMemory, told["memory"]))

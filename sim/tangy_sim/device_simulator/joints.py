@@ -1,4 +1,4 @@
-"""The bench's joints: they move towards their goals, as fast as they were told and they can."""
+"""The bench's joints, which move towards their goals with limited speed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ FASTEST = 2.5  # rad/s
 
 
 class Joints:
-    """The joints of a robot by name, "limb/joint", in radians; they begin at zero."""
+    """Joints of a robot by name, "limb/joint", in rad; they start at zero."""
 
     def __init__(self, robot: Robot) -> None:
         self.names = tuple(
@@ -27,9 +27,9 @@ class Joints:
         self._goals: dict[str, tuple[float, float]] = {}
 
     def move(self, names: Sequence[str], positions: Sequence[float], seconds: float) -> None:
-        """Take goals in radians, to be reached within so many s; names that are not there are not.
+        """Set goals in rad, to be reached within so many s; unknown names are ignored.
 
-        Goals beyond a joint's limits end at the limit.
+        Goals are clipped to the joint's limits.
         """
         for name, goal in zip(names, positions, strict=False):
             if name in self.positions:
@@ -40,14 +40,14 @@ class Joints:
                 self._goals[name] = (goal, max(1e-6, min(FASTEST, speed)))
 
     def hold(self, names: Sequence[str]) -> None:
-        """Let joints stay where they are, with no goal any more."""
+        """Drop the goals of joints, which stay where they are."""
         for name in names:
             self._goals.pop(name, None)
             if name in self.speeds:
                 self.speeds[name] = 0.0
 
     def step(self, seconds: float, broken: Iterable[str] = ()) -> None:
-        """Move on for so many s; joints of `broken` limbs stay where they are."""
+        """Move for so many s; joints of `broken` limbs stay where they are."""
         out = tuple(f"{limb}/" for limb in broken)
         for name, (goal, speed) in list(self._goals.items()):
             if out and name.startswith(out):
@@ -64,5 +64,5 @@ class Joints:
                 self.speeds[name] = speed if goal > here else -speed
 
     def angle(self, name: str) -> float:
-        """Return the position of a joint, in degrees; 0 if there is no joint of that name."""
+        """Return the position of a joint in degrees; 0 if there is no such joint."""
         return degrees(self.positions.get(name, 0.0))

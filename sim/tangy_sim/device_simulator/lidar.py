@@ -1,4 +1,4 @@
-"""The bench's laser scanner: rays cast against walls and round things, all beams at once."""
+"""The bench's laser scanner: vectorised ray casting against walls and circles."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 
     Real = NDArray[np.float64]
 
-NEAR = 0.05  # m at which a cloth over the scanner is seen
-COVERED = 0.92  # share of the beams that a cloth catches
+NEAR = 0.05  # m: range of a cloth over the scanner
+COVERED = 0.92  # share of beams that a cloth covers
 
 
 @dataclass(frozen=True)
 class Lidar:
-    """A scanner at the robot's middle: beam i looks at `first` + i * `step` from straight ahead.
+    """A scanner at the robot's centre: beam i has the bearing `first` + i * `step`.
 
-    Angles are radians, counter-clockwise. `noise` is the standard deviation of a range and
-    `farthest` the longest one, in m.
+    Angles are in rad, counter-clockwise. `noise` is the standard deviation of a range and
+    `farthest` the maximum range, in m.
     """
 
     beams: int = 360
@@ -34,7 +34,7 @@ class Lidar:
     farthest: float = 30.0
 
     def scan(self, pose: FloorPose, floor: Floor, random: np.random.Generator) -> Real:
-        """Measure all around; what nothing is hit by is inf."""
+        """Return ranges (beams,) in m; inf without a return."""
         angles = pose.heading + self.first + self.step * np.arange(self.beams, dtype=np.float64)
         ranges = cast(pose.x, pose.y, angles, floor.walls, floor.circles)
         ranges += random.normal(0.0, self.noise, self.beams)
@@ -42,7 +42,7 @@ class Lidar:
         return np.maximum(ranges, 0.02)
 
     def covered(self, pose: FloorPose, floor: Floor, random: np.random.Generator) -> Real:
-        """Measure with a cloth over the scanner."""
+        """Return ranges (beams,) in m with a cloth over the scanner."""
         ranges = self.scan(pose, floor, random)
         caught = np.arange(self.beams) < COVERED * self.beams
         ranges[caught] = NEAR + random.normal(0.0, 0.002, int(caught.sum()))
@@ -50,17 +50,17 @@ class Lidar:
 
 
 def cast(x: float, y: float, angles: Real, segments: Real, circles: Real) -> Real:
-    """Return how far rays go from a place until they hit something.
+    """Return the distances along rays to the first obstacle.
 
     Args:
-        x: where the scanner stands, in m.
-        y: where the scanner stands, in m.
-        angles: (n,) their directions in radians.
-        segments: (s, 4) x and y of both ends of straight things.
-        circles: (c, 3) x, y and radius of round things.
+        x: position of the scanner, in m.
+        y: position of the scanner, in m.
+        angles: directions of the rays (n,) in rad.
+        segments: walls (s, 4): x and y of both ends.
+        circles: round obstacles (c, 3): x, y and radius.
 
     Returns:
-        (n,) metres; inf if nothing is hit. Of a circle around the place the inside is seen.
+        Distances (n,) in m; inf without a hit. Inside a circle, rays hit its inner side.
     """
     dx, dy = np.cos(angles)[:, None], np.sin(angles)[:, None]
     ax, ay = segments[:, 0] - x, segments[:, 1] - y

@@ -1,4 +1,4 @@
-"""What the bench's robot says by rosbridge: its messages, spelled as ROS 1 has them."""
+"""ROS messages of the bench's robot, in ROS 1 form."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from tangy_sim.device_simulator.floor import FloorPose
 
 Message = dict[str, Any]
 OK, WARN, ERROR, STALE = range(4)
-"""The levels of diagnostic_msgs/DiagnosticStatus."""
+"""Levels of diagnostic_msgs/DiagnosticStatus."""
 
 
 def time(seconds: float) -> dict[str, int]:
-    """Return a time, or how long something takes, in s."""
+    """Return a time or duration in s."""
     whole = floor(seconds)
     return {"secs": whole, "nsecs": min(round((seconds - whole) * 1e9), 999_999_999)}
 
 
 def header(seconds: float, frame: str) -> Message:
-    """Return the header of a message of that time in s."""
+    """Return a header with a time in s."""
     return {"stamp": time(seconds), "frame_id": frame}
 
 
 def odometry(seconds: float, pose: FloorPose, forward: float, turn: float) -> Message:
-    """Return nav_msgs/Odometry (s, m/s, rad/s); covariances are left out, as nobody reads them."""
+    """Return nav_msgs/Odometry (s, m/s, rad/s), without covariances."""
     where = {
         "position": {"x": pose.x, "y": pose.y, "z": 0.0},
         "orientation": {"x": 0.0, "y": 0.0, "z": sin(pose.heading / 2), "w": cos(pose.heading / 2)},
@@ -56,7 +56,7 @@ def joint_states(
 
 
 def diagnostics(seconds: float, devices: Mapping[str, tuple[int, str]]) -> Message:
-    """Return diagnostic_msgs/DiagnosticArray at a time in s: each device's level and words."""
+    """Return diagnostic_msgs/DiagnosticArray at a time in s: each device's level and message."""
     return {
         "header": header(seconds, ""),
         "status": [
@@ -73,10 +73,10 @@ def diagnostics(seconds: float, devices: Mapping[str, tuple[int, str]]) -> Messa
 
 
 def trajectory(message: Mapping[str, Any]) -> tuple[Sequence[str], Sequence[float], float]:
-    """Read trajectory_msgs/JointTrajectory: names, the last point's positions (rad), its time (s).
+    """Parse trajectory_msgs/JointTrajectory: names, positions (rad) and time (s) of its last point.
 
     Raises:
-        KeyError, IndexError, TypeError, ValueError: it is none.
+        KeyError, IndexError, TypeError, ValueError: the message is invalid.
     """
     point = message["points"][-1]
     after = point.get("time_from_start", {})

@@ -1,9 +1,9 @@
-"""The bench's people: they hear calls, mark cards, slip, put signs up, and do what they are asked.
+"""The bench's people: they hear calls, mark cards, make mistakes, raise signs, and follow requests.
 
-They play as those of `tangy_sim.worlds.world` do, by the same rates, but in continuous time: what
-they do, they do some seconds after they had reason to. Rates are per call; how long a robot takes
-for a call is its own business, so people's time goes on with what they hear: by one call for each
-behaviour before the group, by `away_calls` for each at a seat. Random streams are apart.
+They play with the same rates as those of `tangy_sim.worlds.world`, but in continuous time, reacting
+some seconds after an event. Rates are per call. Because robots take different times for a call,
+people's time advances with what they hear: by one call for each behaviour before the group, by
+`away_calls` for each at a seat. Random streams are separate.
 """
 
 from __future__ import annotations
@@ -27,24 +27,24 @@ from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respon
 from tangy_sim.worlds.faulty_world import HELPS
 from tangy_sim.worlds.users import SimulatedUser, UserModel, load_users, waiting_calls, waiting_time
 
-MARKS = (1.5, 5.0)  # s after a call in which it is marked
-SLIPS = (1.0, 8.0)  # s after a call in which another number is
-ASKS = (0.5, 2.0)  # s from having a reason to ask to having the sign up
-TURNS_DOWN = (0.4, 1.2)  # s from being helped to having it down
-HELPS_AFTER = (3.0, 8.0)  # s from a robot's asking everybody for help to its being given
-CLEAR = 1.0  # s: nobody does anything so near a window's end that one could not tell
-GIVES_UP = 3  # times that somebody who does not comply is asked, until the sign comes down
+MARKS = (1.5, 5.0)  # s after a call until it is marked
+SLIPS = (1.0, 8.0)  # s after a call until a mistaken mark
+ASKS = (0.5, 2.0)  # s from a reason to ask until the sign is up
+TURNS_DOWN = (0.4, 1.2)  # s from being helped until it is down
+HELPS_AFTER = (3.0, 8.0)  # s from a robot's request for help until somebody helps
+CLEAR = 1.0  # s: nobody acts so near the end of a window that the outcome would be ambiguous
+GIVES_UP = 3  # refused requests after which a person takes the sign down
 HIDES = ("away", "edge", "sheet")
-"""How a card is out of view: not there, mostly beyond the picture's edge, under a sheet."""
+"""How a card is out of view: absent, mostly outside the image, under a sheet."""
 
 
 @dataclass
 class Sitter:
-    """One of the people, with a card on the table and a sign for asking.
+    """A person at the table, with a card and a sign.
 
-    `asks_since` is when (s) the sign was put up, None while it is down; `hides` how the card is
-    out of the robot's view, "" while it is not; `moved` counts how often the card was laid anew,
-    `refused` how often nothing was done about what was asked.
+    `asks_since` is the time (s) at which the sign went up, None while it is down; `hides` how the
+    card is out of view, "" if it is visible; `moved` how often the card was moved, `refused` how
+    many requests the person refused.
     """
 
     player: SimulatedUser
@@ -56,26 +56,26 @@ class Sitter:
 
     @property
     def id(self) -> str:
-        """The person's id."""
+        """Id of the person."""
         return self.player.id
 
 
 @dataclass
 class GameProgress:
-    """The events of a game so far, as everybody in the room knows them."""
+    """Events of a game so far, as everybody in the room knows them."""
 
     opened: bool = False
     over: bool = False
     called: list[int] = field(default_factory=list)
     responses: list[Response] = field(default_factory=list)
     spoken: list[str] = field(default_factory=list)
-    """Who said aloud that they would like help, because signs cannot be seen."""
+    """People who have asked for help aloud, because signs cannot be seen."""
     acts: list[tuple[str, str, str, float]] = field(default_factory=list)
-    """Observations that no sensor sees: the fact, the person, the value, how sure it is."""
+    """Observations that no sensor sees: fact, person, value, certainty."""
 
 
 class People:
-    """The group at the table. `begin` deals; `hear`, `meet`, `leave`: what the robot does."""
+    """The group at the table. `begin` deals; `hear`, `meet` and `leave` are the robot's actions."""
 
     def __init__(
         self,
@@ -105,7 +105,7 @@ class People:
         self.begin(0.0)
 
     def begin(self, now: float) -> None:
-        """Deal other cards and begin a game at a time in s; nobody asks before it is opened."""
+        """Deal new cards and begin a game at a time in s; nobody asks before it is opened."""
         self.now = now
         self.game = GameProgress()
         self._agenda.clear()
@@ -113,14 +113,14 @@ class People:
         self._time = 0.0  # in calls
         self._left_to_open = set(self._openers)
         self._driven_to = ""
-        self._speak = False  # whether people were asked to say that they would like help
+        self._speak = False  # whether people were told to ask aloud
         self.place = FRONT
         self.sitters = self._seat()
         for sitter in self.sitters.values():
             sitter.player.slips_at = waiting_calls(self._uniform, self.users.slip)
 
     def _seat(self) -> dict[str, Sitter]:
-        """Let people sit down, each with another card."""
+        """Seat people, each with a new card."""
         deck, dealt = self.activity.deck, list[int]()
         while len(dealt) < len(self.ids):
             card = 1 + int(self._cards() * LAST_CARD)
@@ -133,25 +133,25 @@ class People:
 
     @property
     def asking(self) -> tuple[str, ...]:
-        """Whose signs are up, the one that was first put up first."""
+        """People whose signs are up, the longest waiting first."""
         up = [(s.asks_since, s.id) for s in self.sitters.values() if s.asks_since is not None]
         return tuple(person for _, person in sorted(up, key=lambda one: one[0]))
 
     def judged(self, person: str) -> str:
-        """Name the user activity state that a person's card truly shows."""
+        """Return the true user activity state of a person's card."""
         return self.sitters[person].player.judged(self.activity.card_states)
 
     # -------------------------------------------------------------- what the robot does
 
     def step(self, now: float) -> None:
-        """Let time pass until `now`, in s."""
+        """Advance the time to `now`, in s."""
         self.now = now
         if "request-withdrawn" in self._faults.present:
             self._withdraw()
         self._agenda.run(now)
 
     def meet(self, person: str) -> None:
-        """The robot has arrived at a seat, where the card may be out of view, or at the front."""
+        """React to the robot's arrival; at a seat, the card may be out of view."""
         self.place = person
         sitter = self.sitters.get(person)
         if sitter is None:
@@ -164,7 +164,7 @@ class People:
         sitter.hides = hides if hidden else ""
 
     def leave(self) -> None:
-        """The robot has left where it was."""
+        """React to the robot's departure."""
         sitter = self.sitters.get(self.place)
         self.place = ""
         if sitter is None:
@@ -172,10 +172,10 @@ class People:
         sitter.hides = ""
         fault = self._faults.present.get("never-complies")
         if fault is not None and fault.person == sitter.id:
-            self._after((1.0, 3.0), partial(self._turn_down, sitter))  # what for, it has given up
+            self._after((1.0, 3.0), partial(self._turn_down, sitter))  # the person has given up
 
     def hear(self, heard: Heard) -> None:
-        """Understand a sentence of the robot, now that it was said."""
+        """React to a sentence that the robot has finished."""
         if heard.fault:
             self._asked_to_help(heard)
             return
@@ -194,9 +194,9 @@ class People:
             case "finish":
                 self.game.over = True
             case "none" | "clear wrong marks" | "set missing marks" | "bring card closer":
-                pass  # they do it when they comply
+                pass  # done on compliance
             case "go to front":
-                pass  # nobody waits for that
+                pass  # nobody waits for it
             case forgotten:
                 assert_never(forgotten)
         if sitter is not None and behaviour.persuades:
@@ -244,7 +244,7 @@ class People:
             sitter.player.asks_at = self._time + waiting_time(self._uniform, rate)
 
     def _let_people_ask(self) -> None:
-        """Requests come at the higher rate of a card with an error, and are thinned without one."""
+        """Draw requests at the higher rate of cards with an error, and thin those of the others."""
         users, uniform = self.users, self._uniform
         rate = users.ask * users.ask_with_error
         for sitter in self.sitters.values():
@@ -271,7 +271,7 @@ class People:
         sitter.asks_since = None
 
     def _closed(self, sitter: Sitter) -> None:
-        """Turn a sign down whose owner was helped, unless it is to be forgotten."""
+        """Turn down the sign of a person who was helped, unless a fault keeps it up."""
         if sitter.asks_since is None:
             return
         if self._faults.concerns("request-stuck", sitter.id):
@@ -282,7 +282,7 @@ class People:
     # -------------------------------------------------------------- what people are asked
 
     def _persuaded(self, sitter: Sitter, behaviour: Behaviour, heard: Heard) -> None:
-        """Let a person comply with a request: in time, late, or not at all."""
+        """Let a person respond to a request: in time, late, or not at all."""
         patience = self.activity.patience
         response = respond(self.preferences, sitter.id, heard.strategy, patience, self._compliance)
         asked = behaviour.effect in ABOUT_CARD
@@ -295,7 +295,7 @@ class People:
         self._agenda.at(self.now + seconds, partial(self._does, sitter, behaviour, heard, vain))
 
     def _refuses(self, sitter: Sitter, response: Response) -> None:
-        """Let somebody do nothing about what they were asked, and give up the third time."""
+        """Let a person ignore a request, and give up after the third."""
         patience = self.activity.patience
         gone = response._replace(followed=False, complied=False, seconds=2 * patience)
         self.game.responses.append(gone)
@@ -304,7 +304,7 @@ class People:
             self._agenda.at(self.now + 2 * patience - CLEAR, partial(self._turn_down, sitter))
 
     def _does(self, sitter: Sitter, behaviour: Behaviour, heard: Heard, vain: bool) -> None:
-        """Carry out the request; in vain if another number has the same error then."""
+        """Carry out a request; in vain if another cell gets the same error."""
         player, before = sitter.player, sitter.player.marked
         judged = self.judged(sitter.id)
         named = sum(1 << player.cell[n] for n in heard.numbers if n in player.cell)
@@ -335,9 +335,9 @@ class People:
             self._after(TURNS_DOWN, partial(self._closed, sitter))
 
     def _spoils(self, sitter: Sitter, cells: int, judged: str) -> bool:
-        """Make one of some cells wrong so that the judgement stays, if possible.
+        """Make one of some cells wrong without changing the judgement, if possible.
 
-        Where what was asked for completes a line, not every cell can.
+        If the request completed a line, not every cell can be used.
         """
         player = sitter.player
         order = [1 << cell for cell in range(len(player.numbers)) if cells >> cell & 1]
@@ -356,11 +356,11 @@ class People:
     # ---------------------------------------------------------------- when something is wrong
 
     def hide(self, person: str) -> None:
-        """Let a card vanish from the robot's view, as by a fault."""
+        """Move a card out of the robot's view, by a fault."""
         self.sitters[person].hides = HIDES[int(self._moments() * len(HIDES))]
 
     def lifted(self, kind: str, person: str) -> None:
-        """Do what follows from a fault's having been put right."""
+        """Apply the consequences of a fault's end."""
         sitter = self.sitters.get(person)
         if sitter is None:
             return
@@ -370,7 +370,7 @@ class People:
             self._turn_down(sitter)
 
     def _asked_to_help(self, heard: Heard) -> None:
-        """The robot asks for help because something is wrong: mostly somebody helps."""
+        """Let people help, most of the time, after the robot has asked for it."""
         if heard.fault == "requests-silent":
             self._speak = True
             self.game.spoken += self.asking
@@ -380,7 +380,7 @@ class People:
                 self._after(HELPS_AFTER, partial(self._faults.lift, kind))
 
     def _withdraw(self) -> None:
-        """Let somebody who waits, and whom the robot is not busy with, take the sign down."""
+        """Let a waiting person, whom the robot is not busy with, take the sign down."""
         busy = self.place if self.place in self.sitters else self._driven_to
         asking = self.asking
         others = [p for p in asking if p != (busy if busy in asking else asking[0])]

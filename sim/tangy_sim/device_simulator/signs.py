@@ -1,6 +1,6 @@
-"""The view of the infrared camera over the bench's table: a dark room, and bright signs.
+"""The infrared camera over the bench's table: a dark room, and bright signs.
 
-It looks at the table from the robot's side. Who asks for help has a triangle up on the table.
+It sees the table from the robot's side. People who ask for help have a triangle up on the table.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from tangy_profiles.room import Room
 
 SIZE = (320, 240)
 CORNERS = ((20.0, 222.0), (300.0, 222.0), (262.0, 96.0), (58.0, 96.0))
-"""Where the table's corners are in the picture: left near, right near, right far, left far."""
+"""Corners of the table in the image: left near, right near, right far, left far."""
 WIDE = 8.0
-"""Metres of table that so wide a picture shows well; of more it has as many more columns."""
-SIGN = 19.0  # pixels to a side
-VARIANTS = 5  # frames with other noise, which then come round again
+"""Metres of table per SIZE[0] columns; the image of a longer table is a multiple as wide."""
+SIGN = 19.0  # pixels per side
+VARIANTS = 5  # frames with different noise, sent in rotation
 Corners: TypeAlias = tuple[
     tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]
 ]
@@ -31,7 +31,7 @@ NOISE = 3.0  # grey levels
 
 
 def corners_in(room: Room) -> Corners:
-    """Return where the corners of a room's table, or tables, are in the picture, in pixels."""
+    """Return the corners of a room's table, or tables, in the image, in pixels."""
     (a, b), (c, d), (e, f), (g, h) = CORNERS
     times = _times(room)
     return (a * times, b), (c * times, d), (e * times, f), (g * times, h)
@@ -43,7 +43,7 @@ def _times(room: Room) -> int:
 
 
 class InfraredCamera:
-    """Makes the frames of the camera that watches the signs, as JPEG."""
+    """Produces the frames of the camera that watches the signs, as JPEG."""
 
     def __init__(self, room: Room, people: Sequence[str], *, seed: int) -> None:
         self._random = np.random.default_rng([seed, 8])
@@ -65,7 +65,7 @@ class InfraredCamera:
         self._shown: NDArray[np.float32] = self._still
 
     def frame(self, asking: Sequence[str]) -> bytes:
-        """Return the next frame in which these people have their signs up."""
+        """Return the next frame with these people's signs up."""
         up = tuple(sorted(asking))
         if up != self._asking:
             self._asking = up

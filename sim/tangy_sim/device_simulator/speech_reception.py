@@ -1,7 +1,7 @@
-"""How people understand the robot's words: the behaviour, its strategy, and its person.
+"""How people understand the robot's speech: the behaviour, its strategy, and its person.
 
-They know the sentences that the activity has for each behaviour and persuasive strategy, and those
-with which the robot asks for help when something is wrong. Anything else they do not react to.
+They know the activity's sentences for each behaviour and persuasive strategy, and those with which
+the robot asks for help after a fault. They do not react to anything else.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import SEAT
 
-BEGINS, EACH = 1.0, 0.06  # s before the first word, and for each letter
+BEGINS, EACH = 1.0, 0.06  # s before the first word, and per letter
 
 
 @dataclass(frozen=True)
 class Heard:
     """A sentence that was understood.
 
-    Of a behaviour: how it was put (`strategy`), to whom (an id, or "" if nobody is named), with
-    which numbers. Of a call for help: the code of the `fault`, and whom it is about.
+    For a behaviour: its `strategy`, the person (an id, "" if none is named), and the numbers. For a
+    request for help: the code of the `fault`, and the person it concerns.
     """
 
     behaviour: Behaviour | None = None
@@ -35,9 +35,9 @@ class Heard:
     numbers: tuple[int, ...] = ()
     fault: str = ""
     rows: tuple[int, ...] = ()
-    """The rows of an activity's items that it can be about."""
+    """Possible rows of an activity's items."""
     again: bool = False
-    """Whether the person is asked to say their answer again."""
+    """Whether the person is asked to repeat their answer."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class _Pattern:
 
 
 class SpeechReception:
-    """The ears of a group that plays an activity with a robot."""
+    """Speech understanding of a group that plays an activity."""
 
     def __init__(
         self, activity: Activity, robot: Robot, people: Sequence[Person], seat: str = SEAT
@@ -75,7 +75,7 @@ class SpeechReception:
                 self._patterns.append(_Pattern(_pattern(text, slots), None, "", rule.code))
 
     def hear(self, text: str) -> Heard | None:
-        """Understand a sentence; None: it is none that people know."""
+        """Parse a sentence; return None if it is unknown."""
         plain = _plain(text)
         for one in self._patterns:
             found = one.pattern.fullmatch(plain)
@@ -94,13 +94,13 @@ class SpeechReception:
 
 
 def called(people: Sequence[Person], seat: str) -> dict[str, str]:
-    """Return the ids of people by what they answer to: a name, or a seat, as screens have it."""
+    """Return people's ids by their names and seats, as on screens."""
     seats = {f"{_plain(seat)} {number}": one.id for number, one in enumerate(people, 1)}
     return seats | {_plain(one.name): one.id for one in reversed(people)}
 
 
 def speaking_seconds(text: str) -> float:
-    """Return how many s the robot takes to say a text."""
+    """Return how many s the robot takes to speak a text."""
     return BEGINS + EACH * len(text)
 
 
@@ -109,7 +109,7 @@ def _plain(text: str) -> str:
 
 
 def _pattern(template: str, slots: dict[str, str]) -> re.Pattern[str]:
-    """Make a pattern of a sentence with slots; what stands in it twice is the same both times."""
+    """Compile the pattern of a sentence with slots; repeated slots must have equal text."""
     parts: list[str] = []
     known: set[str] = set()
     for words, slot, _, _ in Formatter().parse(_plain(template)):

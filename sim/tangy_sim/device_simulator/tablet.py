@@ -1,7 +1,7 @@
-"""A tablet on the bench: it opens the page of the chest screen and answers what it is shown.
+"""A simulated tablet that opens the page of the chest screen, and acknowledges its events.
 
-It does in a thread what a browser does that has the page open: it is paired by the code, once,
-takes the events of the page, and says of each that it was drawn.
+A thread does what a browser with the open page does: it pairs once with the code, receives the
+events of the page, and acknowledges each as drawn.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from http.client import OK, HTTPConnection, HTTPException
 from typing import Any
 from urllib.parse import urlsplit
 
-SECONDS = 2.0  # without an event after which the page is opened again
+SECONDS = 2.0  # without an event, after which the page is opened again
 
 
 class Tablet:
-    """A tablet that shows a page until it is closed; `picture` is what it shows."""
+    """A tablet that shows a page until it is closed; `picture` is its content."""
 
     def __init__(self, url: str, code: str, shown: Callable[[str], object] = str) -> None:
-        """Open the page at an address, and pair by a code.
+        """Open the page at an address, and pair with a code.
 
-        `shown` is called with the text of each picture, once it is drawn.
+        `shown` is called with the text of each picture once it is drawn.
         """
         self._shown = shown
         self._code = code
@@ -33,7 +33,7 @@ class Tablet:
         self._place = (parts.hostname or "127.0.0.1", parts.port or 80)
         self.picture: dict[str, Any] = {}
         self.on = True
-        """Whether it is switched on; one that is not answers nothing, and shows nothing."""
+        """Whether it is switched on; otherwise it answers and shows nothing."""
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="tablet", daemon=True)
         self._thread.start()
@@ -72,7 +72,7 @@ class Tablet:
             answers.close()
 
     def _paired(self, asks: HTTPConnection) -> bool:
-        """Pair if that has not been done yet; return whether it is paired."""
+        """Pair if necessary; return whether it is paired."""
         if not self._cookie:
             asks.request("POST", "/pair", body=self._code)
             said = asks.getresponse()
@@ -88,6 +88,6 @@ class Tablet:
         head = {"Cookie": self._cookie}
         answers.request("POST", f"/seen?page=bench&number={number}", headers=head)
         answers.getresponse().read()
-        if kind == "show" and int(number) > self._number:  # and not the same again
+        if kind == "show" and int(number) > self._number:  # not a repetition
             self._number = int(number)
             self._shown(str(self.picture["text"]))

@@ -1,7 +1,7 @@
-"""The bench's room as a whole: time passes in it, and the robot and its people act on one another.
+"""The bench's room: time passes, and the robot and the people interact.
 
-`step` lets time pass; commands come in between. What devices would see is read from its parts:
-`wheels`, `joints`, `ranges`, `head_scene` and `asking`; nothing here knows of wires.
+`step` advances the time; commands come in between. Devices read its parts: `wheels`, `joints`,
+`ranges`, `head_scene` and `asking`; this module knows no protocols.
 """
 
 from __future__ import annotations
@@ -36,24 +36,24 @@ from tangy_sim.worlds.users import UserModel
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-PHYSICS = 0.05  # s, a step of everything but the wheels, which take smaller ones
-ARRIVES, LEAVES = 0.4, 0.7  # m from where it stands for a place: it is there, it is there no more
-STANDS = 0.1  # m/s below which a robot that passes may have arrived
+PHYSICS = 0.05  # s, step of everything but the wheels, which use smaller ones
+ARRIVES, LEAVES = 0.4, 0.7  # m from the standing point of a place: arrival, departure
+STANDS = 0.1  # m/s below which a passing robot may have arrived
 AHEAD = 1.3  # m before a driving robot at which a chair is put
-STRAIGHT = 0.1  # rad/s up to which it drives straight on
+STRAIGHT = 0.1  # rad/s up to which it drives straight
 NOD = "head/neck nod"
-LOOKS_DOWN = -10.0  # degrees of the neck from which cards are looked at
+LOOKS_DOWN = -10.0  # degrees of the neck for looking at cards
 FACES_IT = 25.0  # degrees off the direction of the table
-GRIP = 0.08  # how much of what the wheels turn the robot goes along on a rug that slides
-TURNED = 1.3  # rad that somebody who pushes the robot off turns it by at most
-HELD = {"emergency-stop", "base-failed"}  # kinds with which the wheels have no power
+GRIP = 0.08  # ratio of the robot's movement to the wheels' on a sliding rug
+TURNED = 1.3  # rad by which a person who pushes the robot turns it at most
+HELD = {"emergency-stop", "base-failed"}  # faults that cut the power of the wheels
 
 
 class HeadScene(NamedTuple):
-    """What the camera in the head looks at, all that matters for its picture.
+    """Scene before the head camera, with everything that its image depends on.
 
-    `kind` is "card" or "face" (of a `person`), "room" (`heading` in degrees), "dark" or "frozen";
-    of a card there is the game, how often it was laid anew, its number, its marks, how it hides.
+    `kind` is "card" or "face" (of a `person`), "room" (`heading` in degrees), "dark" or "frozen".
+    For a card: the game, how often it was moved, its number, its marks, and how it is hidden.
     """
 
     kind: str
@@ -67,7 +67,7 @@ class HeadScene(NamedTuple):
 
 
 class BenchWorld:
-    """One room with a robot and people, in a time of its own; the same seed, the same room."""
+    """A room with a robot and people, with its own clock; deterministic for a seed."""
 
     def __init__(
         self,
@@ -99,9 +99,9 @@ class BenchWorld:
             self.people = People(activity, people, self.faults, seed=seed, users=users)
             self._hearing = SpeechReception(activity, robot, people, room.seat_word or SEAT)
         self._speech: deque[tuple[str, float]] = deque()
-        self._silent_from = 0.0  # time at which the current speech ends
+        self._silent_from = 0.0  # end of the current speech
         self.said: list[str] = []
-        """What was said to its end since somebody last looked; who acts on it empties it."""
+        """Texts spoken to their end since the last look; the reader empties the list."""
         self._stands = {
             place: room.stand(place, self.people.ids) for place in (FRONT, *self.people.ids)
         }
@@ -109,7 +109,7 @@ class BenchWorld:
     # --------------------------------------------------------------------- time, and commands
 
     def begin(self) -> dict[str, int]:
-        """Begin a game with other cards, nothing being wrong; return the card of each person."""
+        """Begin a game with new cards and no faults; return the card of each person."""
         self.faults.clear()
         self._see_to_lifted()
         self.games += 1
@@ -120,7 +120,7 @@ class BenchWorld:
         return {person: card for person, card in cards.items() if card}
 
     def step(self, seconds: float) -> None:
-        """Let s pass."""
+        """Advance the time by so many s."""
         left = seconds
         while left > 1e-9:
             part = min(left, PHYSICS)
@@ -143,15 +143,15 @@ class BenchWorld:
         self._see_to_lifted()
 
     def drive(self, forward: float, turn: float) -> None:
-        """Take a command for the wheels: m/s and rad/s."""
+        """Set the command of the wheels: m/s and rad/s."""
         self.wheels.drive(forward, turn, self.now)
 
     def say(self, text: str) -> None:
-        """Begin to say something, after whatever is being said."""
+        """Queue a text to speak."""
         self._utter(text, speaking_seconds(text))
 
     def play(self, sound: str) -> None:
-        """Begin to play the WAV file at a path, after whatever is being said."""
+        """Queue a WAV file to play."""
         self._utter(sound, wav_seconds(Path(sound)))
 
     def _utter(self, text: str, seconds: float) -> None:
@@ -162,7 +162,7 @@ class BenchWorld:
         self._speech.append((text, seconds))
 
     def read(self, text: str) -> None:
-        """Let people read what the screen shows, which says as much as a voice that is dead."""
+        """Let people read the screen, which replaces a dead voice."""
         if "voice-dead" in self.faults:
             self._understood(text)
 
@@ -209,7 +209,7 @@ class BenchWorld:
                 self._is_over()
 
     def _is_over(self) -> None:
-        """End faults that end by themselves when the robot has reached a place."""
+        """End faults that end when the robot has reached a place."""
         for kind in ("path-detour", "carried-off"):
             fault = self.faults.present.get(kind)
             if fault is not None and fault.shown:
@@ -218,12 +218,12 @@ class BenchWorld:
     # --------------------------------------------------------------------------- sensor views
 
     def ranges(self) -> NDArray[np.float64]:
-        """Return what the laser measures now, (beams,) m."""
+        """Return the current ranges of the laser, (beams,) in m."""
         measure = self.lidar.covered if "laser-occluded" in self.faults else self.lidar.scan
         return measure(self.wheels.pose, self.floor, self._physics)
 
     def head_scene(self) -> HeadScene:
-        """Return what the camera in the head looks at now."""
+        """Return the current scene before the head camera."""
         if "camera-occluded" in self.faults:
             return HeadScene("dark")
         if "camera-frozen" in self.faults:
@@ -249,13 +249,13 @@ class BenchWorld:
 
     @property
     def asking(self) -> tuple[str, ...]:
-        """Whose signs are up, the oldest first."""
+        """People whose signs are up, the longest waiting first."""
         return self.people.asking
 
     # --------------------------------------------------------------------- what goes wrong
 
     def inject(self, kind: str) -> None:
-        """Bring about a fault: at once where it can be, else as soon as there is a chance to.
+        """Start a fault: at once if possible, otherwise at the next opportunity.
 
         Raises:
             KeyError: there is no such kind.
@@ -275,7 +275,7 @@ class BenchWorld:
                 self.people.hide(place)
 
     def lift(self, kind: str) -> bool:
-        """Put a fault right; say whether it was there."""
+        """End a fault; return whether it was active."""
         found = self.faults.lift(kind)
         self._see_to_lifted()
         return found
@@ -288,7 +288,7 @@ class BenchWorld:
         return found
 
     def restart(self, device: str) -> bool:
-        """Start a device again, which may help; say whether it works now."""
+        """Restart a device, which may help; return whether it works now."""
         kind = f"{device}-dead"
         if kind in self.faults and self._physics.random() < COMES_BACK:
             self.lift(kind)
@@ -302,16 +302,16 @@ class BenchWorld:
                 self.floor.tidy()
 
     def _place_chair(self) -> None:
-        """Put a chair before the robot, as soon as it drives straight on and there is room."""
+        """Put a chair before the robot as soon as it drives straight and there is room."""
         fault = self.faults.present.get("path-detour")
         if fault is None or fault.shown or self.wheels.forward < 0.2:
             return
-        if abs(self.wheels.turn) > STRAIGHT:  # in a bend, ahead is not where it goes
+        if abs(self.wheels.turn) > STRAIGHT:  # in a bend, the path is not straight ahead
             return
         fault.shown = self.floor.drop_ahead(self.wheels.pose, AHEAD)
 
     def _carry_off(self) -> None:
-        """Push the robot somewhere else, and turn it a little, without the wheels' turning."""
+        """Move the robot somewhere else and turn it, without turning its wheels."""
         pose, room, random = self.wheels.pose, self.room, self._physics
         for _ in range(200):
             x, y = random.uniform(0, room.width), random.uniform(0, room.depth)
@@ -325,7 +325,7 @@ class BenchWorld:
     # ------------------------------------------------------------------------------ truth
 
     def truth(self) -> dict[str, Any]:
-        """Return the ground truth for JSON; see `serving.py` for its keys."""
+        """Return the ground truth as JSON."""
         people, pose = self.people, self.wheels.pose
         return {
             "time": round(self.now, 3),

@@ -1,1 +1,1 @@
-"""Pictures that are drawn: cards as a camera sees them, and faces."""
+"""Rendering of cards as a camera sees them, and of faces."""

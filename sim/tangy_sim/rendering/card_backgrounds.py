@@ -1,4 +1,4 @@
-"""Backgrounds of simulated cards: wood, cloth, photographs, things of all colours."""
+"""Backgrounds of simulated cards: wood, cloth, photographs, coloured objects."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def tone_of(hue: float, saturation: float, value: float) -> Tone:
 
 
 def background(width: int, height: int, random: np.random.Generator) -> Real:
-    """Draw a table top or room: wood, cloth with checks or dots, or things of all colours."""
+    """Draw a table top or room: wood, checked or dotted cloth, or coloured objects."""
     import cv2
     import numpy as np
 
@@ -75,7 +75,7 @@ def background(width: int, height: int, random: np.random.Generator) -> Real:
 
 
 def _unsharp(shape: tuple[int, ...], random: np.random.Generator) -> Real:
-    """Draw spots of all sizes, the larger the stronger, as photographs have them."""
+    """Draw spots of all sizes, larger ones with more contrast, as in photographs."""
     import cv2
     import numpy as np
 

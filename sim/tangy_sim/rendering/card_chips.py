@@ -1,4 +1,4 @@
-"""Chips on the simulated table: thick and thin, clear and not, of all colours."""
+"""Chips on the simulated table: thick and thin, clear and opaque, of all colours."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
     Real = NDArray[Any]
 
-STRADDLES = 0.46  # of a cell: how far from its middle a chip may lie that marks it
+STRADDLES = 0.46  # of a cell: maximum distance of a chip from the centre of the cell that it marks
 HUES = {"red": 0, "orange": 24, "yellow": 50, "green": 130, "blue": 215, "purple": 285, "pink": 335}
 
 
 @dataclass(frozen=True)
 class Outline:
-    """What shape a chip has: a disc, unless it is said otherwise.
+    """Outline of a chip, by default a disc.
 
-    `long` is how much longer than wide it is, `turn` its direction in radians; `corners` are those
-    of a chip that is cut out, `hole` how large the hole in its middle is, of its radius.
+    `long` is the ratio of length to width, `turn` its direction in rad; `corners` is the number of
+    corners of a cut-out chip, `hole` the size of the hole in its middle relative to its radius.
     """
 
     long: float = 1.0
@@ -32,7 +32,7 @@ class Outline:
     hole: float = 0.0
 
     def beyond(self, u: Real, v: Real, radius: float) -> Real:
-        """Return how far (px) places are outside of the outline, less than 0 inside."""
+        """Return the signed distance (px) of points from the outline, negative inside."""
         import numpy as np
 
         along, aside = (
@@ -57,10 +57,10 @@ DISC = Outline()
 class Chip:
     """A chip that lies at (x, y) mm on the card.
 
-    `clear` is how much light goes through; it is dyed on its way, or not where it is `washed`.
-    `rim` is how much darker or lighter its rim is; `outline` and `ring` how dark a line there is
-    around it and on it, 0 to 1; `relief` how uneven its top looks, and `stripes` how many of its
-    edge are white. A `sheer` one is a film: light passes it once, and it throws no shadow.
+    `clear` is the share of light that passes through; it takes on the chip's colour, unless
+    `washed`. `rim` is the relative brightness of the rim; `outline` and `ring` the darkness of a
+    line around it and on it, 0 to 1; `relief` the roughness of its top, and `stripes` the number of
+    white stripes on its edge. A `sheer` chip is a film: light passes it once, and it has no shadow.
     """
 
     radius: float
@@ -79,7 +79,7 @@ class Chip:
     y: float = 0.0
 
     def at(self, x: float, y: float) -> Chip:
-        """Return the chip at another place, in px."""
+        """Return the chip at another place, in mm."""
         return replace(self, x=float(x), y=float(y))
 
     def thrown(
@@ -89,9 +89,9 @@ class Chip:
         cell: float,
         straddling: float,
     ) -> Chip:
-        """Put the chip on a cell: near its middle, or by this chance anywhere, even at its lines.
+        """Put the chip on a cell: near its centre, or with probability `straddling` anywhere in it.
 
-        Its own middle always lies in the cell, which is then the one that it marks.
+        Its own centre always lies in the cell that it marks.
         """
         if random.random() < straddling:
             dx, dy = random.uniform(-STRADDLES * cell, STRADDLES * cell, 2)
@@ -101,19 +101,19 @@ class Chip:
         return self.at(middle[0] + dx, middle[1] + dy)
 
     def clear_of(self, other: Chip) -> bool:
-        """Say whether two chips can lie beside each other."""
+        """Return whether two chips can lie beside each other."""
         return hypot(self.x - other.x, self.y - other.y) > 0.92 * (self.radius + other.radius)
 
 
 def some_chip(random: np.random.Generator) -> Chip:
-    """Draw a kind of chip: mostly red ones of 19 mm, some of them translucent."""
+    """Draw a random chip: mostly red ones of 19 mm, some of them translucent."""
     chance, uniform = random.random, random.uniform
     hue = "red" if chance() < 0.5 else str(random.choice(list(HUES)))
     tone = tone_of(HUES[hue] + random.normal(0, 5), uniform(0.5, 1.0), uniform(0.3, 1.0))
     colourless = chance() < 0.14
     if colourless:
         tone = tone_of(0, 0, float(random.choice([0.08, 0.2, 0.45, 0.6, 0.9, 0.97])))
-    plain = chance() < 0.3  # as thin as paper, and of one tone
+    plain = chance() < 0.3  # thin as paper, and of one tone
     pale = min(tone) > 0.75
     outline = uniform(0.3, 0.8) if (pale and plain) or chance() < 0.15 else 0.0
     return Chip(
@@ -129,7 +129,7 @@ def some_chip(random: np.random.Generator) -> Chip:
 
 
 def faint_chip(random: np.random.Generator) -> Chip:
-    """Draw a kind of chip that is hard to see: half of the light and more goes through, or pale."""
+    """Draw a random chip that is hard to see: very translucent, or pale."""
     chance, uniform = random.random, random.uniform
     hue = float(random.choice([*HUES.values(), 180]))
     tone = tone_of(hue + random.normal(0, 8), uniform(0.15, 1.0), uniform(0.5, 1.0))
@@ -160,7 +160,7 @@ def put_chip(
     tilted_to: float,
     random: np.random.Generator,
 ) -> None:
-    """Draw a chip (px) with its shadow, its side (as the camera's tilt shows it) and its top."""
+    """Draw a chip with its shadow, visible side and top; `scale` is in px per mm."""
     import numpy as np
 
     high = chip.thick * tan(radians(min(tilt, 70)))
@@ -219,7 +219,7 @@ def put_chip(
         _circle(table, top, chip.radius, scale, around, tone * (1 - chip.outline))
     if chip.ring:
         _circle(table, top, chip.radius * 0.62, scale, around, tone * (1 + chip.ring))
-    if random.random() < 0.25:  # lamplight on its top
+    if random.random() < 0.25:  # reflection of a lamp
         spot = chip.radius * 0.4
         _disc(
             table,
@@ -249,7 +249,7 @@ def _disc(
     washed: bool = False,
     shape: Outline = DISC,
 ) -> None:
-    """Draw a chip such as a disc; a share `clear` of the background shows through, in its tone."""
+    """Draw one layer of a chip; a share `clear` of the background shows through, in its tone."""
     import numpy as np
 
     px, py, reach = (x + around) * scale, (y + around) * scale, radius * scale + 3 * soft + 2
@@ -264,7 +264,7 @@ def _disc(
     beneath = table[box]
     dye = tone if tone.any() and not washed else 1
     through = beneath * (clear * dye) + (1 - clear) * tone
-    # Where nothing lay, a shadow darkens nothing: the background is not in this layer.
+    # A shadow outside the card is not drawn: the background is not in this layer.
     there = np.maximum(seen[box][..., None], inside if tone.any() else 0)
     table[box] = (beneath * (1 - inside) + through * inside) * np.where(tone.any(), 1, there)
     seen[box] = np.maximum(seen[box], inside[..., 0] if tone.any() else 0)
@@ -278,7 +278,7 @@ def _figure(
     around: float,
     random: np.random.Generator,
 ) -> None:
-    """Make a chip's top uneven, as a coin's, or its edge striped."""
+    """Make a chip's top uneven as a coin's, or its edge striped."""
     import cv2
     import numpy as np
 
@@ -303,7 +303,7 @@ def _figure(
 def _circle(
     table: Real, middle: tuple[float, float], radius: float, scale: float, around: float, tone: Real
 ) -> None:
-    """Draw a thin line around a place."""
+    """Draw a thin circle."""
     import cv2
 
     x, y = (round((place + around) * scale * 16) for place in middle)

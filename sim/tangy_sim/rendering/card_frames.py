@@ -1,7 +1,7 @@
-"""What a camera would see of a card on a table, with the truth beside it.
+"""Renders camera frames of a card on a table, with ground truth.
 
-A pinhole camera looks at a plane: the table's top with a printed card, chips and hands on it.
-Light, shadow, glare, blur, noise and JPEG come on top. The same seed gives the same frames.
+A pinhole camera looks at a plane: the table top with a printed card, chips and hands. Light,
+shadow, glare, blur, noise and JPEG artefacts are added. The same seed gives the same frames.
 """
 
 from __future__ import annotations
@@ -27,25 +27,25 @@ if TYPE_CHECKING:
     Picture = NDArray[Any]
     Real = NDArray[Any]
 
-AROUND = 120.0  # mm of the table around the card that hands and loose chips may be on
-ON_LINE = 1.5  # mm from a line at which nobody can say in which cell a chip lies
+AROUND = 120.0  # mm of table around the card for hands and loose chips
+ON_LINE = 1.5  # mm from a line within which the cell of a chip is ambiguous
 HANDS = ("finger", "thumb", "flat", "blob", "bar")
-MASTER = 8.0  # pixels to the mm of the face that all smaller ones are made from
+MASTER = 8.0  # pixels per mm of the full-size face from which all sizes are made
 
 
 @dataclass(frozen=True)
 class View:
-    """The parameters of a frame; `some_view` draws at random those that are not given.
+    """Parameters of a frame; `some_view` samples those that are not given.
 
-    `pixels` is how large a cell would be seen straight on; angles are degrees; `blur` and
-    `motion` are pixels, `noise` grey levels, `quality` JPEG's.
+    `pixels` is the size of a cell seen from straight above; angles are in degrees; `blur` and
+    `motion` in pixels, `noise` in grey levels, `quality` is JPEG's.
     """
 
     pixels: float = 30.0
     tilt: float = 0.0
     tilted_to: float = 0.0
     spin: float = 0.0
-    wide: float = 1.2  # the focal length in widths of the picture
+    wide: float = 1.2  # focal length in image widths
     light: float = 0.8
     slope: float = 0.0
     warm: float = 0.0
@@ -57,18 +57,18 @@ class View:
     noise: float = 3.0
     quality: int = 90
     bend: float = 0.0  # mm
-    hand: str = ""  # or one of `HANDS`, or "thing" for something else
+    hand: str = ""  # or one of `HANDS`, or "thing" for another object
     grey: bool = False
     size: tuple[int, int] = (1280, 720)
 
 
 @dataclass(frozen=True)
 class RenderedFrame:
-    """A picture of a card, and its ground truth.
+    """A rendered frame of a card, with ground truth.
 
-    `marked` are the cells with a chip, as a mask; `covered` is how much of each cell a hand hides,
-    0 to 1; `corners` are the corners of the grid in the picture; `between` are the cells at a line
-    on which the middle of a chip lies, as a mask.
+    `marked` is a mask of the cells with a chip; `covered` the share of each cell under a hand, 0 to
+    1; `corners` are the corners of the grid in the image; `between` is a mask of the cells at a
+    line under the centre of a chip.
     """
 
     picture: Picture
@@ -80,13 +80,13 @@ class RenderedFrame:
     between: int = 0
 
     def unknown(self, share: float = 0.25) -> int:
-        """Return the cells nobody can tell: at least this share is hidden, or a chip on a line."""
+        """Return a mask of the cells that nobody can decide: hidden by this share, or at a line."""
         hidden = sum(1 << cell for cell, part in enumerate(self.covered) if part >= share)
         return hidden | self.between
 
 
 def some_view(random: np.random.Generator, **given: Any) -> View:
-    """Sample a view as it occurs in rooms; given parameters stay."""
+    """Sample a realistic view; given parameters are kept."""
     uniform, chance = random.uniform, random.random
     drawn = View(
         pixels=float(18 * (44 / 18) ** chance()),
@@ -112,7 +112,7 @@ def some_view(random: np.random.Generator, **given: Any) -> View:
 
 
 class CardCamera:
-    """Takes frames of cards of one deck that lie on a table."""
+    """Renders frames of cards of one deck on a table."""
 
     def __init__(
         self,
@@ -125,10 +125,10 @@ class CardCamera:
         odd: float = 0.0,
         oddity: Callable[[np.random.Generator], Chip] = odd_chip,
     ) -> None:
-        """Set up; `straddling` is the chance of a chip to lie carelessly on its cell.
+        """Set up the camera; `straddling` is the probability of a carelessly placed chip.
 
-        `faint` is the chance that the chips of a card are of a kind that is hard to see, `odd`
-        that they are none, but what `oddity` draws: coins, beans or scraps of paper.
+        `faint` is the probability that the chips of a card are hard to see, `odd` that they are
+        drawn by `oddity`: coins, beans or scraps of paper.
         """
         self.face = CardLayout(deck)
         self.straddling = straddling
@@ -139,7 +139,7 @@ class CardCamera:
         self.title = title
 
     def frames(self, seed: int, count: int, **given: Any) -> Iterator[RenderedFrame]:
-        """Yield frames of random cards in random views; see `some_view` for what may be given."""
+        """Yield frames of random cards in random views; see `some_view` for the parameters."""
         import numpy as np
 
         for number in range(count):
@@ -147,7 +147,7 @@ class CardCamera:
             yield self.some_frame(random, some_view(random, **given))
 
     def some_frame(self, random: np.random.Generator, view: View) -> RenderedFrame:
-        """Take a frame of a random card with random chips."""
+        """Render a random card with random chips."""
         deck = self.face.deck
         cells = deck.rows * len(deck.columns)
         share = random.uniform(0, 0.65) if random.random() < 0.9 else 0.0
@@ -156,7 +156,7 @@ class CardCamera:
         return self.take(card, self.chips(random, marked), view, random)
 
     def chips(self, random: np.random.Generator, marked: int) -> dict[int, Chip]:
-        """Put chips of one kind on cells, the way hands do: none lies on another."""
+        """Put chips of one kind on the marked cells, without overlaps."""
         deck = self.face.deck
         faint = self.faint > 0 and random.random() < self.faint
         kind = faint_chip(random) if faint else some_chip(random)
@@ -178,7 +178,7 @@ class CardCamera:
     def take(
         self, card: int, chips: dict[int, Chip], view: View, random: np.random.Generator
     ) -> RenderedFrame:
-        """Take a frame of this card with these chips in this view."""
+        """Render a card with these chips in this view."""
         import numpy as np
 
         face, cells = self.face, self.face.deck.rows * len(self.face.deck.columns)
@@ -209,7 +209,7 @@ class CardCamera:
         )
 
     def _between(self, chips: dict[int, Chip]) -> int:
-        """Return the cells that a chip marks or nearly marks, because it lies on a line."""
+        """Return a mask of the cells that a chip on a line marks or nearly marks."""
         face, cells = self.face, 0
         for own, chip in chips.items():
             reached = 0
@@ -229,7 +229,7 @@ class CardCamera:
         scale: float,
         random: np.random.Generator,
     ) -> tuple[Real, Real]:
-        """Draw the card and the chips from above; return it and where something lies (0 to 1)."""
+        """Draw the card and the chips from above; return the image and its opacity (0 to 1)."""
         import cv2
         import numpy as np
 
@@ -256,7 +256,7 @@ class CardCamera:
         return table, seen
 
     def _covered(self, mask: Real, scale: float) -> NDArray[Any]:
-        """Return how much of each cell lies under a hand, 0 to 1."""
+        """Return the share of each cell under a hand, 0 to 1."""
         import numpy as np
 
         face, parts = self.face, []
@@ -275,7 +275,7 @@ def _master(face: CardLayout, card: int, seed: int, title: str) -> Picture:
 
 
 def _bent(paper: Real, most: float, random: np.random.Generator) -> Real:
-    """Bend the paper a little: displace the picture by long waves, by at most `most` pixels."""
+    """Bend the paper: displace the image by long waves, by at most `most` pixels."""
     import cv2
     import numpy as np
 
@@ -297,7 +297,7 @@ def _bent(paper: Real, most: float, random: np.random.Generator) -> Real:
 
 
 def _homography(view: View, face: CardLayout, random: np.random.Generator) -> NDArray[Any]:
-    """Return what takes mm on the card to pixels of the picture."""
+    """Return the homography from mm on the card to pixels."""
     import numpy as np
 
     width, height = view.size
@@ -335,7 +335,7 @@ def _photograph(
     view: View,
     random: np.random.Generator,
 ) -> Picture:
-    """See the table through the camera: light, shadow, glare, blur, noise, JPEG."""
+    """Render the table through the camera: light, shadow, glare, blur, noise, JPEG."""
     import cv2
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""Hands with sleeves, and other things, that lie over a simulated card."""
+"""Hands with sleeves, and other objects, over a simulated card."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def draw_hand(
     face: CardLayout,
     random: np.random.Generator,
 ) -> Real:
-    """Draw a hand with its sleeve over the card; return where it is, 0 to 1."""
+    """Draw a hand with its sleeve over the card; return its mask, 0 to 1."""
     import cv2
     import numpy as np
 
@@ -39,7 +39,7 @@ def draw_hand(
         for a, b in pairwise(ends):
             cv2.line(mask, a, b, 255, max(1, round(2 * radius * scale)), cv2.LINE_AA)
 
-    # The hand comes from `way`; `tip` is where its longest finger ends.
+    # The hand comes from the direction `way`; `tip` is the end of its longest finger.
     way = random.uniform(0, 2 * pi)
     ux, uy = cos(way), sin(way)
     grid = face.grid
@@ -98,7 +98,7 @@ def _shape(
     face: CardLayout,
     random: np.random.Generator,
 ) -> NDArray[np.uint8]:
-    """Draw an outline with corners or none: a fist, a bar (an arm, a ruler), a cup, a sheet."""
+    """Draw an outline with or without corners: a fist, a bar (an arm, a ruler), a cup, a sheet."""
     import cv2
     import numpy as np
 
@@ -109,7 +109,7 @@ def _shape(
         along, aside = np.array([cos(way), sin(way)]), np.array([-sin(way), cos(way)]) * half
         far = middle + along * 450 * scale
         points = np.array([middle - aside, middle + aside, far + aside, far - aside])
-        if random.random() < 0.5:  # its end is round
+        if random.random() < 0.5:  # rounded end
             cv2.circle(mask, middle.astype(int).tolist(), round(half), 255, -1, cv2.LINE_AA)
     elif random.random() < 0.5:
         size = [float(side) for side in random.uniform(34, 110, 2) * scale]
@@ -137,7 +137,7 @@ def _lay(
     *,
     skin: bool,
 ) -> Real:
-    """Lay something of this outline on the card; return where it is, 0 to 1."""
+    """Put an object with this mask on the card; return the mask, 0 to 1."""
     import cv2
     import numpy as np
 
@@ -186,7 +186,7 @@ def _cloth(
     *,
     striped: bool = False,
 ) -> None:
-    """Lay skin or cloth on the table: rounder and darker towards its edges, a little uneven."""
+    """Draw skin or cloth on the table: darker towards its edges, slightly uneven."""
     import cv2
     import numpy as np
 
@@ -198,7 +198,7 @@ def _cloth(
     deep = cv2.distanceTransform((mask > 127).astype(np.uint8), cv2.DIST_L2, 3) / (9 * scale)
     shade = 0.62 + 0.38 * np.sqrt(np.clip(deep, 0, 1))
     small = random.normal(0, 1, (mask.shape[0] // 12 + 2, mask.shape[1] // 12 + 2))
-    if random.random() < 0.25:  # lit so that it has no roundness
+    if random.random() < 0.25:  # flat lighting
         shade = np.ones_like(shade)
     uneven = cv2.resize(small.astype(np.float32), mask.shape[::-1], interpolation=cv2.INTER_CUBIC)
     shade = shade * (1 + 0.04 * uneven)

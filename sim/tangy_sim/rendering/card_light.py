@@ -1,4 +1,4 @@
-"""Light on the simulated table, and what a camera makes of it: blur, noise and JPEG."""
+"""Lighting of the simulated table, and the effects of a camera: blur, noise and JPEG."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def project(plane: NDArray[Any], points: NDArray[Any]) -> NDArray[Any]:
-    """Return where points (n, 2) of the card, in mm, are in the picture, in px."""
+    """Project points (n, 2) of the card, in mm, into the image, in px."""
     import numpy as np
 
     seen = np.column_stack([points, np.ones(len(points))]) @ plane.T
@@ -73,7 +73,7 @@ def moved(scene: Real, length: float, random: np.random.Generator) -> Real:
 def exposed(
     lit: Real, noise: float, quality: int, random: np.random.Generator, *, grey: bool = False
 ) -> Picture:
-    """Return the picture that a camera delivers: noise in grey levels, JPEG quality in %."""
+    """Return the camera's image: noise in grey levels, JPEG quality in %."""
     import cv2
     import numpy as np
 

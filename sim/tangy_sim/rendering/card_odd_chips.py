@@ -1,4 +1,4 @@
-"""What lies on cards where there are no chips at hand: paper, coins, beans, glass, washers."""
+"""Objects that people use instead of chips: paper, coins, beans, glass, washers."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ SORTS = {
     "white paper": 0.24, "clear": 0.2, "coin": 0.12, "bean": 0.16, "washer": 0.1,
     "cut out": 0.08, "striped": 0.05, "pastel": 0.05,
 }  # fmt: skip
-"""How often each sort is drawn."""
+"""Probability of each sort."""
 
 
 def odd_chip(random: np.random.Generator) -> Chip:
-    """Draw a kind of chip that is none: see `SORTS`."""
+    """Draw a random substitute for chips: see `SORTS`."""
     sort = str(random.choice(list(SORTS), p=list(SORTS.values())))
     uniform = random.uniform
     hue = float(random.choice([*HUES.values(), 180])) + random.normal(0, 8)

@@ -1,6 +1,6 @@
-"""Drawn faces: enough like faces for the cascades, different from one another, and nobody's.
+"""Synthetic faces: like enough to faces for the cascades, distinct, and of no real person.
 
-A number makes a person; each picture of them has other light, another place and other noise.
+A number defines a person; their images differ in light, place and noise.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from typing import Any
 import cv2
 import numpy as np
 
-SIZE = 200  # pixels across of a usual picture; the face takes 60% of it
-_FINE = 4  # times larger it is drawn
+SIZE = 200  # pixels of an image's width; the face takes 60% of it
+_FINE = 4  # oversampling factor
 
 
 def drawn_face(
@@ -22,7 +22,7 @@ def drawn_face(
     light: float = 1.0,
     blur: float = 0.0,
 ) -> Any:
-    """Draw one picture (BGR) of one person; light is a ratio, blur in px."""
+    """Draw one image (BGR) of one person; light is a ratio, blur in px."""
     who, now = np.random.default_rng(person), np.random.default_rng((person, picture))
     side = 100 * _FINE
     face: Any = np.full((side, side, 3), now.uniform(95, 150, 3), np.float32)
@@ -59,7 +59,7 @@ def drawn_face(
     oval(0, 21 + now.uniform(-0.5, 0.5), mouth * 0.9, 0.6, np.array([50, 40, 90]))
     if who.uniform() < 0.4:
         oval(0, 29, mouth, 4, hair * 1.2)
-    for _ in range(4):  # wrinkles and spots of one's own
+    for _ in range(4):  # individual wrinkles and spots
         at, wide = who.uniform(-18, 18, 2), who.uniform(1, 5)
         oval(at[0], at[1], wide, who.uniform(0.4, 1.5), skin * who.uniform(0.75, 0.95), lean)
     slope = np.linspace(-1, 1, side)[None, :, None] * now.uniform(-0.15, 0.15)

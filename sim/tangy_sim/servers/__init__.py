@@ -1,1 +1,1 @@
-"""The wires of a simulated robot, as real devices speak: rosbridge, SCIP and MJPEG."""
+"""Protocol servers of a simulated robot: rosbridge, SCIP and MJPEG."""

@@ -1,4 +1,4 @@
-"""Network cameras: each a path at which JPEGs follow one another (MJPEG over HTTP)."""
+"""Network cameras that stream MJPEG over HTTP, each at its own path."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ HEAD = (
 PART = b"--" + BOUNDARY + b"\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n"
 LONGEST_REQUEST = 8192
 KERNEL_BYTES = 1 << 17
-"""Bytes buffered for a slow viewer; more would only hold old pictures."""
+"""Bytes buffered for a slow viewer; more would only hold old frames."""
 
 
 class JpegStream:
-    """One camera: it shows every viewer the newest JPEG, and leaves out what a slow one missed.
+    """One camera: it sends every viewer the newest JPEG; slow viewers skip frames.
 
-    Faults: while `frozen` each new picture is the last from before; while `closed` viewers are cut
-    off, and new ones at once; while `hangs` they stay, and nothing comes.
+    Faults: while `frozen`, each new frame repeats the last one; while `closed`, viewers are
+    disconnected, and new ones at once; while `hangs`, they stay connected and get nothing.
     """
 
     def __init__(self, path: str) -> None:
@@ -31,15 +31,15 @@ class JpegStream:
         self.hangs = False
         self.newest = b""
         self.pushed = 0
-        """Pictures that were given."""
+        """Number of frames pushed."""
         self.rate = 0.0
-        """The most pictures a second that a viewer is sent; 0: all."""
+        """Maximum frames a second sent to a viewer; 0: all."""
         self._closed = False
         self._viewers: set[_Viewer] = set()
 
     @property
     def closed(self) -> bool:
-        """Whether nobody may look."""
+        """Whether viewers are disconnected."""
         return self._closed
 
     @closed.setter
@@ -51,11 +51,11 @@ class JpegStream:
 
     @property
     def viewers(self) -> int:
-        """How many look."""
+        """Number of viewers."""
         return len(self._viewers)
 
     def push(self, jpeg: bytes) -> None:
-        """Show a new picture."""
+        """Send a new frame."""
         self.pushed += 1
         if not (self.frozen and self.newest):
             self.newest = jpeg
@@ -64,7 +64,7 @@ class JpegStream:
 
 
 class MjpegServer:
-    """Some cameras at one port; `camera["/head"].frozen = True` breaks one of them."""
+    """Cameras at one port; `camera["/head"].frozen = True` injects a fault."""
 
     def __init__(self, paths: Iterable[str] = PATHS) -> None:
         self.camera = {path: JpegStream(path) for path in paths}
@@ -74,7 +74,7 @@ class MjpegServer:
         self._ready = asyncio.Event()
 
     async def start(self, host: str = "127.0.0.1", port: int = 0) -> None:
-        """Listen; at a free port if none is given."""
+        """Start to listen, by default at a free port."""
         loop = asyncio.get_running_loop()
         self._server = await loop.create_server(lambda: _Viewer(self), host, port)
         self.port = self._server.sockets[0].getsockname()[1]
@@ -84,17 +84,17 @@ class MjpegServer:
         return f"http://127.0.0.1:{self.port}{path}"
 
     def push(self, path: str, jpeg: bytes) -> None:
-        """Show a new picture at a path."""
+        """Send a new frame at a path."""
         self.camera[path].push(jpeg)
 
     async def somebody(self, path: str) -> None:
-        """Wait until somebody looks at a camera."""
+        """Wait until a camera has a viewer."""
         while not self.camera[path].viewers:
             self._ready.clear()
             await self._ready.wait()
 
     async def close(self) -> None:
-        """End, with all viewers."""
+        """Stop, and disconnect all viewers."""
         for viewer in tuple(self._open):
             viewer.cut()
         if self._server is not None:
@@ -103,7 +103,7 @@ class MjpegServer:
 
 
 class _Viewer(asyncio.Protocol):
-    """Somebody who looks: what cannot be sent at once is replaced by what comes after it."""
+    """A viewer's connection: an unsent frame is replaced by the next one."""
 
     def __init__(self, server: MjpegServer) -> None:
         self._server = server
@@ -118,12 +118,12 @@ class _Viewer(asyncio.Protocol):
         self._loop = asyncio.get_running_loop()
 
     def show(self, jpeg: bytes) -> None:
-        """Send a picture, or the newest by the time when it can be sent."""
+        """Send a frame, or the newest one once the connection is writable."""
         self._next = jpeg
         self._send()
 
     def cut(self) -> None:
-        """Break off."""
+        """Disconnect."""
         if self._camera is not None:
             self._camera._viewers.discard(self)
         if self._timer is not None:

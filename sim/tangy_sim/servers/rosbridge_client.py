@@ -1,4 +1,4 @@
-"""One client of a rosbridge server: its subscriptions, and its queue of messages."""
+"""A client of a rosbridge server: its subscriptions, and its queue of messages."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from typing import Any
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
-BACKLOG = 4 << 20  # characters that wait for a slow client before its oldest messages are lost
-HELD = 1_000  # messages of a client that are kept for after a pause
-EARLY_SECONDS = 1e-6  # by which a throttled message may come early: clocks round
+BACKLOG = 4 << 20  # queued characters of a slow client before its oldest messages are dropped
+HELD = 1_000  # messages of a client stored during a pause
+EARLY_SECONDS = 1e-6  # by which a throttled message may come early, because clocks round
 
 
 def full_name(name: str) -> str:
-    """Return a topic's or service's name with the slash that it may be written without."""
+    """Return a topic's or service's name with its leading slash."""
     return "/" + name.strip("/")
 
 
@@ -26,7 +26,7 @@ def encoded(message: object) -> str:
     """Return a message as JSON; arrays become lists, NaN and infinity null."""
     try:
         return _ENCODER.encode(message)
-    except ValueError:  # infinity and not-a-number are none of JSON's
+    except ValueError:  # JSON has neither NaN nor infinity
         return _ENCODER.encode(_finite(message))
 
 
@@ -34,14 +34,14 @@ class Client:
     """A connection with its subscriptions and its outgoing queue."""
 
     def __init__(self, connection: ServerConnection) -> None:
-        """Know its connection."""
+        """Set its connection."""
         self.connection = connection
         self.topics: dict[str, dict[str, tuple[float, int]]] = {}
-        """Throttle in s and largest message by subscription, by topic."""
+        """Throttle in s and maximum message size of each subscription, by topic."""
         self.held: list[dict[str, Any]] = []
-        """Messages it sent during a pause."""
+        """Messages that it sent during a pause."""
         self.unsaid: list[str] = []
-        """Replies it would have received during a pause."""
+        """Replies to send after a pause."""
         self._queue: deque[tuple[bool, str]] = deque()
         self._size = 0
         self._last: dict[str, float] = {}
@@ -49,18 +49,18 @@ class Client:
         self._fragmented = 0
 
     def subscribe(self, topic: str, key: str, throttle: float, largest: int) -> None:
-        """Remember a subscription, of one message in `throttle` s; one of the same key goes."""
+        """Store a subscription with a throttle in s; it replaces one with the same key."""
         self.topics.setdefault(topic, {})[key] = throttle, largest
 
     def unsubscribe(self, topic: str, key: object = None) -> None:
-        """Forget one subscription to a topic, or all of them."""
+        """Remove one subscription to a topic, or all of them."""
         kept = self.topics.get(topic, {})
         kept.pop(str(key), None)
         if key is None or not kept:
             self.topics.pop(topic, None)
 
     def is_due(self, topic: str, now: float) -> bool:
-        """Whether a message of a topic should be sent now (s); it counts as sent then."""
+        """Return whether a message of a topic should be sent now (s), and record it as sent."""
         if topic not in self.topics:
             return False
         throttle = min(seconds for seconds, _ in self.topics[topic].values())
@@ -70,16 +70,16 @@ class Client:
         return True
 
     def largest(self, topic: str) -> int:
-        """Return how many characters a message of a topic may have in one piece; 0: any."""
+        """Return the maximum characters of an unfragmented message of a topic; 0: unlimited."""
         return min((size for _, size in self.topics[topic].values() if size), default=0)
 
     def say(self, text: str, *, loses: bool = False, largest: int = 0) -> None:
-        """Queue a text, in fragments where it is larger than it may be.
+        """Queue a text, in fragments if it is too long.
 
         Args:
             text: the message.
-            loses: whether it may be lost when the client reads too slowly.
-            largest: bytes of a piece at most.
+            loses: whether it may be dropped if the client reads too slowly.
+            largest: maximum bytes of a fragment; 0: unlimited.
         """
         if largest and len(text) > largest:
             self._fragmented += 1
@@ -91,19 +91,19 @@ class Client:
             self._put(loses, text)
 
     async def write(self) -> None:
-        """Send the queue, as long as the connection is open."""
+        """Send the queue while the connection is open."""
         with suppress(ConnectionClosed):
             while True:
                 while self._queue:
                     _, text = self._queue.popleft()
                     self._size -= len(text)
                     await self.connection.send(text)
-                    await asyncio.sleep(0)  # much that waits delays nobody else
+                    await asyncio.sleep(0)  # let other tasks run while many messages wait
                 self._wake.clear()
                 await self._wake.wait()
 
     def hold(self, message: dict[str, Any]) -> None:
-        """Keep what it said for after a pause; of much that it published the newest counts."""
+        """Store a message for after a pause; if there are too many, drop published ones."""
         if len(self.held) >= HELD:
             oldest = (at for at, held in enumerate(self.held) if held["op"] == "publish")
             del self.held[next(oldest, 0)]

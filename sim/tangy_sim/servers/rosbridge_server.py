@@ -1,8 +1,8 @@
 """A rosbridge v2 server: topics, services and actions as JSON over WebSocket.
 
-It knows nothing of robots: the simulation publishes, subscribes, and provides services. Messages
-to one client go out in their order, so messages published before the answer of a service
-arrive before it. A client that does not read delays nobody: its oldest messages are lost.
+It knows nothing of robots: the simulation publishes, subscribes, and provides services. Messages to
+a client keep their order, so messages published before a service's answer arrive before it. A
+client that does not read delays nobody: its oldest messages are dropped.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ Feedback = Callable[[Message], None]
 Service = Callable[[Message], Coroutine[Any, Any, Message]]
 Action = Callable[[Message, Feedback], Coroutine[Any, Any, Message]]
 
-LARGEST = 16 << 20  # bytes of a message that is taken
-CLOSING_SECONDS = 0.5  # for which a client's goodbye is waited for
-SUCCEEDED, CANCELED, ABORTED = 4, 5, 6  # as action_msgs/GoalStatus numbers them
+LARGEST = 16 << 20  # bytes of a received message
+CLOSING_SECONDS = 0.5  # timeout of a client's closing handshake
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6  # by their number in action_msgs/GoalStatus
 
 
 class RosbridgeServer:
@@ -41,10 +41,10 @@ class RosbridgeServer:
         *,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Name where to listen (port 0: any that is free) and the time by which to throttle."""
+        """Set the address (port 0: any free one), and the clock for throttling."""
         self.host, self.port = host, port
         self.sent: Counter[str] = Counter()
-        """How many messages were published so far, by topic."""
+        """Number of messages published so far, by topic."""
         self._clock = clock
         self._server: Server | None = None
         self._clients: set[Client] = set()
@@ -59,14 +59,14 @@ class RosbridgeServer:
 
     @property
     def url(self) -> str:
-        """Where clients find it."""
+        """Address for clients."""
         return f"ws://{self.host}:{self.port}"
 
     async def start(self) -> None:
-        """Listen; after `close`, at the same port again.
+        """Start to listen; after `close`, at the same port again.
 
         Raises:
-            OSError: the port is taken.
+            OSError: the port is in use.
         """
         self._server = await serve(
             self._attend,
@@ -80,7 +80,7 @@ class RosbridgeServer:
         self.port = next(iter(self._server.sockets)).getsockname()[1]
 
     async def close(self) -> None:
-        """End: no more is answered, and all connections are closed."""
+        """Stop: nothing more is answered, and all connections are closed."""
         server, self._server = self._server, None
         for task in self._tasks:
             task.cancel()
@@ -90,20 +90,20 @@ class RosbridgeServer:
             await server.wait_closed()
 
     def drop(self) -> None:
-        """Break off all connections as a crash does, and go on listening."""
+        """Abort all connections, as in a crash, and go on listening."""
         for client in self._clients:
             client.connection.transport.abort()
 
     def pause(self, still: Collection[str] = ()) -> None:
-        """Freeze: connections stand and are taken, but nothing is said or done until `resume`.
+        """Freeze: connections stay open, but nothing is sent or done until `resume`.
 
-        Messages published meanwhile are lost; clients' messages are read afterwards, as if a
-        stopped process goes on. `still` names topics and services that go on nevertheless.
+        Messages published meanwhile are lost; clients' messages are processed afterwards, as in a
+        process that was stopped and continued. `still` names topics and services that go on.
         """
         self._paused, self._still = True, frozenset(map(full_name, still))
 
     def resume(self) -> None:
-        """Thaw."""
+        """End a pause."""
         self._paused = False
         for client in list(self._clients):
             held, client.held = client.held, []
@@ -114,12 +114,12 @@ class RosbridgeServer:
             client.unsaid.clear()
 
     def publish(self, topic: str, kind: str, message: Message) -> None:
-        """Send a message to all that have subscribed; never waits.
+        """Send a message to all subscribers, without waiting.
 
         Args:
-            topic: its name.
-            kind: its type, for the reader; rosbridge does not send it.
-            message: may hold numpy arrays; NaN and infinity are sent as null, as by rosbridge.
+            topic: name of the topic.
+            kind: message type, for the reader only; rosbridge does not send it.
+            message: may contain numpy arrays; NaN and infinity become null, as in rosbridge.
         """
         del kind
         topic = full_name(topic)
@@ -133,17 +133,17 @@ class RosbridgeServer:
                 client.say(text, loses=True, largest=client.largest(topic))
 
     def on_message(self, topic: str, hears: Hears) -> None:
-        """Have something called with each message that a client publishes on a topic."""
+        """Add a callback for messages that clients publish on a topic."""
         self._hears.setdefault(full_name(topic), []).append(hears)
 
     def provide(self, service: str, does: Service) -> None:
-        """Provide a service: its arguments in, its values out; if it raises, it has failed."""
+        """Provide a service: arguments in, values out; an exception is a failure."""
         self._services[full_name(service)] = does
 
     def provide_action(self, action: str, does: Action) -> None:
-        """Provide an action: goal and feedback in, result out.
+        """Provide an action: goal and feedback callback in, result out.
 
-        If it raises it is aborted; it is cancelled as a task when a client cancels its goal.
+        An exception aborts it; a client's cancellation cancels its task.
         """
         self._actions[full_name(action)] = does
 
@@ -242,7 +242,7 @@ class RosbridgeServer:
                     f"service {name} does not exist" if name not in self._services else repr(error)
                 )
                 self._answer(client, name, {**answer, "values": why, "result": False})
-            except Exception as error:  # whatever a service raises is its caller's to know
+            except Exception as error:  # the caller gets any exception of a service
                 self._answer(client, name, {**answer, "values": str(error), "result": False})
 
         self._begin(run())
@@ -262,7 +262,7 @@ class RosbridgeServer:
                 values = await goal
             except asyncio.CancelledError:
                 status = CANCELED
-            except Exception as error:  # whatever an action raises is its client's to know
+            except Exception as error:  # the client gets any exception of an action
                 values, status = str(error), ABORTED
             self._goals.pop(key, None)
             result = {"values": values, "status": status, "result": status == SUCCEEDED}

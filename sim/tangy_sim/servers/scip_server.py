@@ -1,4 +1,4 @@
-"""A laser scanner on the network or on a serial port, in whose place a bench measures."""
+"""A simulated laser scanner on the network or a serial port; the bench supplies its scans."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tangy_sim.servers.scip_session import CLOCK, URG, Scanner, ScipSession
 
 MOST_UNSENT = 1 << 18
-"""Bytes that wait for a client that is slow; then it misses scans, as it would with a scanner."""
+"""Queued bytes of a slow client, after which it misses scans, as with a real scanner."""
 
 
 class _Wire(Protocol):
@@ -28,11 +28,11 @@ class _Wire(Protocol):
 
 
 class ScipServer:
-    """Answers as a SCIP 2.0 scanner does, and gives each scan to every client that measures.
+    """Answers as a SCIP 2.0 scanner, and sends each scan to every measuring client.
 
-    Faults: while `silent` it sends nothing, and requests are lost; while `closed` connections
-    are cut and new ones are cut at once; `fault` is the status of a scanner that is broken
-    ("0L", or "70" when its motor stalls), given instead of scans.
+    Faults: while `silent`, it sends nothing, and requests are lost; while `closed`, connections are
+    cut, and new ones at once; `fault` is the status of a broken scanner ("0L", or "70" for a
+    stalled motor), sent instead of scans.
     """
 
     def __init__(self, scanner: Scanner = URG) -> None:
@@ -40,10 +40,10 @@ class ScipServer:
         self.silent = False
         self.fault = ""
         self.sent = 0
-        """Scans that at least one client got."""
+        """Scans sent to at least one client."""
         self.port = 0
         self.cable: Callable[[bytes], bytes] = bytes
-        """The transmission fault applied to replies."""
+        """Transmission fault applied to replies."""
         self._closed = False
         self._now = 0
         self._wires: set[_Wire] = set()
@@ -52,12 +52,12 @@ class ScipServer:
 
     @property
     def url(self) -> str:
-        """Its address."""
+        """Address of the server."""
         return f"tcp://127.0.0.1:{self.port}"
 
     @property
     def closed(self) -> bool:
-        """Whether it lets nobody in."""
+        """Whether connections are cut."""
         return self._closed
 
     @closed.setter
@@ -69,22 +69,22 @@ class ScipServer:
 
     @property
     def measuring(self) -> int:
-        """How many clients wait for scans."""
+        """Number of clients waiting for scans."""
         return sum(wire.session.measuring for wire in self._wires)
 
     async def start(self, host: str = "127.0.0.1", port: int = 0) -> None:
-        """Listen; at a free port if none is given."""
+        """Start to listen, by default at a free port."""
         loop = asyncio.get_running_loop()
         self._server = await loop.create_server(lambda: _Connection(self), host, port)
         self.port = self._server.sockets[0].getsockname()[1]
 
     def serve_serial(self, path: str = "") -> str:
-        """Answer on a serial port, too; without one, on a new pseudo-terminal.
+        """Also serve a serial port: the given one, or a new pseudo-terminal.
 
-        When it is `closed`, it is pulled out, and does not come back.
+        When the server is `closed`, it is unplugged for good.
 
         Returns:
-            The port that a client opens: the other end of a new one, else what was given.
+            The port for clients: the other end of a new one, otherwise `path`.
         """
         if path:
             near = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
@@ -95,20 +95,20 @@ class ScipServer:
             tty.setraw(other)
             os.set_blocking(near, False)
             far = os.ttyname(other)
-            self._wires.add(_Port(self, near, held=other))  # so that it stays when a client goes
+            self._wires.add(_Port(self, near, held=other))  # keeps it open when a client leaves
             return far
         tty.setraw(near)
         return far
 
     def send(self, ranges: NDArray[np.float64], stamp_ms: int) -> int:
-        """Give a scan, (n,) in m, to everybody who measures.
+        """Send a scan, (n,) in m, to all measuring clients.
 
         Args:
-            ranges: metres, one for each beam; inf or beyond the scanner's reach: nothing is there.
+            ranges: range of each beam in m; inf or out of the scanner's limits: no return.
             stamp_ms: the scanner's time in ms.
 
         Returns:
-            How many clients got it.
+            The number of clients that got it.
         """
         if len(ranges) != self.scanner.beams:
             raise ValueError(f"{len(ranges)} ranges for {self.scanner.beams} beams")
@@ -129,7 +129,7 @@ class ScipServer:
             await self._ready.wait()
 
     async def close(self) -> None:
-        """End, with all connections."""
+        """Stop, and close all connections."""
         for wire in tuple(self._wires):
             wire.cut()
         if self._server is not None:
@@ -150,7 +150,7 @@ class ScipServer:
 
 
 def in_millimetres(scanner: Scanner, ranges: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return distances (n,) in mm as a scanner writes them: out of its reach is `nothing`."""
+    """Return ranges (n,) in mm in the scanner's encoding: out of its limits is `nothing`."""
     with np.errstate(invalid="ignore"):
         reached = (ranges >= scanner.nearest) & (ranges <= scanner.farthest)
     whole = np.rint(np.where(reached, ranges, 0.0) * 1000).astype(np.int64)
@@ -158,7 +158,7 @@ def in_millimetres(scanner: Scanner, ranges: NDArray[np.float64]) -> NDArray[np.
 
 
 class _Connection(asyncio.Protocol):
-    """A client on the network."""
+    """A TCP client."""
 
     def __init__(self, server: ScipServer) -> None:
         self._server = server
@@ -222,7 +222,7 @@ class _Port:
     def _receive(self) -> None:
         with self._cut_at_need():
             came = os.read(self._port, 4096)
-            if not came:  # the other end was pulled out
+            if not came:  # the other end was unplugged
                 self.cut()
             self._server._heard(self, came)
 

@@ -1,6 +1,6 @@
 """A session of a SCIP 2.0 laser scanner: commands and state for one client.
 
-Written from Hokuyo C-42-03320B apart from the driver that reads it, so that each tests the other.
+Written from Hokuyo C-42-03320B independently of the driver, so that each tests the other.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 LINE = 64
-"""Characters of a measurement that stand in one line."""
+"""Characters of a measurement in one line."""
 
 LONGEST_COMMAND = 100
-CLOCK = 1 << 24  # ms after which a scanner's clock begins again
+CLOCK = 1 << 24  # ms after which a scanner's clock wraps
 
 
 @dataclass(frozen=True, slots=True)
 class Scanner:
-    """A scanner that is stood in for; distances in m, `rate` in turns a second.
+    """Properties of a simulated scanner; distances in m, `rate` in turns per s.
 
-    Beams are steps of a full turn of `resolution`, from 0 on; `front` is the one straight ahead.
-    `nothing` is what it writes, in mm, for a beam that comes back from nowhere.
+    Beams are numbered from 0, with `resolution` steps to a full turn; `front` is straight ahead.
+    `nothing` is its code, in mm, for a beam without a return.
     """
 
     model: str
@@ -39,34 +39,34 @@ class Scanner:
 
     @property
     def step(self) -> float:
-        """The angle between two beams, in rad."""
+        """Angle between two beams, in rad."""
         return 2 * math.pi / self.resolution
 
     @property
     def first(self) -> float:
-        """Where the first beam looks, in rad from straight ahead, counter-clockwise."""
+        """Bearing of the first beam in rad, counter-clockwise from straight ahead."""
         return -self.front * self.step
 
 
 URG = Scanner("URG-04LX", 0.02, 5.6, 540, 360, 180, 10.0, 0)
-"""A small scanner of desks and robots: 360 beams over 240 degrees."""
+"""A small scanner for desks and robots: 360 beams over 240 degrees."""
 
 UTM = Scanner("UTM-30LX", 0.1, 30.0, 480, 360, 180, 40.0, 1)
-"""One that looks through a hall: 360 beams over 270 degrees."""
+"""A long-range scanner: 360 beams over 270 degrees."""
 
 
 def check(written: bytes) -> bytes:
-    """Return the character that closes a line."""
+    """Return the checksum character of a line."""
     return bytes([sum(written) % 64 + 48])
 
 
 def number(value: int, signs: int) -> bytes:
-    """Write a number, six bits a character."""
+    """Encode a number, six bits a character."""
     return bytes(48 + (value >> shift) % 64 for shift in range(6 * signs - 6, -1, -6))
 
 
 def measurement(distances: NDArray[np.int64], signs: int) -> bytes:
-    """Write distances (n,) in mm as lines of 64 characters, each with its checksum."""
+    """Encode distances (n,) in mm as lines of 64 characters, each with its checksum."""
     shifts = np.arange(6 * signs - 6, -1, -6)
     body = (48 + (distances[:, None] >> shifts) % 64).astype(np.uint8).tobytes()
     pieces = (body[begin : begin + LINE] for begin in range(0, len(body), LINE))
@@ -75,7 +75,7 @@ def measurement(distances: NDArray[np.int64], signs: int) -> bytes:
 
 @dataclass(slots=True)
 class _Wanted:
-    """A client's measurement: its beams, and the number of scans left."""
+    """A client's measurement request: its beams, and the number of scans left."""
 
     echo: bytes
     first: int
@@ -83,8 +83,8 @@ class _Wanted:
     cluster: int
     signs: int
     skip: int = 0
-    left: int | None = None  # None: on and on
-    passed: int = 0  # scans left out since the last
+    left: int | None = None  # None: unlimited
+    passed: int = 0  # scans skipped since the last
 
 
 MEASURE = re.compile(
@@ -94,11 +94,11 @@ MEASURE = re.compile(
 
 
 class ScipSession:
-    """One client's conversation with a scanner: `feed` takes what it says, `offer` a scan."""
+    """A client's session: `feed` takes its bytes, `offer` a scan."""
 
     def __init__(self, scanner: Scanner, write: Callable[[bytes], None]) -> None:
         self.fault = ""
-        """The status that a broken scanner gives instead of scans; "" when it is well."""
+        """Status that a broken scanner sends instead of scans; "" without a fault."""
         self._scanner = scanner
         self._write = write
         self._heard = b""
@@ -110,11 +110,11 @@ class ScipSession:
 
     @property
     def measuring(self) -> bool:
-        """Whether scans are waited for."""
+        """Whether a measurement is active."""
         return self._stream is not None or bool(self._single)
 
     def feed(self, came: bytes) -> None:
-        """Take bytes of the client, and answer the complete commands."""
+        """Parse bytes of the client, and answer the complete commands."""
         *commands, self._heard = re.split(rb"\r?\n|\r", self._heard + came)
         if len(self._heard) > LONGEST_COMMAND:
             self._heard = b""
@@ -123,7 +123,7 @@ class ScipSession:
                 self._obey(command)
 
     def offer(self, distances: NDArray[np.int64], ticks: int) -> bool:
-        """Give a scan, (n,) in mm, of a time in ms; return whether the client got it."""
+        """Send a scan, (n,) in mm, with a time in ms; return whether the client got it."""
         self._ticks = ticks
         got = False
         while self._single:
@@ -142,7 +142,7 @@ class ScipSession:
         wanted.passed = 0
         if wanted.left is not None:
             wanted.left -= 1
-            # The remaining scans are written where the client wrote the number it wanted.
+            # The number of remaining scans replaces the requested one in the echo.
             head, semicolon, tail = wanted.echo.partition(b";")
             wanted.echo = head[:-2] + b"%02d" % wanted.left + semicolon + tail
             if not wanted.left:
@@ -165,7 +165,7 @@ class ScipSession:
         self._write(echo + b"\n" + closed + b"\n" + lines + b"\n")
 
     def _obey(self, command: bytes) -> None:
-        word = command.partition(b";")[0]  # after it stands what only the client understands
+        word = command.partition(b";")[0]  # a comment of the client follows
         if word[:2] in (b"MD", b"MS", b"GD", b"GS"):
             self._measure(command, word)
         elif word in (b"VV", b"PP", b"II"):
@@ -222,7 +222,7 @@ class ScipSession:
             self._stream = wanted
 
     def _adjust(self, command: bytes, word: bytes) -> None:
-        """Answer the commands by which a client learns the scanner's time."""
+        """Answer the commands of time synchronisation."""
         if word == b"TM0":
             self._answer(command, b"02" if self._adjusting else b"00")
             self._adjusting, self._stream, self._lit = True, None, False

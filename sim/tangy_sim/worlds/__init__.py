@@ -1,1 +1,1 @@
-"""Simulated worlds: the room, its people, its faults, and guidance for its teachers."""
+"""Simulated worlds: the room, its people, its faults, and guidance for teachers."""

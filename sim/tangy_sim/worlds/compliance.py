@@ -1,4 +1,4 @@
-"""Whether simulated people comply: each has a hidden preference for one persuasive strategy."""
+"""Compliance of simulated people: each has a hidden preference for one persuasive strategy."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Preferences = Mapping[str, Mapping[str, float]]
 def preferences_in_turn(
     people: Sequence[str], strategies: Sequence[str], model: UserModel
 ) -> dict[str, dict[str, float]]:
-    """Give the people different preferences (probabilities), strategy by strategy in turn.
+    """Assign preferences (probabilities) to people, cycling through the strategies.
 
-    They do not depend on the seed: a person whom Tangy has got to know stays the same person.
+    They do not depend on the seed, so that a person whom Tangy knows stays the same.
     """
     return {
         person: {
@@ -31,14 +31,14 @@ def preferences_in_turn(
 def respond(
     preferences: Preferences, person: str, strategy: str, patience: float, rng: Random
 ) -> Response:
-    """Let a person respond: always follow, and comply in time as their preference has it.
+    """Simulate a person's response: always follow, and comply in time by their preference.
 
     Args:
-        preferences: of each person, how probably they comply with each strategy.
-        person: the id of the person.
-        strategy: how the person was asked.
-        patience: the activity's window in seconds; a late response comes within two windows.
-        rng: the stream of compliance alone; two numbers are drawn, whatever the response.
+        preferences: each person's probability of complying with each strategy.
+        person: id of the person.
+        strategy: strategy of the request.
+        patience: the activity's window in s; a late response comes within two windows.
+        rng: random stream for compliance only; exactly two numbers are drawn.
     """
     complied = rng.random() < preferences[person][strategy]
     share = rng.random()

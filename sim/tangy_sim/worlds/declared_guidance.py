@@ -1,9 +1,8 @@
-"""A guided game of any declared activity: what happens is what nobody has shown yet.
+"""A guided game of any declared activity: it brings about situations not demonstrated yet.
 
-Left to chance, some situations occur in one game of many. Here a search in the interpreter
-finds the events that lead to the nearest situation that was not shown. Some situations occur only
-once in a game: after the teacher has ended it, the game continues from an earlier moment until
-nothing is left to show.
+By chance, some situations occur only once in many games. A search in the interpreter finds the
+events that lead to the nearest missing situation. Some situations occur only once in a game: after
+the teacher has ended it, the game continues from an earlier moment until nothing is missing.
 """
 
 from __future__ import annotations
@@ -21,14 +20,14 @@ from tangy_profiles.state import EVERYBODY, ActivityState, Outcome
 from tangy_sim.worlds.declared_world import DeclaredWorld
 
 MOST_BACK = 25
-"""How often a guided game goes back; the next guided game covers the rest."""
+"""Maximum number of times a guided game goes back; the next one covers the rest."""
 
 
 class GuidedDeclaredWorld(DeclaredWorld):
     """A simulated world in which people bring about situations not demonstrated yet.
 
-    It goes by what the teacher shows, whatever that is. Where nothing is left to show, people act
-    by chance. The same seed, earlier demonstrations and actions give the same states.
+    It follows whatever the teacher demonstrates. When nothing is missing, people act at random. The
+    same seed, earlier demonstrations and actions give the same states.
     """
 
     def __init__(
@@ -38,7 +37,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
         super().__init__(activity, people, seed=seed)
 
     def begin(self) -> ActivityState:
-        """Begin a new game with what earlier demonstrations have shown."""
+        """Begin a new game with the coverage of earlier demonstrations."""
         self.taught = self._shown.copy()
         self.covered = False
         self.coming: ArrangedSituation | None = None
@@ -49,7 +48,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
         return super().begin()
 
     def execute(self, action: Action) -> Outcome:
-        """Carry out an action of the robot, then the next event of the plan."""
+        """Execute an action of the robot, then the next event of the plan."""
         if self.over:
             return super().execute(action)
         target = None if action.target == EVERYBODY else action.target
@@ -60,7 +59,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
         return outcome
 
     def _pass(self, seconds: float) -> None:
-        """Let no time pass in the game while the robot speaks: it passes when that is needed."""
+        """Let no time pass while the robot speaks: the plan advances the time when necessary."""
 
     def _let_people_act(self, pause: float) -> None:
         self._moments.append(self.game.copy())
@@ -74,10 +73,10 @@ class GuidedDeclaredWorld(DeclaredWorld):
             super()._let_people_act(pause)
 
     def _ask_silent(self, behaviour: str, who: str) -> None:
-        """Ask nobody again: in a guided game the silence of a person is to be shown, too."""
+        """Do not ask again: in a guided game, silence is also to be demonstrated."""
 
     def _next(self) -> Event | None:
-        """Return what has to happen now: the next leg of the way, or the first of a new one."""
+        """Return the next event: the next leg of the plan, or the first of a new plan."""
         key = moment_key(self.game)
         if not (self._legs and self._legs[0].key == key):
             way = nearest_way((self.game,), self.taught)
@@ -87,7 +86,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
         return self._legs.pop(0).event if self._legs else None
 
     def _go_back(self) -> None:
-        """Go on from the moment that is nearest to what was not shown; end the game without one."""
+        """Go back to the moment nearest to a missing situation; end the game if there is none."""
         latest = tuple(reversed(self._moments))
         way = nearest_way(latest, self.taught) if self._went_back < MOST_BACK else None
         if way is None:

@@ -1,7 +1,8 @@
-"""A simulated room for any declared activity: the interpreter, and people who act by chance.
+"""A simulated room for any declared activity: the interpreter, and people who act at random.
 
-Time goes from behaviour to behaviour: as long as the speech lasts, and a pause in which people may
-act. Streams for items, people and compliance are seeded apart; only `Random.random` is drawn from.
+Time advances with each behaviour: by the duration of its speech, and a pause in which people may
+act. Random streams for items, people and compliance have separate seeds; only `Random.random` is
+used.
 """
 
 from __future__ import annotations
@@ -35,11 +36,11 @@ from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.users import load_users
 
 SECONDS_A_WORD = 0.4  # s
-ASKING_AGAIN = 6.0  # s until a person has answered once more
+ASKING_AGAIN = 6.0  # s until a person has repeated an answer
 
 
 class DeclaredWorld:
-    """One room in which games of a declared activity are played.
+    """A room in which games of a declared activity are played.
 
     The same seed and the same actions give the same games on every machine.
     """
@@ -56,14 +57,14 @@ class DeclaredWorld:
         preferences: Preferences | None = None,
         unclear: float = 0.0,
     ) -> None:
-        """Make the room.
+        """Create the room.
 
         Args:
-            activity: what is played.
-            people: those who take turns.
-            seed: of the random generators.
-            preferences: how each person responds to each strategy.
-            unclear: the chance that an answer that is to be judged cannot be understood.
+            activity: the activity.
+            people: ids of the people who take turns.
+            seed: seed of the random generators.
+            preferences: each person's probability of complying with each strategy.
+            unclear: probability that an answer to be judged is unclear.
         """
         self.activity: Activity = activity
         self._declaration = activity.declaration
@@ -79,52 +80,52 @@ class DeclaredWorld:
 
     @property
     def seconds(self) -> float:
-        """The time in this game, in s."""
+        """Time in this game, in s."""
         return self.game.now
 
     @property
     def pauses(self) -> tuple[int, float]:
-        """How often, and for how many s, the robot waited for late data: never."""
+        """Number and total s of the robot's waits for late data: always 0."""
         return 0, 0.0
 
     def begin(self) -> ActivityState:
-        """Begin a new game, its items in a new order, and return its first state."""
+        """Begin a new game with shuffled items, and return its first state."""
         order = order_of(self._declaration.items, self._items)
         self.game = DeclaredGame(self._declaration, self.people, order)
         for person in self.game_plan.absent:
             self.game.observe(HERE, person, NO)
         self.over = False
         self.happened: dict[str, list[str]] = {}
-        """What people did after the last behaviour, in order; "" is the whole group."""
+        """People's actions after the last behaviour, in order; "" is the whole group."""
         self._not_clear: list[UnclearAnswer] = []
         self._asked_again: dict[str, int] = {}
         return self.observe()
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Go on where a game was interrupted, or raise NotResumable."""
+        """Resume an interrupted game, or raise NotResumable."""
         return past.replay(self)
 
     @property
     def away(self) -> frozenset[str]:
-        """Who has left, or has not come yet."""
+        """People who have left, or have not come yet."""
         return frozenset(self.people) - frozenset(self.game.here)
 
     def choose(self, plan: GamePlan) -> None:
-        """Play the next game with the people whom a plan has; nothing else can be chosen."""
+        """Play the next game with the people of a plan; other choices are ignored."""
         self.game_plan = plan
 
     def change(self, change: GameChange) -> None:
-        """Let somebody leave or come back, in this game and in the next."""
+        """Let a person leave or come back, in this game and the next."""
         if change.what in ("left", "came"):
             self.game.observe(HERE, change.person, YES if change.what == "came" else NO)
             self.game_plan = replace(self.game_plan, absent=tuple(sorted(self.away)))
 
     def observe(self) -> ActivityState:
-        """Return the joint state as it is now."""
+        """Return the current joint state."""
         return joint_state(self.game)
 
     def execute(self, action: Action) -> Outcome:
-        """Let the robot carry out an action, and then people act."""
+        """Execute an action of the robot, and then let people act."""
         game = self.game
         if game.over:
             return Outcome(False, 0.0, (), None)
@@ -152,7 +153,7 @@ class DeclaredWorld:
         return Outcome(done.completed, seconds, (), response, speech, image, tuple(self._not_clear))
 
     def who(self, place: str) -> str:
-        """Return who sits at a person's place; here always that person."""
+        """Return who sits at a person's place: always that person."""
         return place
 
     def scene(self) -> Scene:
@@ -166,15 +167,15 @@ class DeclaredWorld:
         return Scene(game.place, tuple(game.queue), doing, (), None, self.away)
 
     def health(self) -> Health:
-        """Return the readings of devices of which none has a fault."""
+        """Return the readings of devices without faults."""
         return WELL
 
     def recover(self, remedy: Remedy) -> float:
-        """Do nothing, in 0 s: here is nothing that could be mended."""
+        """Do nothing, in 0 s: there are no faults to recover from."""
         return 0.0
 
     def _respond(self, done: Execution, action: Action) -> Response | None:
-        """Let those who were invited do what they were asked to, or not."""
+        """Let invited people comply, or not."""
         response: Response | None = None
         patience = self.activity.patience
         for person, fact, value in done.invited:
@@ -186,7 +187,7 @@ class DeclaredWorld:
         return response
 
     def _pass(self, seconds: float) -> None:
-        """Let time pass while the robot speaks, in s."""
+        """Advance the time while the robot speaks, in s."""
         self.game.now += seconds
 
     def _let_people_act(self, pause: float) -> None:
@@ -197,7 +198,7 @@ class DeclaredWorld:
                 self._take_in(act)
 
     def _ask_silent(self, behaviour: str, who: str) -> None:
-        """Ask a person again who says nothing, in the file's words, as often as the caps allow."""
+        """Ask a silent person again, with the file's sentences, as often as the limits allow."""
         game, seen = self.game, self.game.seen()
         for _ in again(game, behaviour, who):
             answers = any(one.person == who and one.said for one in self._not_clear)
@@ -212,9 +213,9 @@ class DeclaredWorld:
                     self._take_in(act)
 
     def _understood(self, act: Act) -> bool:
-        """Say whether an act can be understood; a person is asked again who answers unclearly.
+        """Return whether an act is understood, after asking again if an answer is unclear.
 
-        An answer that is not clear is observed as what it is: nothing that can be judged.
+        An unclear answer is observed as unclear, and not judged.
         """
         fact = self._declaration.facts[act.fact]
         if not fact.checks or act.who is None:
@@ -232,7 +233,7 @@ class DeclaredWorld:
         return False
 
     def _may_ask_again(self, who: str) -> bool:
-        """Ask a person again, which takes a while; False if that was done too often in a row."""
+        """Return whether a person may be asked again, and let that time pass; limited in a row."""
         times = self._asked_again.get(who, 0)
         if times >= self.activity.asking.visit:
             return False

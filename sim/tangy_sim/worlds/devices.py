@@ -1,4 +1,4 @@
-"""The simulated robot's devices: what they report when they are well, and with a fault."""
+"""The simulated robot's devices: their readings without faults, and with them."""
 
 from __future__ import annotations
 
@@ -22,38 +22,38 @@ READINGS: Mapping[str, Mapping[str, Fact]] = MappingProxyType(
         "arms": {"hardware_error": False},
     }
 )
-"""What the devices measure when all is well; a guess at a lit room with people moving in it."""
+"""Measurements without faults; an estimate for a lit room with people moving in it."""
 
 WELL: Health = tuple(
     Reading(device, 0.05, OK, MappingProxyType(dict(facts))) for device, facts in READINGS.items()
 )
 
 Symptom = Callable[[float], dict[str, tuple[float | None, DeviceState, dict[str, Fact]]]]
-"""Seconds since a fault set in -> device -> (age or None, state, facts that are otherwise)."""
+"""Seconds since a fault began -> device -> (age or None, state, changed facts)."""
 
 
 def silent(*devices: str) -> Symptom:
-    """Devices from which nothing comes any more."""
+    """Return the symptom of devices that send nothing."""
     return lambda seconds: {device: (seconds, OK, {}) for device in devices}
 
 
 def dead(device: str) -> Symptom:
-    """A device whose process has ended."""
+    """Return the symptom of a device whose process has ended."""
     return lambda seconds: {device: (seconds, ERROR, {})}
 
 
 def otherwise(device: str, **facts: Fact) -> Symptom:
-    """A device that reports, but something else than when it is well."""
+    """Return the symptom of a device with changed facts."""
     return lambda _: {device: (None, OK, facts)}
 
 
 def lasting(device: str, fact: str) -> Symptom:
-    """A device of which one measurement grows with the time."""
+    """Return the symptom of a device with a measurement that grows with time."""
     return lambda seconds: {device: (None, OK, {fact: seconds})}
 
 
 def readings(symptoms: list[tuple[Symptom, float]]) -> Health:
-    """Return what all devices report, with symptoms of faults and the s that they have lasted."""
+    """Return the readings of all devices, with symptoms and the s that they have lasted."""
     found: dict[str, Reading] = {reading.device: reading for reading in WELL}
     for symptom, seconds in symptoms:
         for device, (age, state, facts) in symptom(seconds).items():

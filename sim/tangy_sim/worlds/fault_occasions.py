@@ -1,4 +1,4 @@
-"""When a fault that is there would show: by what the robot is about to do."""
+"""When an active fault can show, given the robot's next action."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tangy_sim.worlds.world import SimulatedWorld
 
 @dataclass
 class Present:
-    """A fault that is there: since when (s), with whom, and whether it has shown."""
+    """An active fault: its start (s), the person it concerns, and whether it has shown."""
 
     kind: Kind
     since: float
@@ -22,13 +22,13 @@ class Present:
 
 
 class OccasionWorld(SimulatedWorld):
-    """A simulated world that knows of the faults in it when each can show."""
+    """A simulated world that knows when each of its faults can show."""
 
     present: dict[str, Present]
-    """The faults that are there, by the names of their kinds."""
+    """Active faults by kind."""
 
     def can_show(self, kind: Kind, action: Action) -> bool:
-        """Say whether a fault of a kind would show in what follows the action."""
+        """Return whether a fault of a kind would show during an action."""
         tracker, behaviour = self.tracker, action.behaviour
         asked = tracker.place in tracker.queue
         there = self.present.get(kind.name)
@@ -37,7 +37,7 @@ class OccasionWorld(SimulatedWorld):
             case injection.DRIVING:
                 return behaviour.effect in DRIVES
             case injection.LOOKING if self._never_complies(tracker.place):
-                return False  # nothing is expected of a card whose owner does not do as asked
+                return False  # a refusing person's card is not expected to change
             case injection.LOOKING:
                 if tracker.seen is None:
                     return theirs and asked and behaviour.effect == "bring card closer"
@@ -58,7 +58,7 @@ class OccasionWorld(SimulatedWorld):
                 return True
 
     def _closes(self, behaviour: Behaviour) -> bool:
-        """Say whether a behaviour would close the request of the person beside the robot."""
+        """Return whether a behaviour would close the request of the person beside the robot."""
         if behaviour.closes != "when correct":
             return behaviour.closes == "always" and self.tracker.seen == self._settled
         player = self.players[self.tracker.place]
@@ -70,17 +70,17 @@ class OccasionWorld(SimulatedWorld):
         return not any(player.called & line == line for line in self.activity.deck.lines)
 
     def _moves_on(self, behaviour: Behaviour) -> bool:
-        """Say whether it is seen by the stage, the place or the request if it comes to nothing."""
+        """Return whether stage, place or request would reveal that a behaviour had no effect."""
         tracker = self.tracker
         if behaviour.effect in DRIVES:
             return True
         if tracker.place in tracker.queue and tracker.seen is not None and behaviour.attends:
-            # With nothing left to mend it would look like a request that stays open.
+            # With nothing left to correct, it would look like a request that stays open.
             left = behaviour.closes != "always" or tracker.seen != self._settled
             return tracker.allows(behaviour) and left
         stage = tracker.state().stage
         if self._now + 1.0 >= self._next_ask:
-            return False  # the stage may be left anyway, because somebody asks
+            return False  # the stage may change anyway, because somebody asks
         return any(
             r.stage == stage
             and (

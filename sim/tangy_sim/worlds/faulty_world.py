@@ -1,7 +1,7 @@
-"""A simulated world in which things go wrong: the same games, with faults brought about in them.
+"""A simulated world with injected faults.
 
-Faults draw from a random stream of their own, so that without any the games are, behaviour for
-behaviour, those of `SimulatedWorld`.
+Faults use their own random stream, so that without faults the games equal those of
+`SimulatedWorld`, behaviour for behaviour.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from tangy_sim.worlds.users import SimulatedUser, UserModel
 HELPS = 0.8
 """P(somebody at the table does what Tangy asks for when it needs help)."""
 FINDS_ITSELF = 0.9
-"""P(the robot knows its place again after one turn on the spot)."""
+"""P(the robot is localised after one turn on the spot)."""
 STARTS_AGAIN = 0.5
-"""P(a device comes back when it is started again)."""
+"""P(a device works again after a restart)."""
 
 OUT_OF_SIGHT = "card-out-of-sight"
 SECONDS = {"ask": 25.0, "call expert": 300.0, "spin": 10.0, "restart": 5.0, "other requests": 5.0}
-"""How long remedies take; others take no time."""
+"""Duration of remedies in s; others take no time."""
 
 NOTICED = 2.0
-"""s in which a fault is noticed that devices show at once: then its data is stale, and a robot
-that stops by itself has stopped. A fault that is brought about by hand is there for so long."""
+"""s in which a fault that devices show at once is noticed: its data is stale by then, and a robot
+that stops by itself has stopped. A manually injected fault starts that long ago."""
 
 
 class FaultyWorld(OccasionWorld):
-    """A simulated world with faults. Between games everything is put right."""
+    """A simulated world with faults, which end with each game."""
 
     def __init__(
         self,
@@ -58,28 +58,28 @@ class FaultyWorld(OccasionWorld):
         super().__init__(activity, people, seed=seed, users=users, preferences=preferences)
 
     def begin(self) -> ActivityState:
-        """Begin a game in which nothing is wrong yet."""
+        """Begin a game without active faults."""
         state = super().begin()
         self.present = {}
         self.came: list[tuple[int, str]] = []
-        """The faults that set in, and at which step."""
+        """Faults that have started, with their steps."""
         self.injection_log = InjectionLog()
         self._to_come = ToCome(self.injections, self._chance)
         self._unheard: list[SimulatedUser] = []
-        self._by_word = False  # whether requests are taken by voice and key
+        self._by_word = False  # whether requests are taken by voice and keys
         self._refused = False
         self._health: tuple[float, tuple[str, ...], Health] | None = None
         return state
 
     @property
     def pending_injections(self) -> list[str]:
-        """The injections that have not occurred in this game, but for those by chance."""
+        """Injections that have not occurred in this game, except random ones."""
         return self._to_come.words
 
     # ------------------------------------------------------------------- faults come and go
 
     def inject(self, kind: str) -> None:
-        """Bring about a fault by hand: now if a device shows it, else as soon as it can show.
+        """Inject a fault manually: now if a device shows it, otherwise as soon as it can show.
 
         Raises:
             KeyError: there is no such kind.
@@ -91,7 +91,7 @@ class FaultyWorld(OccasionWorld):
             self._to_come.add(chosen)
 
     def lift(self, kind: str) -> None:
-        """Put a fault right, whether it is there or to come."""
+        """End a fault, active or pending."""
         self.present.pop(kind, None)
         self._to_come.drop(kind)
         if kind == "requests-silent":
@@ -117,7 +117,7 @@ class FaultyWorld(OccasionWorld):
     # --------------------------------------------------------------------- remedies meanwhile
 
     def execute(self, action: Action) -> Outcome:
-        """Let the robot try to carry out an action."""
+        """Let the robot try to execute an action."""
         if self.over:
             return super().execute(action)
         known = set(self.present)
@@ -147,7 +147,7 @@ class FaultyWorld(OccasionWorld):
         return outcome
 
     def _in_vain(self, action: Action, *, completed: bool, seconds: float | None = None) -> Outcome:
-        """Let time pass (by default what the action takes) with an action that changes nothing."""
+        """Let time pass (by default the action's duration) with an action that has no effect."""
         calls = self.users.away_calls if self.tracker.place != FRONT else 1.0
         if seconds is not None:
             calls = seconds / self.users.call_seconds
@@ -161,14 +161,14 @@ class FaultyWorld(OccasionWorld):
             self._let_people_ask()
 
     def _carry_off(self) -> None:
-        """Push the robot to somewhere else than it is."""
+        """Move the robot to another place."""
         elsewhere = [place for place in (FRONT, *self.people) if place != self.tracker.place]
         self.tracker.arrive(elsewhere[int(self._chance() * len(elsewhere))])
         self._in_view = False
         self.present["carried-off"].shown = True
 
     def _withdraw(self, attended: str, waited: Sequence[str]) -> None:
-        """Let somebody who waited take the request back, unseen by anybody."""
+        """Let a waiting person withdraw their request unseen."""
         queue = self.tracker.queue
         others = [person for person in waited if person != attended and person in queue]
         if others:
@@ -176,7 +176,7 @@ class FaultyWorld(OccasionWorld):
             self.lift("request-withdrawn")
 
     def _drives(self) -> bool:
-        """Say whether the robot can drive now."""
+        """Return whether the robot can drive now."""
         for fault in self.present.values():
             if fault.kind.shows == injection.DRIVING:
                 fault.shown = True
@@ -224,7 +224,7 @@ class FaultyWorld(OccasionWorld):
             late = 2 * self.activity.patience
             return response._replace(followed=False, complied=False, seconds=late)
         if self.tracker.seen is None and action.behaviour.effect in ABOUT_CARD:
-            return None  # what the person did cannot be seen
+            return None  # the person's response cannot be seen
         return response
 
     def _ask(self, player: SimulatedUser) -> bool:
@@ -235,7 +235,7 @@ class FaultyWorld(OccasionWorld):
         return super()._ask(player)
 
     def _hear(self) -> None:
-        """Let those be heard who asked while nobody saw it."""
+        """Process the requests that were made while they could not be seen."""
         unheard, self._unheard = self._unheard, []
         for player in unheard:
             self.tracker.ask(player.id)
@@ -256,7 +256,7 @@ class FaultyWorld(OccasionWorld):
     # ---------------------------------------------------------------------- health and recovery
 
     def health(self) -> Health:
-        """Return what the devices report, with the symptoms of the faults that show."""
+        """Return the readings of the devices, with the symptoms of visible faults."""
         showing = [
             (fault.kind.symptom, fault)
             for fault in self.present.values()
@@ -271,7 +271,7 @@ class FaultyWorld(OccasionWorld):
         return self._health[2]
 
     def recover(self, remedy: Remedy) -> float:
-        """Let the robot, a user or an expert do something about a fault; return the s it took."""
+        """Let the robot, a user or an expert handle a fault; return the duration in s."""
         seconds = SECONDS.get(remedy.kind, 0.0)
         if seconds and not self.over:
             self._pass(seconds / self.users.call_seconds)
@@ -286,10 +286,10 @@ class FaultyWorld(OccasionWorld):
                     if KINDS[name].helped and self._chance() < HELPS:
                         self._is_helped(name, remedy.person)
                 if remedy.fault == OUT_OF_SIGHT and self.tracker.place in self.tracker.queue:
-                    self.read_card()  # it may lie there since Tangy could not see for a while
+                    self.read_card()  # it may have been there while Tangy could not see
             case "call expert":
                 if lost:
-                    self.lift("link-lost")  # before anything else, as with a live robot
+                    self.lift("link-lost")  # first, as with a live robot
                 for name in found or _MUTE if remedy.fault == "mute" else found:
                     self._is_helped(name, remedy.person)
             case "spin":

@@ -1,8 +1,8 @@
 """A guided game: one simulated game with every situation of an activity.
 
-Left to chance, a person has to demonstrate about three games before every row of Table II was
-seen. Here the same people have the same cards, but who errs, who asks for help, whose card is out
-of view and which number comes next follow a plan of what was not shown yet.
+By chance, a person would have to demonstrate about three games to see every row of Table II. Here
+the same people have the same cards, but a plan of missing situations decides who makes mistakes,
+who asks for help, whose card is out of view, and which number comes next.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ Some = TypeVar("Some")
 
 
 class GuidedWorld(SimulatedWorld):
-    """A simulated world that sees to it that one game shows all that its activity can bring about.
+    """A simulated world in which one game shows every situation of its activity.
 
-    This holds for a teacher who does the expected; for others it goes on offering the missing
+    This holds for a teacher who does the expected; for others it keeps offering the missing
     situations. Nobody wins before that, as long as a number is left that completes no line. People
-    err and ask on a cue, one at a time, not at the user model's rates.
+    make mistakes and ask on a cue, one at a time, not at the user model's rates.
 
-    Where an `after` stage can come with and without a request, one game shows one of the two, and
-    the game of the next seed the other. The same seed and the same actions give the same states
-    on every machine.
+    If an `after` stage can occur with and without a request, one game shows one of the two, and the
+    game of the next seed the other. The same seed and actions give the same states on every
+    machine.
     """
 
     def __init__(
@@ -51,29 +51,29 @@ class GuidedWorld(SimulatedWorld):
         super().__init__(activity, people, seed=seed, users=users, preferences=preferences)
 
     def begin(self) -> ActivityState:
-        """Deal new cards, plan a game in which everything lacks, and return its first state."""
+        """Deal new cards, plan a game with all situations missing, and return its first state."""
         state = super().begin()
         self.plan = GuidedPlan(self.activity, self._guide)
-        self._next_ask = 0.0  # people are looked at after every behaviour
+        self._next_ask = 0.0  # check people after every behaviour
         self._beats = self._played = 0  # calls, with or without a number; those acted upon
         self.cue: Cue | None = None
         self._next = self.plan.gap(0, self._guide())
         self._favourite = self._prepare_line().id
-        self._turns = Counter({self._favourite: 1})  # how often each asked: others come first
+        self._turns = Counter({self._favourite: 1})  # requests of each person: others come first
         self._asks_at_end = self._game % 2 == 1
         self._game += 1
         return state
 
     @property
     def coming(self) -> Arranged | None:
-        """The coming situation, until a person has asked."""
+        """The coming situation, until the person has asked."""
         cue = self.cue
         if cue is None or cue.asked:
             return None
         return Arranged(cue.person, cue.shows.name, cue.hidden and self.plan.lacks_hidden)
 
     def execute(self, action: Action) -> Outcome:
-        """Let the robot carry out an action, and people do what the plan has for them."""
+        """Execute an action of the robot, and let people follow the plan."""
         if not self.over:
             self.plan.show(self.tracker.state().situation)
         return super().execute(action)
@@ -111,13 +111,13 @@ class GuidedWorld(SimulatedWorld):
         return (number,)
 
     def _choose(self) -> int:
-        """Choose the number that the plan needs, or else the next one that endangers nothing."""
+        """Choose a number that the plan needs, or otherwise the least harmful one."""
         left, wished = self.order[self._calls :], self._wished()
         asking = {*self.tracker.queue, *([self.cue.person] if self.cue else [])}
         safe = {player.id for player in self.players.values() if not self._has_line(player)}
 
         def cost(number: int) -> tuple[int, int, int]:
-            """Count the cards with a line now called: of who asks, of all; and marks made right."""
+            """Count cards with a new called line (asking people's, all), and corrected marks."""
             threatened = spoilt = theirs = 0
             for player, cell in self._holders[number]:
                 if player.id in safe and self._completes(player.called, cell):
@@ -129,7 +129,7 @@ class GuidedWorld(SimulatedWorld):
         return min([n for n in left if n in wished] or left, key=cost)
 
     def _wished(self) -> tuple[int, ...]:
-        """Return the numbers, some not called yet, one of which the cue needs to be called now."""
+        """Return uncalled numbers one of which the cue needs now."""
         cue = self.cue
         if cue is None or cue.asked:
             return ()
@@ -143,7 +143,7 @@ class GuidedWorld(SimulatedWorld):
         return ()
 
     def _overlooks(self, player: SimulatedUser, cell: int) -> bool:
-        """Say whether a person misses the number that is called: by the plan, or not to win yet."""
+        """Return whether a person overlooks a number: by the plan, or to prevent a win."""
         cue = self.cue
         if cue is not None and cue.person == player.id and not cue.asked:
             if cue.shows.checker == "missing marks" and not self._shows(cue):
@@ -155,7 +155,7 @@ class GuidedWorld(SimulatedWorld):
     # ------------------------------------------------------------------------- who does what when
 
     def _give_cue(self) -> None:
-        """Tell somebody what to show next, as soon as it is time and nobody asks."""
+        """Give a person the next cue, as soon as it is due and nobody asks."""
         cue, tracker = self.cue, self.tracker
         if cue is not None and cue.asked and cue.person not in tracker.queue:
             self.cue = None
@@ -166,7 +166,7 @@ class GuidedWorld(SimulatedWorld):
             return
         shows = self.plan.wanted(self._spent())
         if shows is not None:
-            # An error is made a call before help is asked for; a win may be up to two calls off.
+            # A mistake is made one call before the request; a win may be up to two calls off.
             wait = int(3 * self._guide()) if shows.checker == LINE else 1
             hidden = self.plan.hides(self._guide(), self.users.occluded)
             person = self._choose_person(shows)
@@ -174,7 +174,7 @@ class GuidedWorld(SimulatedWorld):
             self.cue = Cue(person.id, shows, hidden, max(self._next, self._beats + wait))
 
     def _let_people_ask(self) -> None:
-        """After every behaviour: let those act, and then ask, whose cue it is."""
+        """Let the person with the cue act, and then ask, after every behaviour."""
         if not self.plan.drawing and self.tracker.place == FRONT:
             self._beats += 1  # without calls, count the behaviours at the front
             self._give_cue()
@@ -195,7 +195,7 @@ class GuidedWorld(SimulatedWorld):
             self.tracker.ask(player.id)
 
     def _bring_about(self, cue: Cue, player: SimulatedUser) -> None:
-        """Let a person do to their own card what makes it show what it should, if they can."""
+        """Let a person change their card so that it shows the state of the cue, if possible."""
         match cue.shows.checker:
             case "complete line":
                 if self._has_line(player):
@@ -203,7 +203,7 @@ class GuidedWorld(SimulatedWorld):
             case "missing marks":
                 self._mark_as(player, player.marked & player.called)
                 if not self._shows(cue) and self._beats >= cue.asks_at:
-                    self._take_off(player)  # no number of theirs was left to be overlooked
+                    self._take_off(player)  # no number was left to be overlooked
             case "wrong marks":
                 self._mark_as(player, player.called)
                 self._slip(player)
@@ -211,21 +211,21 @@ class GuidedWorld(SimulatedWorld):
                 self._mark_as(player, player.called)
 
     def _mark_as(self, player: SimulatedUser, cells: int) -> None:
-        """Let a person notice their mistakes by themselves, and correct them."""
+        """Let a person correct their own mistakes."""
         if player.marked != cells:
             verb = "clears marks" if player.marked & ~cells else "marks"
             player.marked = cells
             player.did = (self.tracker.step - 1, verb, 0)
 
     def _take_off(self, player: SimulatedUser) -> None:
-        """Let a person lose a marker from a number that was called."""
+        """Let a person lose a marker from a called number."""
         marked = player.marked & player.called & ~self.activity.deck.free
         cells = [c for c in player.cell.values() if marked >> c & 1]
         if cells:
             self._mark_as(player, player.marked & ~(1 << self._pick(cells)))
 
     def _slip(self, player: SimulatedUser) -> None:
-        """Let a person mark a number that was not called, best one that fills no line."""
+        """Let a person mark an uncalled number, preferably one that completes no line."""
         taken = player.marked | player.called
         cells = [c for c in player.cell.values() if not taken >> c & 1]
         harmless = [c for c in cells if not self._completes(taken, c)]
@@ -235,7 +235,7 @@ class GuidedWorld(SimulatedWorld):
             player.did = (self.tracker.step - 1, "marks", player.numbers[cell])
 
     def _ask_at_the_end(self) -> None:
-        """Let somebody ask in an ending that comes both ways, if this game is to show that."""
+        """Let a person ask in an ending that allows both, if this game is to show that."""
         if self._asks_at_end and not self.tracker.queue and self.plan.ends_freely(self.tracker):
             self._asks_at_end = False
             self.tracker.ask(self._choose_person(None).id)
@@ -254,7 +254,7 @@ class GuidedWorld(SimulatedWorld):
     # ---------------------------------------------------------------------------- what cards tell
 
     def _choose_person(self, shows: CardState | None) -> SimulatedUser:
-        """Choose who has the next turn: who is nearest to a line, or has asked least so far."""
+        """Choose the person for the next cue: nearest to a line, or with the fewest requests."""
         players, turns = tuple(self.players.values()), self._turns
         if shows is not None and shows.checker == LINE:
             return min(players, key=lambda p: (self._left_of_line(p), p.id != self._favourite))
@@ -273,7 +273,7 @@ class GuidedWorld(SimulatedWorld):
         return (self._nearest_line(player) & ~player.called).bit_count()
 
     def _completes(self, mask: int, cell: int) -> bool:
-        """Say whether a cell added to a mask completes a line."""
+        """Return whether a cell added to a mask completes a line."""
         mask |= 1 << cell
         for line in self.activity.deck.lines_through[cell]:  # noqa: SIM110 - twice as fast as any()
             if mask & line == line:
@@ -281,11 +281,11 @@ class GuidedWorld(SimulatedWorld):
         return False
 
     def _has_line(self, player: SimulatedUser) -> bool:
-        """Say whether a whole line was called: once all is marked, the card can only win."""
+        """Return whether a whole line was called, so that a fully marked card can only win."""
         return self.activity.deck.wins(player.called)
 
     def _spent(self) -> bool:
-        """Say whether nothing can be shown any more but wins."""
+        """Return whether nothing but wins can be shown any more."""
         return self._calls >= len(self.order) or all(map(self._has_line, self.players.values()))
 
     def _pick(self, choices: Sequence[Some]) -> Some:

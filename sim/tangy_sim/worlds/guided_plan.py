@@ -1,6 +1,6 @@
-"""The plan of a guided game: covered situations, missing ones, and the next one.
+"""Plan of a guided game: covered situations, missing ones, and the next one.
 
-It knows the activity alone. Cards and people are the guided world's.
+It only knows the activity; cards and people belong to the guided world.
 """
 
 from __future__ import annotations
@@ -15,24 +15,24 @@ from tangy_profiles.state import Situation
 from tangy_profiles.tracker import Tracker
 
 LINE = "complete line"
-"""The checker of a card that has won; nobody's card shall before all else was shown."""
+"""Checker of a winning card, which must not occur before everything else was shown."""
 
 DRAWN = (LINE, "missing marks")
-"""The checkers of what no card shows before a number was called."""
+"""Checkers of states that need called numbers."""
 
 SPAN = 18
-"""Calls over which visits are spread in an activity that counts none itself."""
+"""Calls over which visits are spread in an activity without its own count."""
 
 FEWEST, MOST = 2, 6
-"""Calls from the end of one request to the next one."""
+"""Calls between the end of one request and the next."""
 
 
 @dataclass
 class Cue:
-    """What one person is to show: a state of their card, and from which call on they ask.
+    """A person's cue: the state that their card is to show, and the call from which on they ask.
 
-    `hidden`: their card is out of view when the robot arrives. They err, if they are to, from
-    the call on in which they got the cue.
+    `hidden` says that the card is out of view when the robot arrives. Mistakes are made from the
+    call of the cue on.
     """
 
     person: str
@@ -43,13 +43,13 @@ class Cue:
 
 
 class GuidedPlan:
-    """The situations of an activity shown in one game, the missing ones, and the next one."""
+    """Situations of an activity shown in one game, the missing ones, and the next one."""
 
     def __init__(self, activity: Activity, uniform: Callable[[], float]) -> None:
         self.activity = activity
         self.shown: dict[Situation, None] = {}
         self.tried: Counter[str] = Counter()
-        """How often somebody got the cue to show a user state."""
+        """Number of cues for each user state."""
         rules = activity.stage_rules
         self._reading = {r.stage for r in rules if r.condition == "beside requester"}
         self._travel = {r.stage for r in rules if r.condition == "requested or away"}
@@ -67,24 +67,24 @@ class GuidedPlan:
         self.span = min(counted, default=SPAN)
 
     def show(self, situation: Situation) -> None:
-        """Note that the teacher acts in a situation."""
+        """Record that the teacher acts in a situation."""
         self.shown[situation] = None
 
     @property
     def lacking(self) -> tuple[Situation, ...]:
-        """The situations in which the teacher has not acted yet."""
+        """Situations in which the teacher has not acted yet."""
         return tuple(s for s in self.activity.situations if s not in self.shown)
 
     @property
     def lacks_hidden(self) -> bool:
-        """Whether nobody's card was out of view yet when the robot came."""
+        """Whether no card was out of view yet when the robot arrived."""
         return any(s.stage in self._reading and self._unread(s) for s in self.lacking)
 
     def visits(self) -> list[CardState]:
-        """Return the states that cards are still to be seen in, in the order of showing them.
+        """Return the missing card states, in the order of showing them.
 
-        A state that can end the game is not among them; what was tried in vain comes after the
-        others, and a full line last, because a card that has one shows nothing else any more.
+        States that can end the game are excluded; those tried in vain come later, and a full line
+        last, because a card with a full line shows no other state.
         """
         lacking = {s.user_state for s in self.lacking if s.stage in self._reading}
         ordinary = [s for s in self._kinds if s.name not in self._final]
@@ -94,10 +94,10 @@ class GuidedPlan:
         return sorted(found, key=lambda state: (state.checker == LINE, self.tried[state.name]))
 
     def wanted(self, spent: bool) -> CardState | None:
-        """Return the next situation for a person's card; None while only calls are missing.
+        """Return the card state of the next cue; None if only calls are missing.
 
         Args:
-            spent: nothing but an end can occur any more (no numbers are left to show it).
+            spent: whether only an ending can still occur (no numbers are left).
         """
         visits = self.visits()
         final = [s for s in self._kinds if s.name in self._final]
@@ -106,30 +106,30 @@ class GuidedPlan:
         return visits[0] if visits else None
 
     def ended(self, tracker: Tracker) -> bool:
-        """Say whether what an `after` stage comes after has been done."""
+        """Return whether the behaviour before an `after` stage was executed."""
         return any(tracker.count(rule.behaviour) for rule in self._ends)
 
     def ends_freely(self, tracker: Tracker) -> bool:
-        """Say whether it has ended in a way in which nobody's request has to be open."""
+        """Return whether the game has ended in a way that requires no open request."""
         done = [rule for rule in self._ends if tracker.count(rule.behaviour)]
         return any(not self.activity.leaves_request(rule) for rule in done)
 
     def hides(self, share: float, chance: float) -> bool:
-        """Say whether the next card is to be out of view when the robot arrives.
+        """Return whether the next card is to be out of view when the robot arrives.
 
         Args:
-            share: a number from 0 to 1, which hides it if it is below `chance`.
-            chance: how often cards are out of view; the last that can be, is in any case.
+            share: a random number from 0 to 1; below `chance` it hides the card.
+            chance: probability of hidden cards; the last possible card is hidden anyway.
         """
         others = [state for state in self.visits() if state.checker != LINE]
         return self.lacks_hidden and (len(others) < 2 or share < chance)
 
     def gap(self, calls: int, share: float) -> int:
-        """Return how many calls to let pass: visits are spread evenly over the rest of the game.
+        """Return the number of calls until the next visit: visits are spread evenly over the game.
 
         Args:
-            calls: how many there were in this game.
-            share: a number from 0 to 1 that makes it shorter or longer by up to a quarter.
+            calls: number of calls in this game.
+            share: a random number from 0 to 1 that varies the gap by up to a quarter.
         """
         even = (self.span - calls) / (len(self.visits()) + 1)
         return max(FEWEST, min(MOST, round(even * (0.75 + share / 2))))
@@ -138,11 +138,11 @@ class GuidedPlan:
         return situation.user_state == self.activity.unread
 
     def _lacks_visit(self) -> bool:
-        """Whether a visit must be made for another reason than the state of a card."""
+        """Whether a visit is needed for another reason than the state of a card."""
         return self.lacks_hidden or any(s.stage in self._travel for s in self.lacking)
 
     def _lacks_other(self) -> bool:
-        """Whether anything lacks but the end of the game and what brings it about."""
+        """Whether anything but the end of the game and its cause is missing."""
         return any(
             s.stage not in self._closing and s.user_state not in self._final for s in self.lacking
         )

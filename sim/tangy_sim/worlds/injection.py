@@ -1,4 +1,4 @@
-"""Which faults can be brought about in the simulated world, and how that is asked for."""
+"""Kinds of faults that can be injected into the simulated world, and their text form."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ WAITING = "waiting"
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of fault: what happens in the room, and where it can show.
+    """A kind of fault: what happens in the room, and when it can show.
 
-    `shows`: at once, by what a device reports; or only while the robot is driving, looking at a
-    card, asking a person for something, closing a request, doing what moves the activity on, or
-    while somebody else is waiting. `code` is the diagnosis that is right.
+    `shows`: at once, in a device's readings; or only while the robot is driving, looking at a card,
+    asking a person for something, closing a request, moving the activity on, or while another
+    person is waiting. `code` is the correct diagnosis.
     """
 
     name: str
@@ -34,13 +34,13 @@ class Kind:
     shows: str
     symptom: Symptom | None = None
     holds: bool = False
-    """Whether the robot cannot drive with it."""
+    """Whether it prevents driving."""
     blinds: bool = False
-    """Whether it cannot see cards with it."""
+    """Whether it prevents seeing cards."""
     helped: bool = False
-    """Whether people at the table can put it right."""
+    """Whether people at the table can fix it."""
     stops: bool = False
-    """Whether the robot stops at once by itself, in the middle of whatever it does."""
+    """Whether the robot stops by itself at once, in the middle of an action."""
 
 
 _KINDS = (
@@ -92,17 +92,17 @@ _KINDS = (
          MOVING_ON),
 )  # fmt: skip
 KINDS: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in _KINDS})
-"""Every kind of fault that can be brought about, by name."""
+"""All kinds of faults, by name."""
 
 IN_RECOVERY = "recovery"
-"""The word for: while another fault is being recovered from."""
+"""Text form of "during the recovery from another fault"."""
 
 
 @dataclass(frozen=True)
 class Injection:
-    """A fault that is to come: at a step of each game, by chance at every step, or in recovery.
+    """A pending fault: at a step of each game, at random in every step, or in recovery.
 
-    Without any of these it comes as soon as it can show.
+    Without any of these it starts as soon as it can show.
     """
 
     kind: Kind
@@ -119,7 +119,7 @@ class Injection:
 
 
 def read_injection(text: str) -> Injection:
-    """Read `KIND`, `KIND@step`, `KIND~probability` or `KIND@recovery`.
+    """Parse `KIND`, `KIND@step`, `KIND~probability` or `KIND@recovery`.
 
     Raises:
         TangyError: the problem in one sentence, and the nearest kind.

@@ -1,4 +1,4 @@
-"""The injections of a game, and since when each could be noticed."""
+"""Log of the faults injected in a game, and when each could be noticed."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from tangy_sim.worlds.injection import AT_ONCE, Kind
 
 @dataclass
 class Injected:
-    """A fault that occurred: its kind, at which step, and after how many s of the world's time.
+    """A fault that occurred: its kind, its step, and its time in s of the world's clock.
 
-    `could_show` is the first step from which it could be noticed, None as long as it could not, or
-    if it was gone before.
+    `could_show` is the first step at which it could be noticed, None if it never could.
     """
 
     kind: Kind
@@ -23,18 +22,18 @@ class Injected:
 
 
 class InjectionLog:
-    """The faults of one game, in the order in which they came."""
+    """Faults of one game, in the order of their start."""
 
     def __init__(self) -> None:
         self.all: list[Injected] = []
 
     def came(self, kind: Kind, step: int, seconds: float) -> None:
-        """Note that a fault came with a step, at a time in s; one of a device shows at once."""
+        """Record a fault's start at a step and a time in s; device faults show at once."""
         shows = step if kind.shows == AT_ONCE else None
         self.all.append(Injected(kind, step, seconds, shows))
 
     def look(self, step: int, can_show: Callable[[Kind], bool]) -> None:
-        """Note which of them can be noticed with the step that is about to be done."""
+        """Record which faults can be noticed in the coming step."""
         for one in self.all:
             if one.could_show is None and can_show(one.kind):
                 one.could_show = step

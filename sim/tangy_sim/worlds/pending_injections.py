@@ -1,4 +1,4 @@
-"""The faults that are still to come in a game, and when each of them does."""
+"""Pending faults of a game, and when each of them starts."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from tangy_sim.worlds.injection import Injection, Kind
 
 
 class ToCome:
-    """Injections of one game that are still pending."""
+    """Pending injections of one game."""
 
     def __init__(self, injections: Sequence[Injection], chance: Callable[[], float]) -> None:
-        """Begin a game; `chance` draws a number from 0 to 1 for those that come by chance."""
+        """Start a game; `chance` draws a number from 0 to 1 for random injections."""
         self._given = tuple(injections)
         self._left = list(injections)
         self._chance = chance
 
     @property
     def words(self) -> list[str]:
-        """The injections that have not occurred, but for those by chance."""
+        """Injections that have not occurred, except random ones."""
         return [str(one) for one in self._left if one.chance is None]
 
     def add(self, kind: Kind) -> None:
-        """Let a fault come as soon as it can show."""
+        """Add a fault that starts as soon as it can show."""
         self._left.append(Injection(kind))
 
     def drop(self, kind: str) -> None:
-        """Let a fault that was added not come; those that were given stay."""
+        """Drop an added fault; those given at the start stay."""
         self._left = [i for i in self._left if i.kind.name != kind or i in self._given]
 
     def due(self, step: int, can_show: Callable[[Kind], bool]) -> list[Kind]:
-        """Return the faults that come at a step, by `can_show` where that decides."""
+        """Return the faults that start at a step, by `can_show` if that decides."""
         come, left = list[Kind](), list[Injection]()
         for one in self._left:
             if one.chance is not None:
@@ -47,7 +47,7 @@ class ToCome:
         return come
 
     def due_in_recovery(self) -> list[Kind]:
-        """Return the faults that come while another one is being recovered from."""
+        """Return the faults that start during the recovery from another one."""
         come = [one for one in self._left if one.in_recovery]
         self._left = [one for one in self._left if not one.in_recovery]
         return [one.kind for one in come]

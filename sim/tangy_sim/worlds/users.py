@@ -1,4 +1,4 @@
-"""How simulated people play: rates of mistakes and of requests, and one player with a card."""
+"""Model of simulated people: rates of mistakes and requests, and one player with a card."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tangy_profiles.reading import read_toml
 
 @dataclass(frozen=True)
 class UserModel:
-    """The fitted rates of simulated people; `users.toml` says what each one is.
+    """Fitted rates of simulated people; `users.toml` describes each.
 
     `ask` is per person and call duration; `away_calls` in call durations; `call_seconds` in s.
     """
@@ -36,10 +36,10 @@ class UserModel:
 
 
 def load_users(path: Path | None = None) -> UserModel:
-    """Read the user model that ships, or one of the same form.
+    """Read the default user model, or another of the same form.
 
     Raises:
-        ProfileError: one line that says file, key and value.
+        ProfileError: one line with file, key and value.
     """
     top = read_toml(path or Path(str(files("tangy_sim.worlds"))) / "users.toml")
     play, teaching, compliance = top.table("play"), top.table("teaching"), top.table("compliance")
@@ -61,7 +61,7 @@ def load_users(path: Path | None = None) -> UserModel:
 
 
 class SimulatedUser:
-    """One simulated person at the table: a card, its marks, and the next actions."""
+    """A simulated person at the table: a card, its marks, and the next actions."""
 
     __slots__ = ("asks_at", "called", "cell", "deck", "did", "id", "marked", "numbers", "slips_at")
 
@@ -71,9 +71,9 @@ class SimulatedUser:
         self.numbers = numbers
         self.cell = {number: place for place, number in enumerate(numbers)}
         self.marked = self.called = deck.free
-        self.slips_at = 0  # the call after which the next uncalled number is marked
-        self.asks_at = 0.0  # the time in calls at which help may be asked for next
-        self.did: tuple[int, str, int] = (-1, "", 0)  # step, what was done, with which number
+        self.slips_at = 0  # call after which the next uncalled number is marked
+        self.asks_at = 0.0  # time in calls from which on help may be asked for
+        self.did: tuple[int, str, int] = (-1, "", 0)  # step, action, number
 
     @property
     def has_error(self) -> bool:
@@ -81,7 +81,7 @@ class SimulatedUser:
         return self.marked != self.called
 
     def mark(self, cell: int) -> bool:
-        """Put a marker on a cell; say whether that fills a line (not always a winning one)."""
+        """Put a marker on a cell; return whether that completes a line, winning or not."""
         self.marked |= 1 << cell
         marked = self.marked
         for line in self.deck.lines_through[cell]:  # noqa: SIM110 - twice as fast as any()
@@ -90,7 +90,7 @@ class SimulatedUser:
         return False
 
     def uncall(self, number: int) -> None:
-        """Let a number count as not called: a marker on it is taken off."""
+        """Revert the call of a number, and remove a marker on it."""
         if (cell := self.cell.get(number)) is not None:
             self.called &= ~(1 << cell)
             self.marked &= ~(1 << cell)
@@ -100,7 +100,7 @@ class SimulatedUser:
         return tuple(n for place, n in enumerate(self.numbers) if mask >> place & 1)
 
     def slip(self, uniform: Callable[[], float]) -> tuple[int, bool] | None:
-        """Mark some uncalled number by mistake; return its number and whether a line is full."""
+        """Mark an uncalled number by mistake; return the number and whether a line is complete."""
         open_cells = [c for c in self.cell.values() if not (self.marked | self.called) >> c & 1]
         if not open_cells:
             return None
@@ -108,12 +108,12 @@ class SimulatedUser:
         return self.numbers[cell], self.mark(cell)
 
     def judged(self, states: tuple[CardState, ...]) -> str:
-        """Name the user activity state that the card shows."""
+        """Return the user activity state of the card."""
         return judge(states, self.deck, self.marked, self.called)
 
 
 def waiting_calls(uniform: Callable[[], float], chance: float) -> int:
-    """Draw how many calls pass until something of this chance per call happens (geometric)."""
+    """Draw the number of calls until an event of this probability per call (geometric)."""
     if chance <= 0:
         return 1_000_000_000
     if chance >= 1:
@@ -122,5 +122,5 @@ def waiting_calls(uniform: Callable[[], float], chance: float) -> int:
 
 
 def waiting_time(uniform: Callable[[], float], rate: float) -> float:
-    """Draw the s until something of this rate (1/s) happens (exponential)."""
+    """Draw the time until an event of this rate (exponential), in s for a rate in 1/s."""
     return -log(1 - uniform()) / rate if rate > 0 else 1e18

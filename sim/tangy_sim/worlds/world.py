@@ -1,9 +1,9 @@
 """The activity simulator (III-A-3, IV-C): a robot, people with cards, one game after another.
 
-It is a discrete-event simulation: time goes from behaviour to behaviour, counted in calls (about
-half a minute each), and people's mistakes and requests wait for their own moments. Three random
-streams (cards, users, compliance) are seeded apart, so that a change in how one is used does not
-shift the others; only `Random.random` is drawn from, which Python keeps the same in all versions.
+A discrete-event simulation: time advances with each behaviour, counted in calls (about half a
+minute each), and people's mistakes and requests are scheduled events. Three random streams (cards,
+users, compliance) have separate seeds, so that a change in the use of one does not shift the
+others; only `Random.random` is used, which is stable across Python versions.
 """
 
 from __future__ import annotations
@@ -28,21 +28,20 @@ from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.users import SimulatedUser, UserModel, load_users, waiting_calls, waiting_time
 
 AGREEING, MORE_LOOKS = 3, 2
-"""Looks at a card that have to agree before it counts as read, and those beyond them at most."""
+"""Looks at a card that must agree before it counts as read, and additional looks."""
 
 
 class SimulatedWorld(PlannedGame):
-    """One room with a simulated group. `begin` starts each game; `execute` runs a behaviour.
+    """A room with a simulated group. `begin` starts each game; `execute` runs a behaviour.
 
     The same seed gives the same games on every machine. `players` are the people with their cards,
-    by id, and `order` is that of the numbers of this game: who watches a simulation sees both, the
-    robot does not.
+    by id, and `order` is the order of this game's numbers; neither is visible to the robot.
     """
 
     agreeing = AGREEING
-    """Looks at a card that have to agree before it counts as read."""
+    """Looks at a card that must agree before it counts as read."""
     fused_looks = (0, 0)
-    """Looks that were taken at cards, and how many of them the others overruled."""
+    """Number of looks at cards, and how many of them the others overruled."""
 
     played_in: GameWorld = SIMULATED
 
@@ -70,7 +69,7 @@ class SimulatedWorld(PlannedGame):
 
     @property
     def pauses(self) -> tuple[int, float]:
-        """How often, and for how many s, the robot waited for late data: never."""
+        """Number and total s of the robot's waits for late data: always 0."""
         return 0, 0.0
 
     def begin(self) -> ActivityState:
@@ -96,18 +95,18 @@ class SimulatedWorld(PlannedGame):
         return self.tracker.state()
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Go on where a game was interrupted, or raise NotResumable."""
+        """Resume an interrupted game, or raise NotResumable."""
         state = past.replay(self)
         self._visited = past.visited(self.activity)
         self._row_began = self.seconds - past.since_call(self.activity)
         return state
 
     def observe(self) -> ActivityState:
-        """Return the joint state as the robot's sensors have it now."""
+        """Return the current joint state, as the robot's sensors see it."""
         return self.tracker.state()
 
     def execute(self, action: Action) -> Outcome:
-        """Let the robot carry out an action, and time pass with it."""
+        """Execute an action of the robot, and advance the time."""
         tracker, behaviour = self.tracker, action.behaviour
         if self.over:
             return Outcome(False, 0.0, (), None)
@@ -129,20 +128,20 @@ class SimulatedWorld(PlannedGame):
         elif not self._opened and tracker.begun():
             self._open()
         if self._in_view and tracker.seen is None and tracker.place in tracker.queue:
-            self._look_at_card()  # the person beside the robot asks again, the card still there
+            self._look_at_card()  # the same person asks again, with the card still in view
         return Outcome(succeeded, calls * self.pace, numbers, response)
 
     @property
     def seconds(self) -> float:
-        """The time in this game, in s."""
+        """Time in this game, in s."""
         return self._now * self.users.call_seconds - self._sooner
 
     def who(self, place: str) -> str:
-        """Return who sits at a person's place; here always that person."""
+        """Return who sits at a person's place: always that person."""
         return place
 
     def scene(self) -> Scene:
-        """Return what a teacher or a member of staff sees in the room."""
+        """Return the scene as a teacher or a member of staff sees it."""
         tracker = self.tracker
         asking = set(tracker.queue)
         doing: dict[str, str] = {}
@@ -160,17 +159,17 @@ class SimulatedWorld(PlannedGame):
         return Scene(tracker.place, tuple(tracker.queue), doing, called, card, self.away)
 
     def health(self) -> Health:
-        """Return the readings of devices of which none has a fault (see `FaultyWorld`)."""
+        """Return the readings of devices without faults (see `FaultyWorld`)."""
         return WELL
 
     def recover(self, remedy: Remedy) -> float:
-        """Do nothing, in 0 s: here is nothing that could be mended."""
+        """Do nothing, in 0 s: there are no faults to recover from."""
         return 0.0
 
-    # Effects return the numbers that they were about, or None if they came to nothing.
+    # Effects return the affected numbers, or None if they had no effect.
 
     def _take_effect(self, action: Action) -> tuple[int, ...] | None:
-        """Let an action have its effect; return the numbers that were called, None if it failed."""
+        """Apply the effect of an action; return the affected numbers, None if it failed."""
         match action.behaviour.effect:
             case "none":
                 return ()
@@ -201,7 +200,7 @@ class SimulatedWorld(PlannedGame):
             bit = 1 << cell
             player.called |= bit
             if player.marked & bit:
-                continue  # marked too early by mistake, and right from now on
+                continue  # marked too early by mistake, and correct from now on
             if uniform() >= miss:
                 player.did = (step, "marks", number)
                 if player.mark(cell):
@@ -223,7 +222,7 @@ class SimulatedWorld(PlannedGame):
         self._next_slip = min(p.slips_at for p in self.players.values())
 
     def _open(self) -> None:
-        """Nobody asks before the game is opened; from then on everybody may."""
+        """Open the game: from now on people may ask for help."""
         self._opened = True
         rate = self.users.ask * self.users.ask_with_error
         for player in self.players.values():
@@ -231,7 +230,7 @@ class SimulatedWorld(PlannedGame):
         self._next_ask = min(p.asks_at for p in self.players.values())
 
     def _let_people_ask(self) -> None:
-        """Requests come at the higher rate of a card with an error, and are thinned without one."""
+        """Draw requests at the higher rate of cards with an error, and thin those of the others."""
         users, uniform = self.users, self._uniform
         rate = users.ask * users.ask_with_error
         for player in self.players.values():
@@ -243,7 +242,7 @@ class SimulatedWorld(PlannedGame):
         self._next_ask = min(p.asks_at for p in self.players.values())
 
     def _ask(self, player: SimulatedUser) -> bool:
-        """Let a person ask for help who is here; say whether that is seen, and new."""
+        """Let a present person ask for help; return whether the request is seen and new."""
         return player.id not in self.away and self.tracker.ask(player.id)
 
     def _respond(self, beside: str, action: Action) -> Response | None:
@@ -253,7 +252,7 @@ class SimulatedWorld(PlannedGame):
         )
 
     def _count(self, behaviour: Behaviour, succeeded: bool) -> None:
-        """Let a behaviour count that was carried out."""
+        """Count an executed behaviour."""
         self.tracker.executed(behaviour, succeeded=succeeded)
 
     def _go_to_user(self, action: Action) -> tuple[int, ...] | None:
@@ -284,7 +283,7 @@ class SimulatedWorld(PlannedGame):
         return self._correct(lambda player: player.called & ~player.marked, "marks")
 
     def _correct(self, errors: Callable[[SimulatedUser], int], verb: str) -> tuple[int, ...] | None:
-        """Let the person beside the robot correct the mistakes seen on the card, if any."""
+        """Let the person beside the robot correct the visible mistakes on the card, if any."""
         if self.tracker.seen is None:
             return None
         player = self.players[self.tracker.place]
@@ -304,7 +303,7 @@ class SimulatedWorld(PlannedGame):
         self.players[self.tracker.place].did = (self.tracker.step, verb, 0)
 
     def _look_at_card(self) -> None:
-        """Read the card beside the robot until looks agree: one may be late, or misread."""
+        """Read the card beside the robot until enough looks agree, because one may be misread."""
         looks: Counter[str | None] = Counter()
         for _ in range(self.agreeing + MORE_LOOKS):
             self.read_card()
@@ -327,16 +326,16 @@ class SimulatedWorld(PlannedGame):
 
     @property
     def called_now(self) -> tuple[int, ...]:
-        """The numbers that count as called."""
+        """Numbers that count as called."""
         return tuple(self.order[: self._calls])
 
     def numbers_on(self, card: int) -> tuple[int, ...] | None:
-        """Return the numbers of a card: here they are numbered by their places."""
+        """Return the numbers of a card; cards are numbered by their places."""
         holder = self.holder(card)
         return self.players[holder].numbers if holder else None
 
     def holder(self, card: int) -> str:
-        """Return who has a card; "" if there is no card of that number."""
+        """Return the person with a card; "" if there is no such card."""
         return self.people[card - 1] if 1 <= card <= len(self.people) else ""
 
     def _play_pattern(self) -> None:
@@ -345,7 +344,7 @@ class SimulatedWorld(PlannedGame):
             player.deck = self.activity.deck
 
     def _take_back(self, number: int) -> None:
-        """Let a number count as not called: people take their markers off, and it comes last."""
+        """Revert the call of a number: people remove their markers, and it comes last."""
         if number not in self.order[: self._calls]:
             return
         self.order.remove(number)
