@@ -1,4 +1,4 @@
-"""The program's side of the robot: it starts the robot process, asks it, and is its world.
+"""The program's side of the robot: starts the robot process, sends it requests, and is its world.
 
-It loads no numpy, so that a screen need not wait for it.
+It loads no numpy, so that screens start quickly.
 """

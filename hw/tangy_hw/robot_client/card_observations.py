@@ -1,6 +1,6 @@
 """The cards of a live game: readings of the card beside the robot, and the cells to correct.
 
-A card that is not known to be that of the person who sits there is as good as out of sight.
+A card that is not known to belong to the person there is treated as unreadable.
 """
 
 from __future__ import annotations
@@ -16,40 +16,40 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.card_face import LAST_CARD, called_cells, numbers_of
 from tangy_profiles.scene import CardView
 
-MOST_NEWS = 50  # that wait to be told
+MOST_NEWS = 50  # maximum of queued news
 
 
 class CardObservations:
-    """Looks at cards, and keeps the newest view of the one beside the robot in `view`."""
+    """Reads cards, and keeps the latest view of the one beside the robot in `view`."""
 
     def __init__(self, activity: Activity, commands: Commands) -> None:
         self.view: CardView | None = None
-        """None where no card was looked at, or it could not be read."""
+        """None if no card was looked at, or it could not be read."""
         self.looked: Callable[[str, str, Any], None] = lambda *_: None
-        """Is told of each card ("card") and face ("face") that was looked at, with whose place it
-        is at, and what was seen."""
+        """Called with each card ("card") or face ("face") that was looked at: its place, and the
+        result."""
         self.dealt = DealtCards()
-        """Which card is whose."""
+        """Owners of the cards."""
         self.doubt: CardDoubt | None = None
-        """Why the card before the robot is not judged, None where it is, or is not seen."""
+        """Why the card before the robot is not judged; None if it is, or is not seen."""
         self.in_sight: tuple[int, ...] = ()
-        """The numbers of all cards that were in sight last, wherever that was."""
+        """Numbers of all cards in sight at the last reading."""
         self.news: deque[CardDoubt | CardLearnt] = deque(maxlen=MOST_NEWS)
-        """What staff are to be told, once for each visit; whoever tells it takes it out."""
+        """News for staff, once for each visit; the consumer removes them."""
         self.wins: dict[str, Any] | None = None
-        """The shapes that win, and how many of them together, where not as the activity has it."""
+        """Winning patterns, and how many are required together, if not the activity's."""
         self._told: set[CardDoubt] = set()
         self._activity = activity
         self._commands = commands
 
     def begin(self) -> None:
-        """Begin a game."""
+        """Start a game."""
         self.dealt.begin()
         self.news.clear()
         self.leave()
 
     def leave(self) -> None:
-        """Forget the card that was beside the robot, which stands elsewhere now."""
+        """Forget the card beside the robot, which has left."""
         self.view, self.doubt = None, None
         self._told.clear()
 
@@ -58,8 +58,8 @@ class CardObservations:
     ) -> dict[str, Any]:
         """Read the card at a place, after so many s; return the reading.
 
-        `person` is who sits there, if it is not whose place it is. Of a card that is not known to
-        be theirs nothing is told, and neither is of several.
+        `person` is who sits there, if not the place's owner. Several cards, or a card that is not
+        known to be theirs, count as unread.
 
         Raises:
             DeviceError: the robot cannot look.
@@ -83,7 +83,7 @@ class CardObservations:
         return card
 
     def _is_doubted(self, person: str, card: dict[str, Any]) -> bool:
-        """Say whether a card is not known to be a person's; it may be learnt that it is."""
+        """Return whether a card is not known to be a person's; assign it if it is new."""
         number = card["card"]
         cards = card.get("cards") or ([] if number is None else [number])
         self.in_sight = tuple(cards) or self.in_sight
@@ -99,11 +99,11 @@ class CardObservations:
         return self.dealt.card_of(person) is None
 
     def numbers_on(self, card: int) -> tuple[int, ...] | None:
-        """Return the numbers of a printed card, None where there is none of that number."""
+        """Return the numbers of a printed card, None if there is no such card."""
         return self._numbers(card) if 1 <= card <= LAST_CARD else None
 
     def asked_about(self, behaviour: Behaviour) -> tuple[int, ...] | None:
-        """Return the numbers that a behaviour is to ask about; None: there are none to be seen."""
+        """Return the numbers that a behaviour asks about; None if none are visible."""
         view = self.view
         if view is None:
             return None

@@ -1,9 +1,8 @@
-"""The program's end of the robot process: it is started, asked, heard, and told that we live.
+"""The program's end of the robot process: starts it, sends requests and heartbeats, and listens.
 
-It may be used from any thread, and none ever waits to be heard. A reader's thread takes what the
-process says, a writer's tells it what waits; another one says twenty times a second that the
-program lives, so that a program that hangs has the robot stop. That thread lives on where only a
-screen hangs: a screen says itself that it is `alive`.
+It may be used from any thread, and never blocks on writing: one thread reads, one writes, and one
+sends a heartbeat twenty times a second, so that the robot stops if the program hangs. That thread
+goes on if only a screen hangs, so a screen must call `alive`.
 """
 
 from __future__ import annotations
@@ -38,22 +37,22 @@ _LOG = logging.getLogger(__name__)
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.robot_process")
 BEAT_SECONDS = 0.05
 SILENT_SECONDS = 0.6
-"""Without a word from it for so long, the robot process hangs; its end is known at once."""
+"""Silence after which the robot process counts as hanging; its exit is known at once."""
 LATE_SECONDS = 0.25
-"""s without a word from it after which what it said last has grown old; it speaks ten times a s."""
-SILENT_STEPPED = 10.0  # on a bench in a hurry, where a busy machine may take its time
+"""s of silence after which its last readings age; it normally sends ten messages a second."""
+SILENT_STEPPED = 10.0  # on a stepped bench, where a busy machine may be slow
 HANGS_SECONDS = 2.0
-"""A screen that has not said for so long that it lives hangs: staff could not stop the robot."""
+"""Silence after which a screen counts as hanging: staff could not stop the robot."""
 START_SECONDS = 30.0
-ANSWER_SECONDS = 240.0  # the longest that anything takes; a drive ends by itself before
+ANSWER_SECONDS = 240.0  # longer than any request; a drive ends by itself before
 END_SECONDS = 3.0
 CALLED_OFF_SECONDS = 1.0
-"""In which a process that was still switching the robot on lets go of what it has opened."""
+"""For a process that was still switching the robot on to release its devices."""
 
 
 @dataclass
 class _Told:
-    """What the reader's thread has heard."""
+    """What the reader's thread has received."""
 
     state: RobotState = field(default_factory=RobotState)
     time: float = 0.0
@@ -70,32 +69,32 @@ class RobotLink:
         cancellation: Cancellation | None = None,
         patience: float | None = None,
     ) -> None:
-        """Prepare it.
+        """Prepare the link.
 
         Args:
-            setup: what robot it is.
-            log: takes what the process writes beside its lines.
-            cancellation: of the opening that it is part of.
-            patience: for how many s nothing may be heard from the process.
+            setup: the first message to the process.
+            log: file for the standard error of the process.
+            cancellation: start-up that this link is part of.
+            patience: s of silence after which the process counts as hanging.
         """
         self.setup = setup
         self.screen = ""
-        """The address of the chest screen's page, where it is one."""
+        """Address of the chest screen's page, if it has one."""
         self.code = ""
-        """The code by which a tablet is paired there."""
+        """Code that pairs a tablet with it."""
         self._log = log
         self._patience = patience
         self._cancellation = cancellation or Cancellation()
         self._starting = threading.Lock()
-        self._over = False  # it is closed for good
+        self._over = False  # closed for good
         self.worker: WorkerProcess | None = None
         self.on_answer: Callable[[str], object] = _nothing
-        """Is called, on a thread of its own, with the key of each call answered at the robot."""
+        """Called, on its own thread, with the key of each call answered at the robot."""
         self._calls: dict[str, str] = {}
         self._told = _Told()
         self._said = threading.Condition()
         self._closing = threading.Event()
-        self._alive: float | None = None  # when a screen last said that it lives
+        self._alive: float | None = None  # time of the last sign of life from a screen
         self.beating = threading.Thread()
 
     # ------------------------------------------------------------------------- its process
@@ -104,7 +103,7 @@ class RobotLink:
         """Start the process, and wait until the robot is switched on.
 
         Raises:
-            DeviceError: it cannot be started, or says what is wrong with its setup.
+            DeviceError: it cannot be started, or reports a problem with its setup.
         """
         with self._starting:
             self._cancellation.check()
@@ -123,7 +122,7 @@ class RobotLink:
             raise Cancelled from None
 
     def _begin(self) -> WorkerProcess:
-        """Start the process, and tell it what robot it is."""
+        """Start the process, and send it the setup."""
         self._closing.clear()
         self._told = _Told()
         try:
@@ -145,17 +144,17 @@ class RobotLink:
         return worker
 
     def restart(self) -> None:
-        """End the process, however it is, and start another.
+        """End the process, whatever its state, and start another.
 
         Raises:
-            DeviceError: it cannot be started, or this was closed meanwhile.
+            DeviceError: it cannot be started, or this link was closed meanwhile.
         """
         self._end()
         self.start()
 
     def close(self) -> None:
-        """Let the process stop the robot and end, for good; it is ended where it does not."""
-        with self._starting:  # or one that is just being started would be left behind
+        """Let the process stop the robot and exit, for good; kill it if it does not."""
+        with self._starting:  # otherwise a process that is just starting would be left behind
             self._over = True
         self._end()
 
@@ -165,7 +164,7 @@ class RobotLink:
         if worker is None:
             return
         called_off = self._cancellation.cancelled
-        if self.silent and not called_off:  # it would not end by itself, and may not even read
+        if self.silent and not called_off:  # it would not exit by itself, and may not even read
             worker.kill()
         worker.stop(CALLED_OFF_SECONDS if called_off else END_SECONDS)
         if self.beating is not threading.current_thread():
@@ -175,27 +174,27 @@ class RobotLink:
 
     @property
     def tablet_page(self) -> str:
-        """The address of the chest screen and its code, as short as can be; "" as for `tablet`."""
+        """Address of the chest screen and its code in one phrase; "" if it has no page."""
         return f"chest screen {self.screen} code {self.code}" if self.screen else ""
 
     @property
     def state(self) -> RobotState:
-        """What the robot said of itself last."""
+        """Latest state of the robot."""
         return self._told.state
 
     @property
     def pid(self) -> int | None:
-        """The id of the process, None where there is none."""
+        """Id of the process, None if there is none."""
         return None if self.worker is None else self.worker.pid
 
     @property
     def time(self) -> float:
-        """The robot's time, in s, as it was told last: with an answer, or else with a beat."""
+        """Latest known time of the robot in s, from an answer or a heartbeat."""
         return self._told.time
 
     @property
     def silent(self) -> str:
-        """Why nothing is heard from the robot process, "" as long as it is."""
+        """Why the robot process is silent, "" if it is not."""
         if self._how:
             return _ended(self._how)
         patience = self._patience or SILENT_SECONDS
@@ -204,23 +203,23 @@ class RobotLink:
 
     @property
     def _quiet(self) -> float:
-        """For how many s nothing was heard."""
+        """Duration of its silence in s."""
         return time.monotonic() - self._heard
 
     @property
     def _how(self) -> str:
-        """How the process ended, "" where it has not."""
+        """How the process ended, "" if it has not."""
         return "" if self.worker is None else self.worker.how
 
     @property
     def _heard(self) -> float:
-        """When it said something last (monotonic, s); 0 where it never has."""
+        """Time of its last message (monotonic, s); 0 before the first."""
         return 0.0 if self.worker is None else self.worker.heard
 
     def health(self) -> Health:
-        """Return the newest reading of each device; all are stale where the process is silent.
+        """Return the newest reading of each device; all are stale if the process is silent.
 
-        They grow older while its next word is late.
+        Readings age while its next message is late.
         """
         health = self._told.state.health
         if self.silent:
@@ -235,7 +234,7 @@ class RobotLink:
     # ------------------------------------------------------------------------- what it is told
 
     def ask(self, do: Request, **what: Any) -> Future[dict[str, Any]]:
-        """Ask the robot for something; the answer comes, or DeviceError, or BrokenOff."""
+        """Send a request; the future has the answer, or raises DeviceError or Preempted."""
         worker = self.worker
         if worker is None:
             gone: Future[dict[str, Any]] = Future()
@@ -246,13 +245,13 @@ class RobotLink:
         return asked
 
     def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.05) -> bool:
-        """Wait so many s for an answer; return whether it is there."""
+        """Wait up to so many s for an answer; return whether it is there."""
         with suppress(TooLate):
             asked.exception(seconds)
         return asked.done()
 
     def beat(self) -> RobotState:
-        """Wait until the robot has said once more how it is, and return that."""
+        """Wait for the robot's next heartbeat, and return its state."""
         last, until = self.state.number, time.monotonic() + START_SECONDS
         while (
             self.state.number == last
@@ -264,11 +263,11 @@ class RobotLink:
         return self.state
 
     def do(self, do: Request, **what: Any) -> dict[str, Any]:
-        """Ask the robot for something, and wait for it.
+        """Send a request, and wait for the answer.
 
         Raises:
-            BrokenOff: it was broken off, because the robot had to stand still.
-            DeviceError: it could not be done.
+            Preempted: it was aborted, because the robot had to stop.
+            DeviceError: it failed.
         """
         try:
             return self.ask(do, **what).result(ANSWER_SECONDS)
@@ -276,26 +275,26 @@ class RobotLink:
             raise DeviceError(f"The robot process does not answer ({do}).") from None
 
     def tell(self, do: Request, **what: Any) -> None:
-        """Tell the robot something, and wait for no answer."""
+        """Send a request without waiting for an answer."""
         line = {**self._command(do), **what}
         if self.worker is not None:
             self.worker.tell(line)
 
     @staticmethod
     def _command(do: Request) -> dict[str, str]:
-        """Begin a line: the request, and the id of the command that it serves."""
+        """Return the beginning of a line: the request, and the id of its command."""
         command = command_id()
         level = logging.WARNING if do == "stop" else level_of(do)
         _LOG.log(level, "asks the robot to %s", do)
         return {"do": do} if command == NO_COMMAND else {"do": do, "command": command}
 
     def offer_calls(self, calls: Mapping[str, str]) -> None:
-        """Show a button at the robot for each open call: who is called, by its key."""
+        """Show a button at the robot for each open call: the called person's name by key."""
         self._calls = dict(calls)
         self.tell("show calls", calls=self._calls)
 
     def stop(self, why: str, by: str = STAFF) -> None:
-        """Stop the robot now; it waits behind nothing, and latches until `by` releases it."""
+        """Stop the robot now, ahead of everything; it latches until `by` releases it."""
         self.tell("stop", why=why, by=by)
 
     def release(self, by: str = "") -> None:
@@ -303,9 +302,9 @@ class RobotLink:
         self.tell("release", by=by)
 
     def alive(self) -> None:
-        """Say that the screen lives, which from the first time on has to be said again and again.
+        """Report that the screen is alive; after the first call it must be repeated.
 
-        Where it is not, the robot process is not told either that the program lives.
+        Without it, the heartbeat to the robot process stops too.
         """
         self._alive = time.monotonic()
 
@@ -315,13 +314,13 @@ class RobotLink:
         number = 0
         while not self._closing.wait(BEAT_SECONDS) and worker.pid is not None:
             alive = self._alive
-            hears = not (worker.heard and self.silent)  # or its pipe would only fill
+            hears = not (worker.heard and self.silent)  # otherwise its pipe would only fill
             if hears and (alive is None or time.monotonic() - alive < HANGS_SECONDS):
                 number += 1
                 worker.beat({"beat": number})
 
     def _hear(self, said: Said, _: bytes) -> bool:
-        """Take what it says of itself; return whether that was no answer."""
+        """Handle a message; return whether it was not an answer."""
         self._told.time = max(self._told.time, said.get("at", 0.0))
         if "starts" in said:
             self._cancellation.starts(str(said["starts"]))
@@ -339,7 +338,7 @@ class RobotLink:
 
 
 def _nothing(_: str) -> None:
-    """Take an answer for which nobody waits."""
+    """Ignore the event."""
 
 
 def _ended(how: str) -> str:
@@ -347,17 +346,17 @@ def _ended(how: str) -> str:
 
 
 def _call_off(worker: WorkerProcess) -> None:
-    """Have the process end that was to switch the robot on; nobody waits for it any more."""
+    """End a process that is still switching the robot on, and its waiting caller."""
     worker.terminate()
     worker.first.cancel()
 
 
 def _answer(said: Said) -> dict[str, Any]:
-    """Return the result of a command.
+    """Return the result of a request.
 
     Raises:
-        BrokenOff: it was broken off.
-        DeviceError: it could not be done.
+        Preempted: it was aborted.
+        DeviceError: it failed.
     """
     if "failed" in said:
         kind = Preempted if said.get("broken") else DeviceError
@@ -367,7 +366,7 @@ def _answer(said: Said) -> dict[str, Any]:
 
 
 def _note_answer(do: Request, command: str, asked: Future[dict[str, Any]]) -> None:
-    """Log what came of something that the robot was asked for; this is another thread."""
+    """Log the outcome of a request; called on another thread."""
     with serving(command):
         failed = None if asked.cancelled() else asked.exception()
         if failed is None:

@@ -1,4 +1,4 @@
-"""What the world tells the robot to do, one thing after another, broken off where it must be."""
+"""Commands of the world to the robot, one after another, aborted if necessary."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tangy_hw.robot_process.requests import Request
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import Health
 
-BREAK_SECONDS = 20.0  # of real time, after which what was called off is taken to be over
+BREAK_SECONDS = 20.0  # of real time, after which a cancelled command counts as over
 
 Diagnosed = Callable[[Health], Mapping[str, bool]]
-"""Says which faults devices show, by code, and whether each is critical."""
+"""Returns the codes of the faults that devices show, and whether each is critical."""
 
 
 class Commands:
-    """Gives a robot commands and waits for each of them."""
+    """Sends commands to the robot and waits for each of them."""
 
     def __init__(self, link: RobotLink) -> None:
         self.link = link
@@ -28,11 +28,11 @@ class Commands:
         self._heedless: frozenset[str] = frozenset()
 
     def do(self, do: Request, **what: Any) -> dict[str, Any]:
-        """Carry out a command; a critical reading of a device breaks it off.
+        """Execute a command; a critical reading of a device aborts it.
 
         Raises:
-            BrokenOff: it was, or the robot had to stand still.
-            DeviceError: it could not be done.
+            Preempted: it was aborted, or the robot had to stop.
+            DeviceError: it failed.
         """
         asked = self.link.ask(do, **what)
         broken, until = "", 0.0
@@ -48,7 +48,7 @@ class Commands:
 
     @contextmanager
     def heedless(self, *codes: str) -> Iterator[None]:
-        """Break nothing off for faults of these codes, as long as somebody is in it."""
+        """Ignore faults of these codes while the context is active."""
         before, self._heedless = self._heedless, self._heedless | set(codes)
         try:
             yield
@@ -62,23 +62,23 @@ class Commands:
         posture: Mapping[str, Sequence[float]] | None = None,
         sound: str = "",
     ) -> dict[str, Any]:
-        """Let the robot say, show, gesture (joints in rad), then play a WAV; raises as `do`."""
+        """Let the robot speak, show, gesture (degrees), then play a WAV; raises as `do`."""
         angles = {limb: list(joints) for limb, joints in (posture or {}).items()}
         shown = picture._asdict()
         return self.do("perform", text=text, picture=shown, posture=angles, sound=sound)
 
     def wait(self, seconds: float, *, asks: bool = False) -> None:
-        """Let s pass, with `asks` until somebody else asks; raises as `do`."""
+        """Let s pass, with `asks` only until a new request comes; raises as `do`."""
         self.do("wait", seconds=seconds, asks=asks)
 
     def settle(self) -> None:
         """Let a stepped bench deliver fresh observations."""
         if self.link.setup.stepped:
-            with suppress(DeviceError):  # what is wrong with it is seen by what devices report
+            with suppress(DeviceError):  # the devices' readings show the problem
                 self.do("settle")
 
     def _critical(self) -> str:
-        """Name a critical fault that the devices show, "" if they show none."""
+        """Return the code of a critical fault that the devices show, "" if there is none."""
         found = self.diagnosed(self.link.health())
         return next(
             (code for code, critical in found.items() if critical and code not in self._heedless),

@@ -1,7 +1,7 @@
 """The live world of an activity declared by facts.
 
-The interpreter keeps the facts, as it does in the simulated room. They change by what is observed:
-signs that ask, what staff tell of people, what is heard; and by what the robot has carried out.
+The interpreter keeps the facts, as in the simulated room. They change with observations (signs,
+reports by staff, heard answers) and with the behaviours that the robot has carried out.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ if TYPE_CHECKING:
 
     from tangy_profiles.game_records import GameChange
 
-LOOK_SECONDS = 0.5  # between two looks at what people do
-PATIENCES = 2.0  # windows of patience after which it is taken that a person does not do it
+LOOK_SECONDS = 0.5  # between two observations of people
+PATIENCES = 2.0  # windows of patience after which a person counts as not complying
 
 
 class Observed(NamedTuple):
-    """One observation of a person: the fact, its certainty, and its source."""
+    """An observation of a person: the fact, its certainty, and its source."""
 
     told: TypedObservation
     certainty: float
@@ -54,18 +54,18 @@ class Observed(NamedTuple):
 
 
 class DeclaredLiveWorld(LiveWorld):
-    """A room with a robot and people in it, who play an activity that is declared by facts."""
+    """A room with a robot and people who play an activity declared by facts."""
 
     activity: DeclaredActivity
     game: DeclaredGame
     sees_all = False
-    """Whether everything that people do is told: then nothing told means nothing done."""
+    """Whether everything that people do is reported, so that no report means no action."""
 
     def __init__(self, activity: DeclaredActivity, *both: Any, **named: Any) -> None:
-        """Make the world of a robot that is switched on, as `LiveWorld` does."""
+        """Create the world of a robot that is switched on, as `LiveWorld` does."""
         self._told: deque[Observed] = deque()
         self.unsure: Observed | None = None
-        """What was observed last and not sure enough to be judged: the person is asked again."""
+        """Latest observation too uncertain to be judged: the person is asked again."""
         super().__init__(activity, *both, **named)
 
     def _begin(self) -> None:
@@ -84,13 +84,14 @@ class DeclaredLiveWorld(LiveWorld):
         self._not_clear: list[UnclearAnswer] = []
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Go on where a game was interrupted, with the facts that the log kept of it.
+        """Resume an interrupted game, with the facts from the log.
 
-        Who asked by a sign is taken to ask by word, as nobody holds up a sign meanwhile.
+        People who asked by a sign count as asking by word, because nobody holds up a sign
+        meanwhile.
 
         Raises:
-            NotResumable: other people take part, the activity was changed, or the log is of a
-                version that did not keep the facts.
+            NotResumable: other people take part, the activity was changed, or the log's version has
+                no facts.
         """
         last = past.steps[-1]
         if past.beginning.people != self.people:
@@ -101,7 +102,7 @@ class DeclaredLiveWorld(LiveWorld):
         if game is None:
             raise NotResumable(OTHERWISE)
         for _ in range(past.beginning.number):
-            self._begin()  # the items of each game of the run come in an order of their own
+            self._begin()  # each game of a run has its own order of items
         self.game = game
         self.away = frozenset(self.people) - frozenset(game.here)
         self._plan_without(self.away)
@@ -116,14 +117,14 @@ class DeclaredLiveWorld(LiveWorld):
         return self.observe()
 
     def change(self, change: GameChange) -> None:
-        """Let somebody leave or come back, in this game and in the next."""
+        """Let a person leave or come back, in this game and the next."""
         super().change(change)
         if change.what in ("left", "came"):
             self.game.observe(HERE, change.person, YES if change.what == "came" else NO)
 
     @property
     def memory(self) -> GameMemory:
-        """Everything that is known of the game now, for the log."""
+        """Everything known about the game now, for the log."""
         return memory_of(self.game)
 
     # ------------------------------------------------------------------------ what is observed
@@ -131,18 +132,18 @@ class DeclaredLiveWorld(LiveWorld):
     def tell(
         self, who: str | None, said: str, certainty: float = 1.0, source: str = "staff"
     ) -> bool:
-        """Take in a report about a person, or a person's own answer.
+        """Add a report about a person, or a person's own answer.
 
-        It counts with the next look at the game, so that it never changes what is being done.
+        It takes effect at the next observation, so that it never changes a behaviour in progress.
 
         Args:
-            who: the player; None where nobody is named.
+            who: the player; None if nobody is named.
             said: the words.
-            certainty: how sure they are, as a probability.
-            source: what tells it, for the log.
+            certainty: their certainty, as a probability.
+            source: source of the report, for the log.
 
         Returns:
-            Whether they say anything of a fact.
+            Whether the words state a fact.
         """
         found = None if self.over else meant(self.game, who, said)
         if found is None:
@@ -151,7 +152,7 @@ class DeclaredLiveWorld(LiveWorld):
         return True
 
     def take(self, observed: Observed) -> None:
-        """Take in an observation of a fact; it counts at the next `observe`."""
+        """Add an observation of a fact; it takes effect at the next `observe`."""
         self._told.append(observed)
 
     def observe(self) -> ActivityState:
@@ -163,14 +164,14 @@ class DeclaredLiveWorld(LiveWorld):
         return joint_state(self.game)
 
     def look_again(self) -> ActivityState:
-        """Return the joint state a moment later: there is nothing to be read again."""
+        """Return the joint state a moment later: there is nothing to read again."""
         return self.observe()
 
     def read_card(self, person: str, after: float = 0.0) -> None:
         """Do nothing, whatever the time `after` in s: there are no cards."""
 
     def _listen(self) -> None:
-        """Hear what people have done since, where something tells it."""
+        """Collect what people have done; overridden where a sensor reports it."""
 
     def _take_in(self) -> None:
         """Apply the observations since the last look, each with its certainty."""
@@ -179,11 +180,11 @@ class DeclaredLiveWorld(LiveWorld):
             fact, who, raw = observed.told
             self.game.now = self.link.time - self._started
             if observed.certainty < CERTAIN:
-                self._note_unclear()  # nobody has asked again about the one before
+                self._note_unclear()  # nobody has asked again about the previous one
                 self.unsure = observed
                 continue
             if self.unsure is not None and self.unsure.told.who == who:
-                self._note_unclear()  # said again without being asked
+                self._note_unclear()  # repeated without being asked
             self._asked_again.pop(who or "", None)
             if fact == ASKING and who is not None:
                 self.requests.ask_for(who)
@@ -193,7 +194,7 @@ class DeclaredLiveWorld(LiveWorld):
     # ------------------------------------------------------------------------ behaviours
 
     def execute(self, action: Action) -> Outcome:
-        """Let the robot carry out an action, and let people act; it can be broken off."""
+        """Execute an action of the robot, and let people act; it can be aborted."""
         began = self.link.time
         if self.over:
             return Outcome(False, 0.0, (), None)
@@ -224,7 +225,7 @@ class DeclaredLiveWorld(LiveWorld):
         """Speak, show, gesture and drive; return speech and picture text.
 
         Raises:
-            DeviceError: it had to be broken off.
+            DeviceError: it was aborted.
         """
         behaviour, game = action.behaviour, self.game
         drives = behaviour.effect in ("go to user", "go to front")
@@ -250,7 +251,7 @@ class DeclaredLiveWorld(LiveWorld):
         return speech, image
 
     def _arrives(self, place: str) -> bool:
-        """Drive to a place, and see who sits there; say whether the robot has arrived."""
+        """Drive to a place, and identify the person there; return whether the robot has arrived."""
         if not self.drive(place):
             return False
         if place != FRONT and self.knows_faces:
@@ -258,7 +259,7 @@ class DeclaredLiveWorld(LiveWorld):
         return True
 
     def _count(self, name: str, whom: str | None) -> Execution:
-        """Let a behaviour count that was carried out, and have signs taken down that it settled."""
+        """Count an executed behaviour, and wait for the signs of settled requests to come down."""
         asked = list(self.game.queue)
         done = self.game.execute(name, whom)
         self._did.clear()
@@ -269,13 +270,13 @@ class DeclaredLiveWorld(LiveWorld):
                 is_down = self.requests.answered(person)
             except DeviceError:
                 continue
-            if not is_down:  # it still asks: nothing that was done has ended that
+            if not is_down:  # the sign is still up: the request is not settled
                 self.tracker.ask(person)
                 self.game.closed = None
         return done
 
     def _watch(self, done: Execution, action: Action) -> Response | None:
-        """Watch whether a person does what they were invited to; None where that is not known."""
+        """Watch whether an invited person complies; None if that is unknown."""
         asked = next(((who, fact, value) for who, fact, value in done.invited if who), None)
         if asked is None:
             return None
@@ -286,7 +287,7 @@ class DeclaredLiveWorld(LiveWorld):
             self.commands.wait(LOOK_SECONDS)
             self._hear()
             now = self.link.time
-            seconds = (before + now) / 2 - began  # it was done between two looks
+            seconds = (before + now) / 2 - began  # it was done between the two looks
             if self.game.value(fact, who) == value:
                 return Response(who, action.strategy, True, seconds <= patience, seconds)
             if now - began > PATIENCES * patience:
@@ -295,9 +296,9 @@ class DeclaredLiveWorld(LiveWorld):
             before = now
 
     def _let_people_act(self, behaviour: str, whom: str | None) -> None:
-        """Wait until people have changed what the policy sees, but no longer than the pause.
+        """Wait until people have changed the state that the policy sees, at most for the pause.
 
-        A person for whom the behaviour was, and who does nothing in the pause, is asked again in
+        A person whom the behaviour addressed, and who does nothing in the pause, is asked again in
         the words of the file, and given another pause.
         """
         declared = self.activity.declaration.behaviours.get(behaviour)
@@ -313,15 +314,15 @@ class DeclaredLiveWorld(LiveWorld):
                 until += self._ask_again()
                 if whom and words and silent and self.link.time >= until:
                     until = self.link.time + self._ask_silent(words, whom, pause)
-        except DeviceError:  # what keeps it from waiting is seen by what devices report
+        except DeviceError:  # the devices' readings show the problem
             return
 
     def may_ask_again(self, person: str | None) -> bool:
-        """Whether a person is asked again after an unclear answer, or has been often enough."""
+        """Return whether a person may be asked again after an unclear answer."""
         return person is not None and self._asked_again.get(person, 0) < self.activity.asking.visit
 
     def _note_unclear(self, *, asked_again: bool = False) -> None:
-        """Keep for the log which answer was not judged, and forget it otherwise."""
+        """Record the unjudged answer for the log, and drop it."""
         observed, self.unsure = self.unsure, None
         if observed is None:
             return
@@ -333,7 +334,7 @@ class DeclaredLiveWorld(LiveWorld):
         )
 
     def _ask_again(self) -> float:
-        """Ask again a person whose answer was unclear; return the duration in s.
+        """Ask a person with an unclear answer again; return the duration in s.
 
         Raises:
             DeviceError: it could not be said or shown.
@@ -351,7 +352,7 @@ class DeclaredLiveWorld(LiveWorld):
         return self.link.time - began
 
     def _ask_silent(self, words: list[str], who: str, pause: float) -> float:
-        """Ask a person again who said nothing, if they may be; return how long to wait, in s.
+        """Ask a silent person again, if allowed; return how long to wait, in s.
 
         Raises:
             DeviceError: it could not be said or shown.
@@ -368,7 +369,7 @@ class DeclaredLiveWorld(LiveWorld):
         return pause
 
     def _hear(self) -> None:
-        """See what people do now, where the robot's time stands still meanwhile as well."""
+        """Update the game with what people do now, also on a stepped bench."""
         self.commands.settle()
         self.game.now = self.link.time - self._started
         self._listen()
@@ -378,7 +379,7 @@ class DeclaredLiveWorld(LiveWorld):
     # ------------------------------------------------------------------------ what is there
 
     def scene(self) -> Scene:
-        """Return what there is to see, for a screen to draw."""
+        """Return the scene for a screen to draw."""
         scene = super().scene()  # its tracker is a view of the game
         did = {who: ", ".join(acts) for who, acts in self._did.items()}
         return replace(scene, doing={**scene.doing, **did})

@@ -1,4 +1,4 @@
-"""A game that is declared by facts, as those parts know it that know a `Tracker`."""
+"""Adapter that shows a game declared by facts as a `Tracker`."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from tangy_profiles.tracker import Tracker
 
 
 class DeclaredTracker(Tracker):
-    """A view of the interpreter's game: whatever changes a fact goes through its `observe`."""
+    """A view of the interpreter's game; changes of facts go through its `observe`."""
 
     def __init__(self, activity: DeclaredActivity, game: DeclaredGame) -> None:
-        """Take the game that this is a view of."""
+        """Set the game."""
         self._game = game
         super().__init__(activity, game.players)
 
     @property
     def place(self) -> str:
-        """Where the robot is in the game."""
+        """Place of the robot in the game."""
         return self._game.place
 
     @place.setter
@@ -29,7 +29,7 @@ class DeclaredTracker(Tracker):
 
     @property
     def queue(self) -> list[str]:
-        """Who asks, first come first; a copy."""
+        """Asking people, first come first served; a copy."""
         return list(self._game.queue)
 
     @queue.setter
@@ -38,7 +38,7 @@ class DeclaredTracker(Tracker):
 
     @property
     def step(self) -> int:
-        """How many behaviours were carried out, or begun in vain."""
+        """Number of behaviours carried out or attempted."""
         return self._game.step
 
     @step.setter
@@ -46,13 +46,13 @@ class DeclaredTracker(Tracker):
         pass  # the game counts
 
     def ask(self, person: str) -> bool:
-        """A person asks for help. Returns False if that request was open already."""
+        """Record a request for help; return False if it was already open."""
         return self._game.observe(ASKING, person, YES)
 
     def withdraw(self, person: str) -> None:
-        """A person who asked does not ask any more."""
+        """Record that a person withdraws their request."""
         self._game.observe(ASKING, person, NO)
 
     def state(self) -> ActivityState:
-        """Return the joint state as the facts have it now."""
+        """Return the current joint state by the facts."""
         return joint_state(self._game)

@@ -1,4 +1,4 @@
-"""Requests for help in a game: by signs that are seen, or reported by staff."""
+"""Requests for help in a game: by visible signs, or reported by staff."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tangy_profiles.robot import DeviceProfile
 from tangy_profiles.tracker import Tracker
 
 LOOK_SECONDS = 0.5  # between two looks at the signs
-SIGN_SECONDS = 8.0  # in which somebody who was helped takes the sign down
+SIGN_SECONDS = 8.0  # for a person who was helped to take the sign down
 
 WITHDRAWN_SECONDS = 3.0
-"""Without a sign, after which somebody does not ask any more: an arm may have been before it."""
+"""Time without a sign after which a request counts as withdrawn: an arm may have covered it."""
 
 
 class HelpRequestTracker:
-    """The requests of one game; times are the robot's, in s."""
+    """Requests of one game; times are the robot's, in s."""
 
     def __init__(
         self, people: Sequence[str], commands: Commands, device: DeviceProfile | None = None
@@ -27,9 +27,9 @@ class HelpRequestTracker:
         """Prepare a game.
 
         Args:
-            people: the ids of those who take part, in the order of their seats.
-            commands: through which the robot is asked to look.
-            device: the sensor that sees the signs, if the robot has one.
+            people: ids of the participants, in the order of their seats.
+            commands: commands to the robot.
+            device: sensor of the signs, if the robot has one.
         """
         self._people = tuple(people)
         self._commands = commands
@@ -38,34 +38,34 @@ class HelpRequestTracker:
         self._by_word: dict[str, float] = {}
         self._without_sign: dict[str, float] = {}
         self._aside: set[str] = set()
-        self._unseen: set[str] = set()  # whose signs a sensor showed last that then fell silent
+        self._unseen: set[str] = set()  # people whose signs a sensor showed before it fell silent
 
     @property
     def signs(self) -> dict[str, float]:
-        """Who has a sign up, and since when, in s."""
+        """People with a sign up, with the time (s) since when."""
         asks = self._link.state.asks
         return {self._people[seat - 1]: since for seat, since in asks if seat <= len(self._people)}
 
     @property
     def all(self) -> dict[str, float]:
-        """Who asks, by a sign that was not set aside or by word, and since when, in s."""
+        """Asking people, by word or by a sign not set aside, with the time (s) since when."""
         signs = self.signs
-        self._aside &= signs.keys()  # who has turned the sign down may put it up again
+        self._aside &= signs.keys()  # after the sign has come down, it may go up again
         if self._unseen and self._sees:
             self._unseen.clear()
         aside = self._aside | self._unseen
         return {p: since for p, since in signs.items() if p not in aside} | self._by_word
 
     def ask_for(self, person: str) -> None:
-        """Ask on behalf of somebody who has no sign."""
+        """Record a request for a person without a sign."""
         self._by_word[person] = self._link.time
 
     def over(self, person: str) -> None:
-        """What somebody asked for by word is over."""
+        """End a person's request by word."""
         self._by_word.pop(person, None)
 
     def resume(self, asking: Collection[str]) -> None:
-        """Take the requests that an interrupted game left open for requests by word.
+        """Take the open requests of an interrupted game as requests by word.
 
         Their signs may not be seen again: staff may have asked for them.
         """
@@ -73,15 +73,15 @@ class HelpRequestTracker:
         self._by_word = {one: self._by_word.get(one, now) for one in asking}
 
     def set_aside(self, person: str) -> None:
-        """Close a person's request, also while the sign stays up."""
+        """Close a person's request, even while the sign stays up."""
         self.over(person)
         self._aside.add(person)
 
     def answered(self, person: str) -> bool:
-        """Say that what somebody asked for is done, and whether their sign is down then.
+        """Record that a request was settled; return whether the sign comes down in time.
 
-        It is waited for a while. What a sensor that fell silent saw last does not count: the sign
-        is then left at that until it sees again.
+        The last sight of a sensor that has fallen silent does not count: such a sign is ignored
+        until the sensor works again.
         """
         self.over(person)
         began = self._link.time
@@ -94,11 +94,12 @@ class HelpRequestTracker:
         return person not in self.all
 
     def look_twice(self, tracker: Tracker) -> None:
-        """Wait until it is certain whether somebody who waits has taken the sign down.
+        """Wait until it is certain whether waiting people have taken their signs down.
 
-        What changed is then seen with the behaviour under which it did, also with a game's last.
+        Changes are then attributed to the behaviour during which they happened, even the last of a
+        game.
         """
-        with suppress(DeviceError):  # what is wrong is seen by what devices report
+        with suppress(DeviceError):  # the devices' readings show the problem
             while self._in_doubt(tracker):
                 self._look()
 
@@ -120,7 +121,7 @@ class HelpRequestTracker:
         return reading is None or state_of(self._device, reading) in (OK, WARN)
 
     def tell(self, tracker: Tracker) -> None:
-        """Tell a game who asks, and who waits and does not ask any more."""
+        """Update a game's requests: new ones, and withdrawn ones."""
         asking, now = self.all, self._link.time
         for person, _ in sorted(asking.items(), key=lambda item: item[1]):
             tracker.ask(person)

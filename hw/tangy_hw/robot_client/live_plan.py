@@ -20,14 +20,14 @@ from tangy_profiles.robot import Robot
 from tangy_profiles.room import SEAT, Room
 
 BESIDE = 0.6
-"""Within so many m of its place the robot stands there, to those who look on."""
+"""Distance in m to its place within which the robot is shown as being there."""
 
 SET_ASIDE: tuple[ChangeKind, ...] = ("others first", "played on", "left")
-"""Changes by which somebody's request is over, also while the sign stays up."""
+"""Changes that end a person's request, even while the sign stays up."""
 
 
 Posture: TypeAlias = Mapping[str, Sequence[float]] | None
-"""Joint angles in rad, by limb; None: as they are."""
+"""Joint angles in degrees, by limb; None: unchanged."""
 
 
 class LivePlan(PlannedGame):
@@ -50,19 +50,19 @@ class LivePlan(PlannedGame):
         written: str = "",
         sound: str = "",
     ) -> None:
-        """Speak, show (joints in rad), play a WAV; without a voice the screen shows the speech.
+        """Speak, show, gesture, and play a WAV; without a voice the screen shows the speech.
 
-        What is said is `written` otherwise where all can read it, if that is given.
+        `written` replaces the speech on the public screen, if given.
 
         Raises:
-            DeviceError: neither could be done.
+            DeviceError: neither speech nor screen worked.
         """
         in_words = picture._replace(text=written or speech)
         if speech and not self._has_voice:
             self.commands.perform(speech, in_words, posture, sound)
             return
         done = self.commands.perform(speech, picture, posture, sound)
-        if speech and not done.get("said"):  # it failed just now, or the robot has no voice
+        if speech and not done.get("said"):  # it has just failed, or the robot has no voice
             self.commands.perform("", in_words)
 
     @property
@@ -82,7 +82,7 @@ class LivePlan(PlannedGame):
 
     @property
     def arrived(self) -> bool:
-        """Whether it stands at its place in the game: it may be on its way, or have been moved."""
+        """Whether it stands at its place in the game, rather than being on its way or moved."""
         state = self.link.state
         if not state.number or state.going:
             return not state.going
@@ -91,16 +91,16 @@ class LivePlan(PlannedGame):
 
     @property
     def bound_for(self) -> str:
-        """The place that the robot drives to, "" if it stands."""
+        """The place that the robot is driving to, "" if it stands."""
         return self.link.state.going
 
     @property
     def called_now(self) -> tuple[int, ...]:
-        """The numbers that count as called."""
+        """Numbers that count as called."""
         return tuple(self.calls.called)
 
     def numbers_on(self, card: int) -> tuple[int, ...] | None:
-        """Return the numbers of a printed card, None where there is none of that number."""
+        """Return the numbers of a printed card, None if there is no such card."""
         return self.cards.numbers_on(card)
 
     def holder(self, card: int) -> str:
@@ -114,7 +114,7 @@ class LivePlan(PlannedGame):
         self.cards.wins = None if deck == self.own_deck else chosen
 
     def set_pace(self, seconds: float) -> None:
-        """Let so many s pass from one call to the next, also until the call that is due."""
+        """Set the s between calls, also for the next call."""
         self._due += seconds - self.pace
         super().set_pace(seconds)
 
@@ -136,7 +136,7 @@ class LivePlan(PlannedGame):
         self.calls.take_back(number)
 
     def announce(self, text: str) -> None:
-        """Say something to the group, and show it; what cannot be said is seen by the devices."""
+        """Speak to the group, and show the text; failures show in the devices' readings."""
         with suppress(DeviceError):
             self.say(text, Picture(text, "", self.calls.labels(self.activity.deck)))
 

@@ -1,9 +1,9 @@
 """The real world for facilitation and monitoring: the interface to a connected robot.
 
-It keeps what the game is about (the numbers that were called, whose card was read, whose turn it
-is) by the same rules as the simulated one (`Tracker`), and fills it with what the robot sees:
-cards and faces in pictures, signs that ask, the place where it arrived. What people do about a
-request that was put to them is observed, within the activity's patience or later.
+It keeps the state of the game (called numbers, the card read, whose turn it is) by the same rules
+as the simulated world (`Tracker`), and updates it with the robot's observations: cards and faces in
+images, signs, the place of arrival. Responses to requests are observed within the activity's
+patience or later.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
 
 PACE_SECONDS = 30.0
-"""From one call to the next at least, so that all can look and mark; about as in the paper."""
-FACING = pi / 2  # the heading at which the robot faces the people
+"""Minimum time between calls, so that all can look and mark; about as in the paper."""
+FACING = pi / 2  # heading of the robot when it faces the people
 
 
 class LiveWorld(LivePlan):
-    """One room with a robot and people in it. `begin` each game, `execute` behaviours."""
+    """A room with a robot and people. `begin` starts each game, `execute` runs behaviours."""
 
     played_in: GameWorld = LIVE
 
@@ -63,30 +63,30 @@ class LiveWorld(LivePlan):
         pace: float = PACE_SECONDS,
         knows_faces: bool = False,
     ) -> None:
-        """Make the world of a robot that is switched on.
+        """Create the world of a robot that is switched on.
 
         Args:
-            activity: what is played.
-            people: the ids of those who take part, in the order of their seats.
+            activity: the activity.
+            people: ids of the participants, in the order of their seats.
             link: the robot process.
-            robot: its profile.
-            room: where table and seats are.
-            seed: the order of the numbers comes from it.
-            names: what people are called.
-            pace: s from one call to the next.
-            knows_faces: the robot looks who it is that it has come to.
+            robot: the robot's profile.
+            room: the room, with table and seats.
+            seed: seed of the order of the numbers.
+            names: people's names, by id.
+            pace: s between calls.
+            knows_faces: whether the robot identifies the person that it has come to.
         """
         self.activity, self.own_deck = activity, activity.deck
         self.people = tuple(people)
         self.over = True
         self.broken = ""
-        """Why the last behaviour was not carried out to its end, "" if it was."""
+        """Why the last behaviour was aborted, "" if it was not."""
         self.link = link
         self.commands = Commands(link)
         self.cards = CardObservations(activity, self.commands)
         sees = reads_cards(robot) or not activity.deck.columns
         self.eyes = None if sees else StaffEyes(activity, self.commands)
-        """Staff, where the robot has no camera that reads cards."""
+        """Staff who report the cards, if the robot has no camera that reads them."""
         self._remedies = RecoveryActions(self)
         self._robot = robot
         self._room = room
@@ -94,7 +94,7 @@ class LiveWorld(LivePlan):
         self.pace = pace
         self.knows_faces = knows_faces
         self._order = Random(f"{seed}/calls")
-        self._paused = (0, 0.0)  # the pauses before this game
+        self._paused = (0, 0.0)  # pauses before this game
         self._begin()
 
     def _begin(self) -> None:
@@ -106,8 +106,8 @@ class LiveWorld(LivePlan):
             self.people, self.commands, self._robot.devices.get("requests")
         )
         self.sitting: dict[str, str] = {}
-        """Who was seen at whose place in this game, where it is not who sits there usually."""
-        self._halted = 0.0  # since when it stands halted, 0: it does not
+        """People seen at other places than their own in this game."""
+        self._halted = 0.0  # since when it has been halted, 0: it is not
         self._due = 0.0  # when the next number may be called
 
     def begin(self) -> ActivityState:
@@ -115,15 +115,15 @@ class LiveWorld(LivePlan):
         self._begin()
         self._paused = self.link.state.pauses
         self.over = False
-        with suppress(DeviceError):  # where it cannot, the first behaviour tries again
+        with suppress(DeviceError):  # if it fails, the first behaviour tries again
             self._remedies.go_back(knows_place=not self.lost)
         self.commands.settle()
         return self.observe()
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Go on where a game was interrupted, or raise NotResumable; cards are learnt anew."""
+        """Resume an interrupted game, or raise NotResumable; cards are learnt again."""
         for _ in range(past.beginning.number):
-            self._begin()  # each game of the run has an order of its own
+            self._begin()  # each game of the run has its own order
         past.follow(self.tracker, self.change)
         self.requests.resume(self.tracker.queue)
         self.calls.resume(past, self.activity)
@@ -135,18 +135,18 @@ class LiveWorld(LivePlan):
 
     @property
     def called(self) -> list[int]:
-        """The numbers that count as called, the last one last."""
+        """Numbers that count as called, the latest last."""
         return self.calls.called
 
     @property
     def lost(self) -> bool:
-        """Whether the robot does not know where it stands: its places are too far apart."""
+        """Whether the robot is not localised: its possible poses are too far apart."""
         health = self.link.health()
         facts = next((r.facts for r in health if r.device == "localisation"), {})
         return float(facts.get("spread", 0.0)) >= LOST_SPREAD
 
     def observe(self) -> ActivityState:
-        """Return the joint state as the robot's sensors have it now."""
+        """Return the current joint state, as the robot's sensors see it."""
         if not self.over:
             self.requests.tell(self.tracker)
         return self.tracker.state()
@@ -154,7 +154,7 @@ class LiveWorld(LivePlan):
     def look_again(self) -> ActivityState:
         """Take a second look at the card beside the robot; return the new state.
 
-        A stop, or what keeps it from looking, ends that at once.
+        A stop, or an error, ends the look at once.
         """
         with suppress(DeviceError):
             place = self.tracker.place
@@ -167,7 +167,7 @@ class LiveWorld(LivePlan):
     # ------------------------------------------------------------------------ behaviours
 
     def execute(self, action: Action) -> Outcome:
-        """Let the robot carry out an action, and see what comes of it; it can be broken off."""
+        """Execute an action of the robot, and observe the outcome; it can be aborted."""
         behaviour, began = action.behaviour, self.link.time
         if self.over:
             return Outcome(False, 0.0, (), None)
@@ -203,19 +203,19 @@ class LiveWorld(LivePlan):
                 assert_never(forgotten)
 
     def _carry_out(self, action: Action, numbers: tuple[int, ...]) -> tuple[Response | None, bool]:
-        """Do it; return what a person did about it, and whether the robot has done its part."""
+        """Carry it out; return a person's response, and whether the robot has done its part."""
         behaviour, tracker = action.behaviour, self.tracker
         if behaviour.effect == "draw":
             self._keep_pace()
         if behaviour.effect == "bring card closer" and self.eyes is not None:
-            self.read_card(tracker.place)  # nobody is asked to move what no camera looks for
+            self.read_card(tracker.place)  # no camera: nobody need move the card
             return None, True
         self._announce(action, numbers)
         match behaviour.effect:
             case "draw":
                 self.calls.called.extend(numbers)
                 self._due = self.link.time + self.pace
-                with suppress(Preempted):  # it was called, whatever comes now
+                with suppress(Preempted):  # it counts as called, whatever happens now
                     self.commands.wait(min(self.pace, LOOK_SECONDS), asks=True)
             case "go to user":
                 target = action.target or (tracker.queue[0] if tracker.queue else None)
@@ -225,17 +225,17 @@ class LiveWorld(LivePlan):
             case "finish":
                 self.over = True
             case "none" | "clear wrong marks" | "set missing marks" | "bring card closer":
-                pass  # it is said and shown; what people do about it is seen below
+                pass  # it is said and shown; the response is observed below
             case forgotten:
                 assert_never(forgotten)
         if not behaviour.persuades or tracker.place == FRONT:
             return None, True
         if behaviour.effect == "none" and tracker.place not in self.requests.signs:
-            return None, True  # nothing of what the person does about it can be seen
+            return None, True  # the person's response cannot be observed
         return watch_response(self, action, numbers), True
 
     def _announce(self, action: Action, numbers: tuple[int, ...]) -> None:
-        """Speak, show and gesture; the public screen names no person, only the seat."""
+        """Speak, show and gesture; the public screen shows seats instead of people's names."""
         name, fill, deck = self.name_of(action.target), self.activity.fill, self.activity.deck
         seat, behaviour = self.seat_of(action.target), action.behaviour
         called = numbers if action.behaviour.effect == "draw" else ()
@@ -261,7 +261,7 @@ class LiveWorld(LivePlan):
 
     @property
     def calls_in(self) -> float:
-        """The s until the next number may be called."""
+        """Time in s until the next number may be called."""
         return max(0.0, self._due - self.link.time)
 
     def _keep_pace(self) -> None:
@@ -269,7 +269,7 @@ class LiveWorld(LivePlan):
             self.commands.wait(wait)
 
     def _go(self, place: str) -> bool:
-        """Drive to a place; beside a person, see who it is and look at the card."""
+        """Drive to a place; beside a person, identify them and look at the card."""
         if not self.drive(place):
             return False
         self.tracker.arrive(place)
@@ -283,7 +283,7 @@ class LiveWorld(LivePlan):
         return True
 
     def _see_who(self, place: str) -> None:
-        """Look who sits at a place: that person is spoken to, and what they do is theirs."""
+        """Identify the person at a place, to address them and attribute responses to them."""
         person = self.commands.do("face").get("person")
         self.cards.looked("face", place, person)
         if person in self.people:
@@ -292,10 +292,10 @@ class LiveWorld(LivePlan):
                 self.sitting[place] = person
 
     def drive(self, place: str) -> bool:
-        """Drive to a place, whatever the game has of it; return whether it has arrived.
+        """Drive to a place, whatever the state of the game; return whether it has arrived.
 
         Raises:
-            DeviceError: it has to stand still.
+            DeviceError: it has to stop.
         """
         to = self.stand(place)
         done = self.commands.do("go", to=list(Pose(to.x, to.y, FACING)), name=place)
@@ -308,7 +308,7 @@ class LiveWorld(LivePlan):
     def read_card(self, person: str, after: float = 0.0) -> None:
         """Read the card beside the robot, after so many s, and keep the reading.
 
-        A robot without a camera for that asks staff.
+        A robot without a camera for cards asks staff.
 
         Raises:
             DeviceError: it cannot look.
@@ -323,13 +323,13 @@ class LiveWorld(LivePlan):
         self.tracker.seen = self.state_on(card)
 
     def state_on(self, card: dict[str, Any]) -> str | None:
-        """Return the user activity state that a card shows, None if it is not told."""
+        """Return the user activity state of a card reading, None if unread."""
         state = str(card["state"])
         seen = state if state != self.activity.unread else None
         return self.judged(self.tracker.place, seen)
 
     def _executed(self, behaviour: Behaviour, succeeded: bool) -> None:
-        """Count a behaviour; a person whose request it settled takes their sign down."""
+        """Count a behaviour; wait for the sign of a request that it settled to come down."""
         tracker, seen = self.tracker, self.tracker.seen
         tracker.executed(behaviour, succeeded=succeeded)
         closed = tracker.closed
@@ -339,14 +339,14 @@ class LiveWorld(LivePlan):
             is_down = self.requests.answered(closed)
         except DeviceError:
             return
-        if not is_down:  # it still asks: nothing that was done has ended that
+        if not is_down:  # the sign is still up: the request is not settled
             tracker.queue.insert(0, closed)
             tracker.closed, tracker.seen = None, seen
 
     # ------------------------------------------------------------------------ what is there
 
     def scene(self) -> Scene:
-        """Return what there is to see, for a screen to draw."""
+        """Return the scene for a screen to draw."""
         tracker = self.tracker
         asking, view = set(tracker.queue), self.cards.view
         doing = {p: "asks for help" if p in asking else "watches" for p in self.people}
@@ -361,23 +361,23 @@ class LiveWorld(LivePlan):
 
     @property
     def pauses(self) -> tuple[int, float]:
-        """How often the robot has waited for late data in this game, and for how many s."""
+        """Number and total s of the robot's waits for late data in this game."""
         (count, seconds), (before, until) = self.link.state.pauses, self._paused
         return max(0, count - before), round(max(0.0, seconds - until), 2)
 
     @property
     def seconds(self) -> float:
-        """The robot's time, in s."""
+        """Time of the robot, in s."""
         return self.link.time
 
     def health(self) -> Health:
-        """Return what the robot's devices report."""
+        """Return the readings of the robot's devices."""
         return self.link.health()
 
     def recover(self, remedy: Remedy) -> float:
-        """Let the robot, a user or an expert do something about a fault; return the s it took.
+        """Let the robot, a user or an expert handle a fault; return the duration in s.
 
-        The time for which a halted robot stood still before, while staff acted, counts with it.
+        The time for which the halted robot stood still before, while staff acted, is included.
         """
         if remedy.kind == "halt":
             self._halted = self._halted or self.link.time
@@ -387,7 +387,7 @@ class LiveWorld(LivePlan):
         return took
 
     def stood(self) -> float:
-        """Return for how long the robot has stood halted, in s, since this was asked last."""
+        """Return for how many s the robot has been halted since the last query."""
         since, now = self._halted, self.link.time
         self._halted = now if since else 0.0
         return max(0.0, now - since) if since else 0.0

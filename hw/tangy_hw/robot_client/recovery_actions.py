@@ -1,4 +1,4 @@
-"""Recovery in a live world: asking people, looking round, restarting devices."""
+"""Recovery actions in a live world: asking people, turning to localise, restarting devices."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from tangy_profiles.faults import Remedy
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
-SLIPPED = "wheels-slip"  # the fault for which a robot that knows its place no more is stopped
-AWAY = 0.5  # metres from where it should be at which the robot drives there
-BACK_SECONDS = 3.0  # of real time, in which all is back that a lost link had taken along
-HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
+SLIPPED = "wheels-slip"  # fault code of slipping wheels, after which the robot may be lost
+AWAY = 0.5  # metres from its place in the game from which on it drives back
+BACK_SECONDS = 3.0  # of real time, for devices that come back later than a lost link
+HELP_SECONDS = 25.0  # for people to do what the robot asks for in a fault
 
 
 class RecoveryActions:
-    """The remedies of a world for faults of its robot or at its table."""
+    """Remedies for faults of a world's robot or at its table."""
 
     def __init__(self, world: LiveWorld) -> None:
         self._world = world
 
     def do(self, remedy: Remedy) -> float:
-        """Do something about a fault; return the s it took, of the robot's time."""
+        """Carry out a remedy; return its duration in s of the robot's time."""
         link = self._world.link
         began = link.time
         if remedy.kind == "call expert" and (link.silent or link.state.failed):
-            with suppress(DeviceError):  # another robot process, which stands still as well
+            with suppress(DeviceError):  # the new robot process is halted too
                 link.restart()
                 link.stop(remedy.fault, by=FAULT)
-        if remedy.kind == "halt":  # before and beside anything else
+        if remedy.kind == "halt":  # before anything else
             link.stop(remedy.fault, by=FAULT)
             return 0.0
-        with suppress(DeviceError):  # what has not helped is seen by what the devices report
+        with suppress(DeviceError):  # the devices' readings show whether it helped
             self._do(remedy)
         return max(0.0, link.time - began)
 
@@ -55,7 +55,7 @@ class RecoveryActions:
                 self._await_help(remedy)
             case "resume":
                 world.link.release(by=FAULT)
-                if world.lost:  # it slipped, or was pushed, while it was seen to
+                if world.lost:  # it slipped or was pushed meanwhile
                     self.go_back(knows_place=False)
             case "spin":
                 self.go_back(knows_place=False)
@@ -74,18 +74,18 @@ class RecoveryActions:
                 if person == tracker.place:
                     tracker.seen = None
         commands.settle()
-        world.link.beat()  # what was done shows in what the robot says of itself now
+        world.link.beat()  # wait until its readings show the effect
 
     def go_back(self, *, knows_place: bool) -> None:
-        """Let the robot be where it should be in the game; it turns first if it is lost.
+        """Return to the robot's place in the game; localise first if it is lost.
 
         Raises:
-            DeviceError: it has to stand still, or does not find its place or its way.
+            DeviceError: it has to stop, is not localised, or finds no way.
         """
         world = self._world
         place = world.tracker.place
         if not knows_place:
-            with world.commands.heedless(SLIPPED):  # what it is known by is over when it is found
+            with world.commands.heedless(SLIPPED):  # localising ends this fault
                 found = world.commands.do("spin").get("found")
             if not found:
                 raise DeviceError("The robot does not find its place.")
@@ -95,13 +95,13 @@ class RecoveryActions:
             raise DeviceError("The robot does not get back to where it was.")
 
     def _look_again(self, remedy: Remedy) -> None:
-        """See whether what halted the robot is gone, now that staff say so."""
+        """Check whether the reason for a halt is gone, when staff say so."""
         commands, link = self._world.commands, self._world.link
-        if link.state.frozen:  # staff have seen that; it stands until it is let go on
+        if link.state.frozen:  # staff know about the freeze; it stands until released
             link.tell("seen to")
             link.beat()
         commands.do("replan")
-        if self._world.lost:  # only looking round can show whether it knows its place
+        if self._world.lost:  # only turning shows whether it can localise
             link.release(by=FAULT)
             try:
                 self.go_back(knows_place=False)
@@ -113,7 +113,7 @@ class RecoveryActions:
         self._await_others(remedy)
 
     def _await_others(self, remedy: Remedy) -> None:
-        """Wait a moment for what comes back later than what halted the robot, as cameras do."""
+        """Wait a moment for devices that recover later, such as cameras."""
         link, until = self._world.link, time.monotonic() + BACK_SECONDS
         while time.monotonic() < until and not link.setup.stepped:
             found = self._world.commands.diagnosed(link.health())
@@ -122,7 +122,7 @@ class RecoveryActions:
             link.beat()
 
     def _await_help(self, remedy: Remedy) -> None:
-        """Give people time to help, and see whether they have."""
+        """Give people time to help, and check whether they have."""
         world = self._world
         commands, place, began = world.commands, world.tracker.place, world.link.time
         while world.link.time - began < HELP_SECONDS:

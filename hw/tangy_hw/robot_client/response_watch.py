@@ -1,4 +1,4 @@
-"""What a person does about a request in a live game: watched within the activity's patience."""
+"""Observes a person's response to a request in a live game."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tangy_profiles.state import Response
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
-LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
-PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
+LOOK_SECONDS = 0.5  # between two looks at the person
+PATIENCES = 2.0  # windows of patience after which the request counts as ignored
 
 
 def watch_response(world: LiveWorld, action: Action, numbers: tuple[int, ...]) -> Response | None:
-    """Watch what the person beside the robot does about it; None: that cannot be seen."""
+    """Observe the response of the person beside the robot; None if it cannot be observed."""
     place, patience = world.tracker.place, world.activity.patience
     person = world.who(place)
     if world.eyes is not None and action.behaviour.effect in CORRECTS:
@@ -27,18 +27,18 @@ def watch_response(world: LiveWorld, action: Action, numbers: tuple[int, ...]) -
     while True:
         done = _is_done(world, action.behaviour, numbers)
         now = world.link.time
-        seconds = (before + now) / 2 - began  # it was done between two looks
+        seconds = (before + now) / 2 - began  # it was done between the two looks
         if done:
             return Response(person, action.strategy, True, seconds <= patience, seconds)
         if now - began > PATIENCES * patience:
             if action.behaviour.effect == "none" or world.cards.view is None:
-                return None  # a sign that stays up may be forgotten, or want something else
+                return None  # a sign that stays up may be forgotten, or mean something else
             return Response(person, action.strategy, False, False, now - began)
         before = now
 
 
 def _is_done(world: LiveWorld, behaviour: Behaviour, numbers: tuple[int, ...]) -> bool:
-    """Look whether what a behaviour asks for has been done."""
+    """Look whether a request has been carried out."""
     place = world.tracker.place
     if behaviour.effect == "none":
         world.commands.wait(LOOK_SECONDS)

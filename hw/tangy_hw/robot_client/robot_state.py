@@ -1,4 +1,4 @@
-"""How the robot is, as a beat of the robot process tells it."""
+"""The robot's state, from a heartbeat of the robot process."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ NOWHERE = Pose(0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class RobotState:
-    """What the robot said of itself last; `time` is its own, in s, and so is `since` of a request.
+    """Latest state of the robot; `time` is its own, in s, and so is `since` of a request.
 
-    `asks` are (seat, since); `hazard` says why it stands still, `stopped` who stopped it, and
-    `failed` what has failed of its control, for which only another robot process helps. `frozen` is
-    for how many s its control stood still, until staff have seen to that; `held` is what it does
-    about who drives it by hand: "" as told, "slow", or "stands". `waits` says which data is late,
-    while it stands for that; `pauses` is how often it has, and for how many s. `lets` is for whom
-    it stands on its way: "walking" for somebody who passes, "standing" for somebody in the way.
-    `answered` are the keys of the calls that were answered at the chest screen.
+    `asks` are (seat, since); `hazard` is why it stands still, `stopped` why it was stopped, and
+    `failed` a failure of its control that only a new robot process fixes. `frozen` is for how many
+    s its control was frozen, until staff acknowledge it; `held` is the result of the last manual
+    command: "" executed, "slow", "stands" or "overridden". `waits` names the late data that it
+    waits for; `pauses` is the number of such waits, and their total s. `lets` is the kind of person
+    it waits for: "walking" past, or "standing" in the way. `answered` are the keys of calls
+    answered at the chest screen.
     """
 
     number: int = 0
@@ -45,7 +45,7 @@ class RobotState:
 
     @classmethod
     def from_json(cls, body: dict[str, Any]) -> RobotState:
-        """Read what a beat of the robot process tells."""
+        """Read a heartbeat of the robot process."""
         return cls(
             body["number"],
             body["time"],
@@ -69,5 +69,5 @@ class RobotState:
 
 
 def _reading(device: str, age: float, state: str, *more: Any) -> Reading:
-    """Return a reading as it was told; of a state that there is not nothing good is known."""
+    """Return a reading; an unknown state counts as an error."""
     return Reading(device, age, device_state(state) or ERROR, *more)

@@ -1,7 +1,7 @@
-"""The eyes of a robot that has none for cards: staff are asked how the one beside it is.
+"""Asks staff for the state of cards, for a robot without a camera that reads them.
 
-Nobody is asked to move a card that no camera looks for. The robot waits beside the person until
-staff have told.
+Nobody is asked to move a card that no camera looks at. The robot waits beside the person until
+staff have answered.
 """
 
 from __future__ import annotations
@@ -17,33 +17,33 @@ from tangy_profiles.card_face import called_cells
 from tangy_profiles.cards import judge
 from tangy_profiles.state import Response
 
-LOOK_SECONDS = 0.5  # between two looks whether staff have told
+LOOK_SECONDS = 0.5  # between two checks for an answer
 NEEDED = {"wrong marks": False, "missing marks": True}
-"""By checker: the states of which the numbers have to be told, and whether these were called."""
+"""By checker: states whose report needs numbers, and whether these must have been called."""
 
 
 class ToldCard(NamedTuple):
-    """How a card is, as staff tell: its user activity state, and the numbers it is about."""
+    """A card as reported by staff: its user activity state, and the numbers concerned."""
 
     state: str
     numbers: tuple[int, ...] = ()
 
 
 class StaffEyes:
-    """Asks staff how cards are, and keeps what they told of the one beside the robot."""
+    """Asks staff for the state of cards, and keeps the report on the card beside the robot."""
 
     def __init__(self, activity: Activity, commands: Commands) -> None:
-        """Take the activity, and how the robot waits."""
+        """Set the activity, and the robot's commands."""
         self.asks = ""
-        """Of whose card staff are to tell, "" while nothing is to be told."""
+        """Person whose card staff are to report, "" if none."""
         self.answer: Callable[[str], ToldCard | None] = lambda person: self._told
-        """Returns what staff said about a person's card; None: nothing yet."""
+        """Returns staff's report on a person's card; None: not yet."""
         self.asked_last = ""
-        """Of whose card staff were asked last."""
+        """Person whose card staff were asked about last."""
         self.before: ToldCard | None = None
-        """What was told of the same card before, in this visit."""
+        """Previous report on the same card, in this visit."""
         self.began = 0.0
-        """When staff were asked, in s of the robot's time."""
+        """Time of the question, in s of the robot's clock."""
         self._activity = activity
         self._commands = commands
         self._called: Sequence[int] = ()
@@ -51,14 +51,14 @@ class StaffEyes:
         self._last: ToldCard | None = None
 
     def ask(self, person: str, called: Sequence[int]) -> str:
-        """Ask staff for the state of a person's card, and wait for it.
+        """Ask staff for the state of a person's card, and wait for the answer.
 
         Args:
-            person: at whose place the robot is.
-            called: the numbers that were called.
+            person: the person beside the robot.
+            called: the called numbers.
 
         Raises:
-            DeviceError: the waiting is broken off.
+            DeviceError: the wait was aborted.
         """
         again = self.asked_last == person
         self.before, self.began = self._last if again else None, self._commands.link.time
@@ -73,15 +73,15 @@ class StaffEyes:
         return told.state
 
     def leave(self) -> None:
-        """Forget the card that was beside the robot, which stands elsewhere now."""
+        """Forget the card beside the robot, which has left."""
         self.asked_last, self._last = "", None
 
     def tell(self, words: str) -> bool:
-        """Take in what staff tell of the card that they are asked about; say if it is understood.
+        """Process a report by staff on the requested card; return whether it is understood.
 
         Args:
-            words: a state by its name or label; for marks that are wrong or missing with their
-                numbers, as in "wrong marks B7, O70".
+            words: a state by its name or label; wrong or missing marks with their numbers, as in
+                "wrong marks B7, O70".
         """
         told = read_told(self._activity, words, self._called) if self.asks else None
         if told is not None:
@@ -90,7 +90,7 @@ class StaffEyes:
 
     @property
     def sayable(self) -> list[str]:
-        """What can be told now, an example for each state; none while nothing is asked."""
+        """Possible answers, with an example for each state; empty if nothing is asked."""
         if not self.asks:
             return []
         deck, called = self._activity.deck, set(self._called)
@@ -105,11 +105,11 @@ class StaffEyes:
 
     @property
     def state(self) -> str | None:
-        """The state that was told last of the card beside the robot; None: nothing was told."""
+        """Last reported state of the card beside the robot; None: no report."""
         return None if self._last is None else self._last.state
 
     def asked_about(self, behaviour: Behaviour) -> tuple[int, ...] | None:
-        """Return the numbers that a behaviour is to ask about; None: staff told of none."""
+        """Return the numbers that a behaviour asks about; None if staff reported none."""
         told, checker = self._last, _corrected(behaviour)
         if told is None or checker != self._checker(told.state):
             return None
@@ -118,15 +118,15 @@ class StaffEyes:
     def response(self, action: Action, person: str, sitting: str) -> Response:
         """Ask staff for the outcome of a request; return it as the person's response.
 
-        Staff take time to look and to tell, which does not count against the person.
+        The time that staff take does not count against the person.
 
         Args:
             action: the request.
-            person: at whose place the robot is.
-            sitting: who sits there.
+            person: the place beside the robot.
+            sitting: the person who sits there.
 
         Raises:
-            DeviceError: the waiting is broken off.
+            DeviceError: the wait was aborted.
         """
         checker = _corrected(action.behaviour)
         self.ask(person, self._called)
@@ -144,9 +144,9 @@ def read_told(activity: Activity, words: str, called: Sequence[int]) -> ToldCard
     """Parse words about a card; None if they lack the state or its numbers.
 
     Args:
-        activity: whose states they are.
+        activity: the activity, with its card states.
         words: a state by name or label, and numbers as the deck writes them.
-        called: the numbers that were called: a mark is wrong on others, and missing on these.
+        called: the called numbers: marks are wrong on others, and missing on these.
     """
     said = " ".join(words.casefold().split())
     for state in activity.card_states:
@@ -166,13 +166,13 @@ def read_told(activity: Activity, words: str, called: Sequence[int]) -> ToldCard
 def told_card(
     activity: Activity, called: Sequence[int], numbers: Sequence[int], marked: int
 ) -> ToldCard:
-    """Parse a report by a person who sees a card.
+    """Convert a report by a person who sees a card.
 
     Args:
-        activity: whose states they are.
-        called: the numbers that were called.
-        numbers: those on the card, row by row.
-        marked: the marked cells, as a mask.
+        activity: the activity, with its card states.
+        called: the called numbers.
+        numbers: the numbers on the card, row by row.
+        marked: mask of the marked cells.
     """
     cells = called_cells(activity.deck, tuple(numbers), set(called))
     state = judge(activity.card_states, activity.deck, marked, cells)
@@ -182,7 +182,7 @@ def told_card(
 
 
 def _numbers(activity: Activity, said: str) -> tuple[int, ...] | None:
-    """Return the numbers that words name, None where a word is none."""
+    """Return the numbers that words name, None if a word is not a number."""
     deck = activity.deck
     labels = {re.sub(r"\W", "", deck.label(n).casefold()): n for n in deck.numbers}
     labels |= {str(number): number for number in deck.numbers}
@@ -193,6 +193,6 @@ def _numbers(activity: Activity, said: str) -> tuple[int, ...] | None:
 
 
 def _corrected(behaviour: Behaviour) -> str:
-    """Return the checker of the state that a behaviour asks a person to mend, "" for none."""
+    """Return the checker of the state that a behaviour asks a person to correct, "" for none."""
     by_effect = {"clear wrong marks": "wrong marks", "set missing marks": "missing marks"}
     return by_effect.get(behaviour.effect, "")
