@@ -1,4 +1,4 @@
-"""The robot process: it owns the devices, drives, speaks, shows, and stops on its own.
+"""The robot process: it owns the devices, drives, speaks, shows, and stops by itself.
 
-It is started by `tangy_hw.robot_client`, which speaks to it by JSON lines over its pipes.
+`tangy_hw.robot_client` starts it, and exchanges JSON lines with it over its pipes.
 """

@@ -1,4 +1,4 @@
-"""The wiring of a robot: from what its profile names to devices, and from devices to a robot."""
+"""Assembles a robot: devices from its profile, and a controller from the devices."""
 
 from __future__ import annotations
 
@@ -36,17 +36,17 @@ from tangy_profiles.health import OK, WARN, Reading
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 
-WAKE_SECONDS = 8.0  # in which devices that are switched on begin to speak
-PIPE_LOOKS = 3  # pictures that may have been on their way
-AGREED_LOOKS = 2  # pictures in a row that show no other signs than are believed to be up
+WAKE_SECONDS = 8.0  # for devices that were switched on to send first data
+PIPE_LOOKS = 3  # frames that may still be in a pipe
+AGREED_LOOKS = 2  # successive frames that show exactly the confirmed signs
 SETTLE_SECONDS = 2.0  # of real time at most
 
 
 def drivers_of(robot: Robot, given: Mapping[str, Mapping[str, Setting]]) -> dict[str, Any]:
-    """Return the settings of each driver: the given ones go before those of the profile.
+    """Return the settings of each driver: given ones override those of the profile.
 
-    With a base that is given, the profile's own navigation is left out: it drives the other. What
-    tells who asks is no driver of these (see `perception.requests.naming`).
+    If a base is given, the profile's own navigation is dropped, because it drives the profile's
+    base. The source of requests is not a driver (see `perception.requests.source_names`).
     """
     own = {name: {"kind": d.kind, **d.settings} for name, d in robot.drivers.items()}
     own.pop(REQUESTS, None)
@@ -56,7 +56,7 @@ def drivers_of(robot: Robot, given: Mapping[str, Mapping[str, Setting]]) -> dict
 
 
 class RobotRuntime:
-    """A robot with all that belongs to it; within `async with` it is switched on."""
+    """A robot with everything that belongs to it; switched on within `async with`."""
 
     def __init__(
         self,
@@ -70,7 +70,7 @@ class RobotRuntime:
         self._sensors = sensors
         self._senses = senses
         self.starts: Callable[[str], object] = lambda part: None
-        """Is told what is being started while it is switched on."""
+        """Called with the name of each part during start-up."""
         self._open = AsyncExitStack()
 
     async def __aenter__(self) -> RobotRuntime:
@@ -88,7 +88,7 @@ class RobotRuntime:
             await self._senses.prepare()
             self.starts("first words")
             await self._wake()
-            self.robot.watch_ticks()  # what takes its time at the start is over
+            self.robot.watch_ticks()  # slow steps of the start are over
         except BaseException:
             await self._open.aclose()
             raise
@@ -98,10 +98,10 @@ class RobotRuntime:
         await self._open.aclose()
 
     async def _wake(self) -> None:
-        """Wait until every device has said something; what does not is seen by its reading."""
+        """Wait until every device has sent data; the readings show those that have not."""
         robot = self.robot
 
-        def speaks(reading: Reading) -> bool:  # a chest screen that no tablet shows yet warns
+        def speaks(reading: Reading) -> bool:  # a chest screen without a tablet warns
             return reading.state == WARN or robot.watchdogs.state(reading) == OK
 
         await self._sensors.settled(WAKE_SECONDS)
@@ -109,7 +109,7 @@ class RobotRuntime:
         await self.settle()
 
     async def settle(self) -> None:
-        """Wait, in real time, until signs that are up or down now have been believed."""
+        """Wait, in real time, until signs that are up or down now are confirmed."""
         requests = self.robot.requests
         if requests is None:
             return
@@ -121,10 +121,10 @@ class RobotRuntime:
 
 
 def assemble(setup: RobotSetup) -> RobotRuntime:
-    """Put a robot together as a setup says; nothing is switched on yet.
+    """Assemble a robot from a setup, without switching it on.
 
     Raises:
-        TangyError: a profile has a mistake, or a driver is set wrongly.
+        TangyError: a profile has a mistake, or a driver's settings are invalid.
     """
     robot, activity = load_robot(setup.robot), load_activity(setup.activity)
     room = load_room(setup.room)
@@ -161,7 +161,7 @@ def assemble(setup: RobotSetup) -> RobotRuntime:
     )
     bench = None
     if isinstance(clock, SteppedClock):
-        # A link of its own: what it says is not to be taken for a word of the robot's.
+        # A separate link, whose messages must not count as signs of life of the robot.
         bench = Rosbridge(next(iter(wiring.links)), clock=clock.now)
         clock.follow(bench, _counted(body))
     return RobotRuntime(live, sensors, senses, bench)
@@ -186,7 +186,7 @@ def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:
 
 
 def _counted(body: Body) -> dict[str, Callable[[], int]]:
-    """Return how many scans and odometries have come, by what a bench calls them."""
+    """Return counters of received scans and odometry messages, by the bench's names."""
     return {
         "laser": lambda: 0 if body.laser.scan is None else body.laser.scan.seq,
         "base": lambda: 0 if body.base.odometry is None else body.base.odometry.seq,
@@ -196,7 +196,7 @@ def _counted(body: Body) -> dict[str, Callable[[], int]]:
 def _wayfinder(
     setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation | None
 ) -> NavigatorProtocol:
-    """Return what finds place and way: the robot's own navigation where it has one, or ours."""
+    """Return the navigation: the robot's own if it has one, otherwise Tangy's."""
     limits, laser = MotionLimits.of(robot), laser_of(robot)
     start = None if setup.start is None else Pose(*setup.start)
     if setup.record:

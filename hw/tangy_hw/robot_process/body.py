@@ -1,4 +1,4 @@
-"""The devices of one robot together."""
+"""The devices of one robot."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tangy_hw.device_protocols import (
 
 @dataclass(frozen=True)
 class Body:
-    """The devices of a robot that are there; what it has not is None."""
+    """The devices of a robot; missing ones are None."""
 
     base: Base
     laser: Laser
@@ -28,11 +28,11 @@ class Body:
     voice: Voice | None = None
     screen: ChestScreen | None = None
     others: tuple[Device, ...] = ()
-    """What else is opened and closed: a link that several of them share."""
+    """Other things to open and close: shared links."""
 
     @property
     def all(self) -> tuple[Device, ...]:
-        """All of them, those first through which others are reached."""
+        """All devices; those on which others depend come first."""
         own = (self.base, self.laser, self.stop_button, self.arms, self.voice, self.screen)
         return (*self.others, *(device for device in own if device is not None))
 
@@ -44,24 +44,21 @@ class Body:
                 await one.start()
 
     async def relax(self) -> None:
-        """Let the arms hang without torque."""
+        """Switch the torque of the arms off."""
         if self.arms is not None:
             await self.arms.relax()
 
     @property
     def at_hand(self) -> dict[str, str]:
-        """What staff need once it is on: the address of the chest screen, and the code there.
-
-        Both are "" where the chest screen is no page.
-        """
+        """Address of the chest screen and its code, for staff; "" if it has no page."""
         return {"screen": getattr(self.screen, "url", ""), "code": getattr(self.screen, "code", "")}
 
     @property
     def calls_answered(self) -> tuple[str, ...]:
-        """The keys of the open calls that were answered at the chest screen."""
+        """Keys of the open calls that were answered at the chest screen."""
         return self.screen.answered if isinstance(self.screen, AnswersCalls) else ()
 
     def offer_calls(self, calls: Mapping[str, str]) -> None:
-        """Show a button for each open call, if the chest screen can: who is called, by its key."""
+        """Show a button for each open call, if the screen can: the called person's name by key."""
         if isinstance(self.screen, AnswersCalls):
             self.screen.offer(calls)

@@ -1,7 +1,7 @@
 """The control loop: at each tick the robot senses, decides and drives.
 
-On a machine's clock ticks come by themselves. On a bench in a hurry they come only while somebody
-waits for time to pass: what takes real time (a picture, a face) takes none of the robot's.
+In real time, ticks come at a fixed rate. On a stepped bench, they come only while a caller waits
+for time to pass, so that work in real time (an image, a face) takes no robot time.
 """
 
 from __future__ import annotations
@@ -13,32 +13,32 @@ from contextlib import nullcontext
 from tangy_hw.device_protocols import Clock, DeviceError
 
 TICK = 0.05
-"""Seconds between two ticks: a base wants a command ten times a second, and staleness is to stop
-it within .35 s."""
+"""Seconds between two ticks: a base needs ten commands a second, and stale data must stop it within
+.35 s."""
 
-HOPS = 3  # turns of the event loop from a socket to whoever waits for it
+HOPS = 3  # event loop iterations from a socket to a waiting callback
 
 ON_THE_WAY, AT_REST = 0.1, 0.2
-"""Seconds that a bench in a hurry steps at once while the robot drives (its scanner gives no more)
-and while it stands: no data is stale yet."""
+"""Step sizes in s on a stepped bench: while the robot drives (the scanner's period), and at rest.
+No data goes stale within them."""
 
 
 class ControlLoop:
-    """The ticks of a robot: `run` lets them come, `until` waits for what comes about with them."""
+    """Ticks of a robot: `run` produces them, `until` waits for a condition."""
 
     def __init__(self, clock: Clock, tick: Callable[[], bool], *, stepped: bool = False) -> None:
-        """Prepare.
+        """Prepare the loop.
 
         Args:
-            clock: the robot's time.
-            tick: is called at each tick; it says whether the robot moves.
-            stepped: time stands still while nobody waits for it.
+            clock: the robot's clock.
+            tick: called at each tick; returns whether the robot moves.
+            stepped: whether time stands still while no caller waits.
         """
         self.clock = clock
         self._tick = tick
         self._stepped = stepped
         self.still = asyncio.Lock()
-        """Whoever holds it sees no half of a step on a bench in a hurry."""
+        """Held during a step of a stepped bench; its holder sees no partial step."""
         self.waiting = 0
         self._failed: BaseException | None = None
         self._wanted = asyncio.Event()
@@ -53,7 +53,7 @@ class ControlLoop:
             come, self._next = self._next, None
             if come is not None and not come.done():
                 come.set_exception(DeviceError(f"The robot's time stands still ({error!r})."))
-                come.exception()  # read here: everybody who waited may have given up by now
+                come.exception()  # mark as retrieved: all waiters may have given up
             raise
 
     async def _run(self) -> None:
@@ -64,7 +64,7 @@ class ControlLoop:
                 await self._wanted.wait()
             async with self.still if self._stepped else nullcontext():
                 await self.clock.sleep(step)
-                for _ in range(HOPS):  # what has come is taken in before it is looked at
+                for _ in range(HOPS):  # process arrived messages first
                     await asyncio.sleep(0)
             moves = self._tick()
             if self._stepped:
@@ -72,12 +72,12 @@ class ControlLoop:
             come, self._next = self._next, None
             if come is not None:
                 come.set_result(None)
-            if self._stepped:  # whoever waited goes on, and may wait again, before time passes
+            if self._stepped:  # let waiters go on, and perhaps wait again, before time passes
                 for _ in range(HOPS):
                     await asyncio.sleep(0)
 
     async def until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Let time pass until something holds; return whether it does, after at most so many s."""
+        """Let time pass until a condition holds, for at most so many s; return whether it does."""
         if self._failed is not None:
             raise DeviceError(f"The robot's time stands still ({self._failed!r}).")
         deadline = self.clock.now() + seconds

@@ -1,10 +1,10 @@
 """The robot controller of the robot process: drives, speaks, shows, looks, and stops.
 
-Everything that moves goes through its tick: there it looks whether it may drive, asks the navigator
-or whoever drives by hand how, and tells the base. What it must not do it does not do, whatever the
-program wants: while an emergency stop is pressed, a device that it drives by is silent, or the
-program is, it stands still; and it stops itself where its control was frozen. A stop waits behind
-nothing and latches; only whoever asked for it takes it back by `release`.
+All motion goes through its tick, which checks whether the robot may drive, gets a command from the
+navigator or a person's manual control, and sends it to the base. Whatever the program wants, the
+robot stands still while an emergency stop is pressed, or while a device that driving depends on, or
+the program, is silent; it stops itself if its control was frozen. A stop precedes everything and
+latches; only its source can `release` it.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ from tangy_profiles.health import DeviceState, Health
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import FRONT
 
-DRIVE_SECONDS = 180.0  # for one drive; ten metres with three detours take 60
+DRIVE_SECONDS = 180.0  # timeout of a drive; ten metres with three detours take 60
 SPIN_SECONDS = 60.0
-BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
+BLOCKED_SECONDS = 4.0  # without a path, before people are asked to clear one
 HAZARD_SECONDS = 1.0
-"""That it may have to stand still, or be left alone, before it gives up what it does."""
+"""Duration of a hazard, or of the program's silence, after which the robot gives up its task."""
 OVER = ("arrived", "failed", "idle")
-WATCH_SECONDS = 0.02  # between two looks at whether it may still drive
+WATCH_SECONDS = 0.02  # between two checks for hazards
 
 
 class LiveRobot:
-    """A robot that is switched on. `start` it, and `close` it at the end, which stops it."""
+    """A robot that is switched on. Call `start`, and at the end `close`, which stops it."""
 
     def __init__(
         self,
@@ -60,27 +60,27 @@ class LiveRobot:
         stepped: bool = False,
         courtesies: Mapping[str, str] | None = None,
     ) -> None:
-        """Put it together.
+        """Assemble the controller.
 
         Args:
-            robot: its profile.
+            robot: the robot's profile.
             body: its devices.
-            navigator: what finds its place and its way.
-            clock: its time.
-            senses: what reads its pictures.
-            requests: who asks for help.
-            stepped: its time stands still while nothing is done.
-            courtesies: what it says to those for whom it stands on its way (see `Courtesies`).
+            navigator: localisation and path following.
+            clock: its clock.
+            senses: readers of its images.
+            requests: source of requests for help.
+            stepped: whether its time stands still while nothing is done.
+            courtesies: sentences for people whom it waits for (see `Courtesies`).
         """
         self.robot = robot
         self.navigator = navigator
         self.senses, self.requests = senses, requests
         self.alone: Callable[[], str] = str
-        """Says why nobody holds the reins any more, "" as long as somebody does."""
+        """Returns why the program counts as absent, "" if it does not."""
         self.left: Callable[[str], None] = lambda why: None
-        """Is called with why when all that is under way is to be given up."""
+        """Called with the reason when all tasks in progress are to be aborted."""
         self.going = ""
-        """Where it is driving to."""
+        """Name of the place that it is driving to."""
         self.passing = ControlLoop(clock, self.tick, stepped=stepped)
         self.body = body
         """Its devices."""
@@ -96,7 +96,7 @@ class LiveRobot:
         self.perform = self._performer.perform
         self._courtesies = Courtesies(courtesies or {}, lambda text: self.perform(text=text))
         self._wanted: Pose | None = None
-        self._was = ""  # how the last drive ended
+        self._was = ""  # state at the end of the last drive
         self._evidence = DriveMonitor(navigator, clock.now)
         self._ticked, self._ticks = clock.now(), RateEstimator()
         reports = device_diagnostics(
@@ -119,7 +119,7 @@ class LiveRobot:
     # ------------------------------------------------------------------------ on and off
 
     async def start(self, starts: Callable[[str], object] = lambda part: None) -> None:
-        """Switch its devices on; `starts` is told the name of each before that."""
+        """Switch its devices on; `starts` is called with the name of each before."""
         for device in self.body.all:
             starts(device.name)
             await device.start()
@@ -133,7 +133,7 @@ class LiveRobot:
             task.add_done_callback(self._ended)
 
     def _ended(self, task: asyncio.Task[None]) -> None:
-        """Stand still for good when its control has ended otherwise than by closing."""
+        """Stop for good if its control has ended other than by closing."""
         if not task.cancelled() and (error := task.exception()) is not None:
             self._stops.failed = f"its control has failed ({error!r})"
             self._tasks.append(asyncio.create_task(self._halt()))
@@ -150,7 +150,7 @@ class LiveRobot:
         if self.requests is not None:
             await self.requests.close()
         for device in reversed(self.body.all):
-            with suppress(Exception):  # the others are to be closed as well
+            with suppress(Exception):  # the others must be closed as well
                 await device.close()
 
     # ------------------------------------------------------------------------ what it knows
@@ -161,28 +161,28 @@ class LiveRobot:
 
     @property
     def pose(self) -> Pose:
-        """Where it believes to be."""
+        """Estimated pose."""
         estimate = self.navigator.estimate
         return Pose(0.0, 0.0, 0.0) if estimate is None else estimate.pose
 
     @property
     def asking(self) -> tuple[Ask, ...]:
-        """Who asks for help, the one who has waited longest first."""
+        """Requests for help, the longest waiting first."""
         return () if self.requests is None else self.requests.asking
 
     @property
     def stopped(self) -> str:
-        """Why it was stopped, until all who did have released it."""
+        """Why it was stopped, until all sources have released it."""
         return self._stops.why
 
     @property
     def failed(self) -> str:
-        """What of its control has failed, for good; "" if nothing has."""
+        """Permanent failure of its control; "" if there is none."""
         return self._stops.failed
 
     @property
     def _halted(self) -> str:
-        """Why nothing of it may move, "" if it may."""
+        """Why nothing may move, "" if it may."""
         return self.stopped or (self.alone() if self._left_alone else "")
 
     @property
@@ -193,10 +193,10 @@ class LiveRobot:
     # ------------------------------------------------------------------------ what it does
 
     async def go(self, goal: Pose, name: str = "") -> bool:
-        """Drive somewhere; return whether it has arrived (no: there is no way, or it is stuck).
+        """Drive to a pose; return whether it has arrived (False: no path, or stuck).
 
         Raises:
-            BrokenOff: it has to stand still, and why.
+            Preempted: it has to stop; with the reason.
         """
         self.going = name or FRONT
         self._wanted = goal
@@ -212,10 +212,10 @@ class LiveRobot:
             self.going = ""
 
     async def spin(self) -> bool:
-        """Turn on the spot to find its place; return whether it has.
+        """Turn on the spot to localise; return whether it is localised.
 
         Raises:
-            BrokenOff: it has to stand still, and why.
+            Preempted: it has to stop; with the reason.
         """
         self.navigator.spin()
         found = False
@@ -228,28 +228,28 @@ class LiveRobot:
         return found
 
     async def look_at(self, what: str) -> None:
-        """Turn the eyes to a card or a face, as the robot's profile says how."""
+        """Turn the head to a card or a face, by the robot's profile."""
         await self._performer.look_at(what)
 
     def replan(self) -> None:
-        """Look whether there is a way again to where there was none."""
+        """Check whether a blocked path is free again."""
         self._evidence.detour_taken()
         if self._wanted is not None and self._evidence.blocked:
             self._evidence.blocked = not self.navigator.finds_way(self._wanted)
 
     def drive_by_hand(self, twist: Twist, *, overrides: bool = False) -> None:
-        """Drive by hand while a key is held; each command lasts a moment, and none in a hazard.
+        """Drive manually; each command lasts a moment, and has no effect in a hazard.
 
-        It is slower before what the scanner sees near, and stands before what is close, or crawls
-        past that where the command `overrides` it.
+        The robot slows down near obstacles, and stops before close ones, or creeps past them if the
+        command `overrides` this.
         """
         self.navigator.cancel()
         self.hand.tell(twist, self._clock.now(), overrides=overrides)
 
     async def stop(self, why: str, by: str = STAFF) -> None:
-        """Stand still now, hold the arms where they are, and be quiet; it latches, for `by`.
+        """Stop now, hold the arms at their position, and be quiet; it latches for `by`.
 
-        The base is first, and what fails in the rest changes nothing.
+        The base comes first; failures of the rest change nothing.
         """
         self._stops.hold(why, by)
         await self._halt()
@@ -263,24 +263,24 @@ class LiveRobot:
             await self._performer.be_still()
 
     def release(self, by: str = "") -> None:
-        """Release the stop of one source, or of the source that had stopped it."""
+        """Release the stop of one source, or of the source that stopped the robot."""
         self._stops.release(by)
         self._evidence.blocked = False
         if by in ("", FAULT):
             self.watch.frozen = 0.0
 
     def watch_ticks(self) -> None:
-        """Watch from now on that no tick comes much too late, unless time stands still between."""
+        """Detect late ticks from now on, except on a stepped bench."""
         if not self.stepped:
             self.watch.begin()
             self.pauses.begin()
 
     def seen_to(self) -> None:
-        """Take it that staff know that its control was frozen; it stands until it is released."""
+        """Record that staff know about a freeze; the robot stands until it is released."""
         self.watch.frozen = 0.0
 
     def fail(self, device: str, state: DeviceState) -> None:
-        """Take a device for broken, whatever it says; "OK" takes it back."""
+        """Override the state of a device; OK removes the override."""
         self.watchdogs.fail(device, state)
 
     async def restart(self, device: str) -> None:
@@ -288,13 +288,13 @@ class LiveRobot:
         await self.body.restart(device)
 
     async def relax(self) -> None:
-        """Let the arms hang without torque."""
+        """Switch the torque of the arms off."""
         await self.body.relax()
 
     # ------------------------------------------------------------------------ in each tick
 
     async def _drive(self, seconds: float) -> bool:
-        """Let the navigator drive until it has arrived, or cannot; or the robot must not."""
+        """Let the navigator drive until it has arrived or failed, or the robot must stop."""
         navigator, since = self.navigator, dict.fromkeys(("blocked", "hazard"), self._clock.now())
         self._evidence.begin()
 
@@ -320,7 +320,7 @@ class LiveRobot:
         return arrived
 
     def tick(self) -> bool:
-        """Look, decide, and tell the base; say whether it drives, or is about to."""
+        """Sense, decide, and command the base; return whether it drives, or is about to."""
         base, laser = self.body.base, self.body.laser
         now = self._clock.now()
         passed, self._ticked = now - self._ticked, now
@@ -351,23 +351,23 @@ class LiveRobot:
         self.left(why)
 
     async def _watch(self) -> None:
-        """Look for hazards between ticks, too: a robot that drives has no time to lose."""
+        """Check for hazards between ticks too: a driving robot must react quickly."""
         while True:
             await asyncio.sleep(WATCH_SECONDS)
-            if self.watch.overdue and self.watch.tick():  # that explains what else is amiss
+            if self.watch.overdue and self.watch.tick():  # this explains other symptoms
                 self._was_frozen()
             self._mind()
             if (self.wheels.driven != STILL or self.navigator.drives) and self.hazard:
                 self._stand()
 
     def _stand(self) -> None:
-        """Have the base stand, and whatever drives it past us call that off, until it has."""
+        """Stop the base, and cancel an external drive until it has ended."""
         self.navigator.held()
         if not self.wheels.stand or self.navigator.drives:
             self.wheels.send(STILL)
 
     def _mind(self) -> None:
-        """Wait for late data; hold the arms and be quiet, once, when left alone for a while."""
+        """Update waits for late data; hold the arms and be quiet if left alone for a while."""
         self.pauses.look(self.watchdogs.ages(), self.watchdogs.late())
         why, now = self.alone(), self._clock.now()
         if not why:

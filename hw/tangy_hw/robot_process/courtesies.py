@@ -1,4 +1,4 @@
-"""What a robot says on its way to those for whom it stands: nobody is to wonder why it waits."""
+"""Tells people whom the robot waits for on its way why it stands."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from contextlib import suppress
 from tangy_hw.navigation.surroundings import Held
 from tangy_hw.robot_process.stop_latch import Preempted
 
-AFTER_SECONDS = 1.0  # that it has stood for somebody until it says so
-AGAIN_SECONDS = 8.0  # until it says the same again
+AFTER_SECONDS = 1.0  # of standing for a person until it speaks
+AGAIN_SECONDS = 8.0  # until it repeats a sentence
 
 
 class Courtesies:
-    """Says why the robot waits, in words that it is given by whom it waits for."""
+    """Says why the robot waits, in given sentences."""
 
     def __init__(self, words: Mapping[str, str], says: Callable[[str], Awaitable[object]]) -> None:
-        """Take the words, by "walking" and "standing", and what says them."""
+        """Set the sentences, by "walking" and "standing", and the speech function."""
         self._words, self._says = words, says
         self._lets: Held = ""
         self._since = 0.0
@@ -25,7 +25,7 @@ class Courtesies:
         self._saying: asyncio.Task[None] | None = None
 
     def note(self, lets: Held, now: float) -> None:
-        """Take note of for whom it stands, `now` in s; say so when it has for a moment."""
+        """Update the kind of person it waits for, `now` in s; speak after a moment."""
         if lets != self._lets:
             self._lets, self._since = lets, now
         words = self._words.get(lets, "")

@@ -1,4 +1,4 @@
-"""What each device of a robot reports, with what its driving has shown of it."""
+"""Readings of each device of a robot, combined with evidence from driving."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tangy_profiles.liveness import SELDOM
 from tangy_profiles.robot import FROZEN, LINK, LOST, PAUSES, Robot
 
 FILMED_PATIENCE = 4.0
-"""How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
+"""Factor on the permitted age of frames on a stepped bench, whose cameras run in real time."""
 
 
 def device_diagnostics(
@@ -34,25 +34,25 @@ def device_diagnostics(
     requests: RequestSource | None = None,
     stepped: bool = False,
 ) -> dict[str, Report]:
-    """Return how each device tells of itself, by its name.
+    """Return a report for each device, by its name.
 
     Args:
-        robot: the profile, which says how old data may be.
-        body: the devices that move, measure and speak.
-        evidence: what drives have shown.
-        ticked: how long ago the robot has looked and decided last, in s.
-        rate: how often a second it does.
-        failed: what of its control has failed, "" if nothing has.
-        frozen: for how many s its control was frozen, until staff have seen to that.
-        pauses: how often it waits for late data.
-        senses: what reads pictures, if anything does.
-        requests: who asks for help, if anybody can.
-        stepped: time stands still while nobody waits for it; cameras film in real time.
+        robot: the profile, which defines how old data may be.
+        body: the devices.
+        evidence: symptoms of drives.
+        ticked: returns the age of the last tick in s.
+        rate: returns the ticks per second.
+        failed: returns a failure of its control, "" if there is none.
+        frozen: returns for how many s its control was frozen, until staff acknowledge it.
+        pauses: returns the watch over late data.
+        senses: readers of images, if there are any.
+        requests: source of requests, if there is one.
+        stepped: whether time stands still while no caller waits; cameras run in real time.
     """
     base = body.base
     named: dict[str, list[Device]] = {}
     for device in body.all:
-        if getattr(device, "drives", True):  # of other links those tell that are reached by them
+        if getattr(device, "drives", True):  # other links are reported by the devices behind them
             named.setdefault(device.name, []).append(device)
     reports: dict[str, Report] = {
         name: partial(_worst, robot, devices) for name, devices in named.items()
@@ -106,7 +106,7 @@ def device_diagnostics(
 
 
 def _worst(robot: Robot, devices: Sequence[Device]) -> Reading:
-    """Return the reading of that of several devices of one name that is worst off."""
+    """Return the worst reading of several devices with the same name."""
 
     def badness(reading: Reading) -> tuple[int, float]:
         return STATES.index(state_of(robot.devices.get(reading.device), reading)), reading.age

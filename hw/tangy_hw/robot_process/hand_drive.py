@@ -1,4 +1,4 @@
-"""Driving by hand: as somebody at the keys says, but up to nothing that the scanner sees."""
+"""Manual driving by keys, with protection from everything that the scanner sees."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from tangy_hw.navigation.people_guard import Around
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.poses import HERE, Floats, endpoints
 
-HOLDS_SECONDS = 0.4  # for which a command of somebody at the keys holds
+HOLDS_SECONDS = 0.4  # for which a manual command is valid
 
-OVERRIDE = 0.08  # m/s at most while somebody overrides the look at the scanner
+OVERRIDE = 0.08  # maximum m/s while the scanner's protection is overridden
 
 Held = Literal["", "slow", "stands", "overridden"]
-"""What was done about the last command: it was carried out, slower, not at all, or slowly past
-what is near, as staff wanted it who hold the key for that."""
+"""Result of the last command: executed, slower, not executed, or slowly past an obstacle, because
+staff held the override key."""
 
 
 class HandDrive:
-    """Drives as somebody says who holds a key; nothing that is near is driven up to.
+    """Drives by a person's held keys, but into nothing that is near.
 
-    Where the robot is on a map does not matter, and whatever is seen may be somebody.
+    The robot's pose on a map does not matter, and every return may be a person.
     """
 
     def __init__(self, limits: MotionLimits, laser: Pose = HERE) -> None:
@@ -38,9 +38,9 @@ class HandDrive:
         self._until = 0.0
 
     def tell(self, twist: Twist, now: float, *, overrides: bool = False) -> None:
-        """Take a command, `now` in s; it holds for a moment.
+        """Set a command, `now` in s; it is valid for a moment.
 
-        One that `overrides` drives at a crawl, whatever stands near: who gives it looks there.
+        One that `overrides` drives at a crawl past any obstacle: its sender must watch them.
         """
         limits = self._limits
         if overrides:
@@ -49,7 +49,7 @@ class HandDrive:
         self._until = now + HOLDS_SECONDS
 
     def end(self) -> None:
-        """Forget the command."""
+        """Drop the command."""
         self._told, self.held = STILL, ""
 
     def command(
@@ -59,13 +59,13 @@ class HandDrive:
         unseen: Floats | None = None,
         tracks: Sequence[Track] = (),
     ) -> Twist | None:
-        """Return the current velocity command; None if nobody drives by hand.
+        """Return the current velocity command; None if nobody drives manually.
 
         Args:
-            scan: what the laser sees.
+            scan: the current scan.
             now: the time in s.
-            unseen: what is there as well (n, 2), in the robot's frame.
-            tracks: who is around, in the robot's frame.
+            unseen: keep-out points that the scanner does not see (n, 2), in the robot's frame.
+            tracks: tracks around, in the robot's frame.
         """
         if self._told == STILL:
             return None

@@ -1,4 +1,4 @@
-"""A beat of the robot process: how the robot is, as JSON; the other end reads a `RobotState`."""
+"""Heartbeat of the robot process: the robot's state as JSON, parsed as a `RobotState`."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from tangy_hw.perception.card_and_face_perception import CardSeen
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_profiles.health import Health
 
-MOST_PARTICLES = 60  # that are told, of those by which it finds its place
+MOST_PARTICLES = 60  # in a heartbeat
 
 
 def beat_of(robot: LiveRobot, number: int) -> dict[str, Any]:
-    """Return how a robot is now: lengths in m, times in s of its own clock."""
+    """Return the current state of a robot: lengths in m, times in s of its own clock."""
     navigator = robot.navigator
     path = () if navigator.path is None else navigator.path.points
     return {

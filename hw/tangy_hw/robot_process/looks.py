@@ -18,20 +18,20 @@ from tangy_hw.robot_process.heartbeat import aged
 from tangy_hw.robot_process.protocol import number_of, wins_of
 from tangy_profiles.worker_lines import Asked
 
-LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
+LARGEST_PICTURE = 400  # columns or rows: terminals show no more, and heartbeats queue behind it
 
 
 class Looks:
-    """Looks with the robot's cameras, and keeps the last card reading.
+    """Handles requests to the robot's cameras, and keeps the last card reading.
 
-    Each raises DeviceError where the robot has no cameras.
+    Each raises DeviceError if the robot has no cameras.
     """
 
     def __init__(self, robot: LiveRobot) -> None:
-        """Look with the cameras of a robot."""
+        """Set the robot."""
         self._robot = robot
-        self._looked: tuple[CardSeen, float] | None = None  # the last look at a card, and when
-        self._read: tuple[CardSeen, float] | None = None  # the last one that told which card it is
+        self._looked: tuple[CardSeen, float] | None = None  # last reading of a card, and its time
+        self._read: tuple[CardSeen, float] | None = None  # last reading that identified a card
 
     async def card(self, asked: Asked) -> dict[str, Any]:
         """Read the card of the person in front."""
@@ -51,14 +51,14 @@ class Looks:
         return seen.to_json()
 
     async def face(self, _: Asked) -> dict[str, Any]:
-        """See who is in front."""
+        """Identify the person in front."""
         senses = self._senses
         await self._robot.look_at("face")
         vote = await senses.who()
         return {"person": vote.person, "votes": vote.votes, "frames": vote.frames}
 
     async def picture(self, asked: Asked) -> dict[str, Any]:
-        """Give what a camera sees, as large as fits; nothing where no newer picture comes."""
+        """Return a camera's frame, scaled to fit; empty if no newer frame comes."""
         width, height = (min(LARGEST_PICTURE, max(1, int(one))) for one in asked["fit"])
         frame = await self._senses.sensors.picture(
             str(asked["device"]), (width, height), after=int(asked.get("after", -1))

@@ -11,19 +11,19 @@ from tangy_hw.navigation.limits import MotionLimits
 from tangy_profiles.liveness import OFTEN, PAUSING, SELDOM, TOO_OFTEN, Liveness, Pausing
 
 CONTROL = "control"
-"""What is late where the robot's own control was held up."""
+"""Name of the robot's own control, if it was delayed."""
 
 LATE_LOOK = 0.25
-"""s from one look to the next after which control was held up."""
+"""s between two looks from which on control was delayed."""
 
 GIVES_UP_SECONDS = 0.5
-"""After late data has become a fault: that is diagnosed, and breaks a drive off before."""
+"""Time after which a pause counts as a fault; the diagnosis aborts a drive before."""
 
-SLOW_TURN = 0.4  # rad/s, at which a robot turns while it goes on slowly
+SLOW_TURN = 0.4  # rad/s, limit while the robot resumes slowly
 
 
 class PauseWatch:
-    """Keeps what a robot stands for, and how much time that has taken. `begin` it when it is on."""
+    """Tracks what a robot waits for, and the lost time. Call `begin` when it is on."""
 
     def __init__(
         self,
@@ -32,18 +32,18 @@ class PauseWatch:
         label: Callable[[str], str] = str,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Prepare.
+        """Prepare the watch.
 
         Args:
-            liveness: how late data may be.
-            limits: how the robot may drive otherwise.
-            label: what a device is called.
-            clock: tells real time, in s.
+            liveness: limits on the age of data.
+            limits: the normal motion limits.
+            label: returns the label of a device.
+            clock: returns real time in s.
         """
         self.count = 0
-        """The pauses that are over, without those that became a fault."""
+        """Number of finished pauses, except those that became faults."""
         self.seconds = 0.0
-        """How long they took."""
+        """Total duration of the pauses."""
         self.longest = 0.0
         self._liveness = liveness
         self._slow = MotionLimits(speed=min(liveness.slow_speed, limits.speed), turn=SLOW_TURN)
@@ -52,23 +52,23 @@ class PauseWatch:
         self._looked: float | None = None
         self._since = 0.0
         self._by = ""  # what was late first
-        self._wanted: dict[str, int] = {}  # how many new readings each is still to give
+        self._wanted: dict[str, int] = {}  # fresh readings still required of each device
         self._ages: dict[str, float] = {}
-        self._lost: deque[tuple[float, float]] = deque()  # when a pause was over, and its s
+        self._lost: deque[tuple[float, float]] = deque()  # end and duration of recent pauses, in s
         self._slow_until = 0.0
         self._level: Pausing = SELDOM
 
     def begin(self) -> None:
-        """Watch from now on."""
+        """Start to watch."""
         self._looked = self._clock()
 
     @property
     def why(self) -> str:
-        """Why the robot waits for fresh data, "" where it does not."""
+        """Why the robot waits for fresh data, "" if it does not."""
         return f"{self._label(self._by)} is late" if self._wanted else ""
 
     def look(self, ages: Mapping[str, float], late: Mapping[str, float]) -> None:
-        """Take in how old the data of the devices is, in s, and which of it is too old."""
+        """Update with the ages of the devices' data, in s, and of those that are late."""
         if self._looked is None:
             return
         now, before = self._clock(), self._looked
@@ -96,25 +96,25 @@ class PauseWatch:
         took = now - self._since
         self._slow_until = now + self._liveness.slow_seconds
         if took > self._liveness.fault_after + GIVES_UP_SECONDS:
-            return  # that was a fault, and staff saw to it
+            return  # that was a fault, which staff handled
         self.count += 1
         self.seconds += took
         self.longest = max(self.longest, took)
         self._lost.append((now, took))
 
     def patience(self, late: Mapping[str, float]) -> float:
-        """Return for how many s a drive may wait for late data, 0 where none is late."""
+        """Return for how many s a drive may wait for late data, 0 if none is late."""
         waits = bool(late) or bool(self._wanted)
         return self._liveness.fault_after + GIVES_UP_SECONDS if waits else 0.0
 
     def limited(self, command: Twist) -> Twist:
-        """Return a command as slow as it has to be for a while after a pause."""
+        """Return a command limited to a slow speed for a while after a pause."""
         slow = self._looked is not None and self._clock() < self._slow_until
         return self._slow.clamped(command) if slow else command
 
     @property
     def lost(self) -> float:
-        """The share of the last while that was lost to pauses."""
+        """Share (ratio) of the recent window that was lost to pauses."""
         now, window = self._clock(), self._liveness.window_seconds
         while self._lost and self._lost[0][0] < now - window:
             self._lost.popleft()
@@ -122,7 +122,7 @@ class PauseWatch:
 
     @property
     def level(self) -> Pausing:
-        """How much time is lost; less is believed only at half of what it took to say more."""
+        """Level of lost time; with hysteresis, a level ends at half of its threshold."""
         lost, kept = self.lost, self._level
         shares: dict[Pausing, float] = {
             TOO_OFTEN: self._liveness.fault_share,

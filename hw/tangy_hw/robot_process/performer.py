@@ -1,4 +1,4 @@
-"""What a robot says, shows and gestures, all at once; and how it holds its arms and is quiet."""
+"""Speech, screen and gestures at the same time; holding still and silence."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tangy_profiles.health import ERROR
 from tangy_profiles.robot import Robot
 from tangy_profiles.wav_length import wav_seconds
 
-SPEECH_SECONDS = 60.0  # for one line
-POSE_SECONDS = 1.5  # in which arms are where they should be
-STOP_SECONDS = 1.0  # in which arms and voice have heard that they are to stop
+SPEECH_SECONDS = 60.0  # for one text
+POSE_SECONDS = 1.5  # duration of a movement to a pose
+STOP_SECONDS = 1.0  # timeout for arms and voice to stop
 
 STOWED = "drive"
-"""The posture with the arms close to the body, which may be taken whoever is near."""
+"""Pose with the arms close to the body, which is safe with people near."""
 
 _LOG = logging.getLogger(__name__)
 
@@ -31,7 +31,7 @@ Angles = Mapping[str, Sequence[float]]
 
 
 class Performer:
-    """The voice, the screen and the limbs of a robot; `halted` says why they must be still."""
+    """Voice, screen and limbs of a robot; `halted` returns why they must be still."""
 
     def __init__(
         self,
@@ -41,14 +41,14 @@ class Performer:
         navigator: NavigatorProtocol,
         halted: Callable[[], str],
     ) -> None:
-        """Take them.
+        """Set the devices.
 
         Args:
             body: the devices.
-            passing: the control loop, in which time passes.
-            robot: its profile: where the eyes turn to, and how the arms are close to the body.
-            navigator: tracks who is around.
-            halted: says why nothing may move, "" if it may.
+            passing: the control loop.
+            robot: the robot's profile, with gazes and the stowed pose.
+            navigator: tracks people around.
+            halted: returns why nothing may move, "" if it may.
         """
         self._body, self._passing = body, passing
         self._gazes, self._stowed = robot.gaze, _listed(robot.postures.get(STOWED, {}))
@@ -65,13 +65,13 @@ class Performer:
         gazes: bool = False,
         sound: Path | None = None,
     ) -> dict[str, bool]:
-        """Say, show and gesture (joints in rad) at once, then play a sound; return what was done.
+        """Speak, show and gesture at once, then play a sound; return what was done.
 
-        What cannot be done is left out: its device says so in its reading. With an arm that has
-        an error there are no gestures; the eyes are still turned, which `gazes` says this is for.
+        Joints are in degrees. Failed parts are skipped: their devices report this. An arm with an
+        error prevents gestures, but not turning the head (`gazes`).
 
         Raises:
-            BrokenOff: it was stopped meanwhile.
+            Preempted: it was stopped meanwhile.
         """
         doing: dict[str, Coroutine[Any, Any, None]] = {}
         if self._body.voice is not None and text:
@@ -103,7 +103,7 @@ class Performer:
         }
 
     def _may_gesture(self, arms: Arms, posture: Angles) -> bool:
-        """Return whether the arms may move: not with an error, and not out towards somebody."""
+        """Return whether the arms may move: not with an error, and not out towards a person."""
         if arms.reading().state == ERROR:
             return False
         if _listed(posture) != self._stowed and self._somebody_in_reach:
@@ -113,26 +113,26 @@ class Performer:
 
     @property
     def _somebody_in_reach(self) -> bool:
-        """Whether the arms could hit somebody if they moved out."""
+        """Whether the arms could hit a person if they moved out."""
         return any(hypot(one.x, one.y) - one.half < self._reach for one in self._navigator.tracks)
 
     async def _pose(self, arms: Arms, posture: Angles) -> None:
-        """Move the arms; not when it was stopped before they were told."""
+        """Move the arms, unless the robot was stopped before."""
         if why := self._halted():
             raise Preempted(why)
         await arms.pose(posture, POSE_SECONDS)
 
     async def look_at(self, what: str) -> None:
-        """Turn the eyes to a card or a face."""
+        """Turn the head to a card or a face."""
         angles = self._gazes.get(what)
         if angles and self._body.arms is not None and self._gaze != what:
             done = await self.perform(posture=angles, gazes=True)
-            if not done.get("posed"):  # the head turns though an arm is broken
+            if not done.get("posed"):  # the head turns even if an arm is broken
                 await self._passing.sleep(POSE_SECONDS)
             self._gaze = what
 
     async def be_still(self) -> None:
-        """Hold the arms where they are, and be quiet; what fails of it changes nothing."""
+        """Hold the arms at their position, and be quiet; failures change nothing."""
         self._gaze = ""
         works: list[Coroutine[Any, Any, None]] = []
         if self._body.arms is not None:
@@ -148,12 +148,12 @@ class Performer:
 
 
 def _listed(angles: Angles) -> dict[str, list[float]]:
-    """Return angles as they come over a pipe."""
+    """Return angles in the form in which they come over a pipe."""
     return {limb: [float(joint) for joint in joints] for limb, joints in angles.items()}
 
 
 async def _play_after(saying: asyncio.Task[None] | None, voice: Voice, sound: Path) -> None:
-    """Play a sound after what is being said, which may fail."""
+    """Play a sound after the current speech, even if that fails."""
     if saying is not None:
         await asyncio.wait({saying})
     await voice.play(sound)

@@ -1,14 +1,14 @@
-"""The robot process, spoken to by JSON lines on its pipes.
+"""The robot process, controlled by JSON lines on its pipes.
 
-The first line is a `RobotSetup`. Then each line asks for something: {"id": 7, "do": "go", ...} is
+The first line is a `RobotSetup`. Then each line is a request: {"id": 7, "do": "go", ...} is
 answered by {"id": 7, "done": {...}} or {"id": 7, "failed": "a sentence", "broken": true if it was
-broken off}; several may be under way. {"beat": n} says that the program lives, without an answer.
-A line that cannot be heeded is answered by what is wrong with it, and ends nothing.
-While it is switched on it says {"starts": "laser"} and so on. Then, by itself, it says
-{"beat": {...}}, ten times a second: health, pose, who asks, and why it stands.
+aborted}; several may be in progress. {"beat": n} is a heartbeat of the program, without an answer.
+An invalid line is answered with its error, and ends nothing. During start-up it sends {"starts":
+"laser"} and so on, then {"beat": {...}} ten times a second: health, pose, requests, and why it
+stands.
 
-Whatever happens to the program, the robot stops: when its pipe closes it stops and ends; when
-nothing comes through it for a while it stops, and gives up what it was doing.
+Whatever happens to the program, the robot stops: when its pipe closes, the process stops the robot
+and exits; after a while without messages, it stops the robot and aborts its tasks.
 """
 
 from __future__ import annotations
@@ -52,21 +52,21 @@ _LOG = logging.getLogger(__name__)
 
 BEAT_SECONDS = 0.1
 SILENT_SECONDS = 0.15
-"""For so long the program may say nothing while the robot drives: three of its beats. It is told to
-stand then, and stands when it has braked; it does not drive on when that takes longer."""
+"""Silence of the program, three of its heartbeats, after which a driving robot stops, and aborts
+its tasks if the silence lasts."""
 SILENT_STEPPED = 20.0
-"""On a bench in a hurry nothing moves by itself, and the program may be busy."""
+"""On a stepped bench nothing moves by itself, and the program may be busy."""
 
 Answer = dict[str, Any]
 
 
 class RobotProcess:
-    """Does what the lines ask for, and tells of the robot."""
+    """Executes requests, and sends heartbeats."""
 
     def __init__(
         self, wired: RobotRuntime, say: Callable[[Answer], None], *, stepped: bool
     ) -> None:
-        """Take charge of a robot that is wired up; `say` writes a line."""
+        """Set the assembled robot; `say` writes a line."""
         self.robot: LiveRobot = wired.robot
         self._wired = wired
         self._say = say
@@ -74,7 +74,7 @@ class RobotProcess:
         self._stepped = stepped
         self._heard = time.monotonic()
         self._doing: dict[int | str, asyncio.Task[None]] = {}
-        self._broken = ""  # why what was under way was given up last
+        self._broken = ""  # reason for the last abort
         self._looks = Looks(self.robot)
         self.robot.alone = self._why_alone
         self.robot.left = self._break_off
@@ -82,7 +82,7 @@ class RobotProcess:
     # ---------------------------------------------------------------------- the lines
 
     async def live(self, said: list[bytes], lines: asyncio.StreamReader) -> None:
-        """Do what the program says and has said until it ends, and stop the robot then."""
+        """Execute requests until the program ends, and stop the robot then."""
         self._say({"ready": True, "done": self.robot.body.at_hand})
         beating = asyncio.create_task(self.beat())
         try:
@@ -95,7 +95,7 @@ class RobotProcess:
             await self.robot.stop("the program has ended")
 
     async def _take_next(self, lines: asyncio.StreamReader) -> bool:
-        """Take the next line; return whether there was one."""
+        """Process the next line; return whether there was one."""
         try:
             line = await next_line(lines)
         except LineError as error:
@@ -106,7 +106,7 @@ class RobotProcess:
         return bool(line)
 
     async def take(self, line: bytes) -> None:
-        """Take a line of the program; a bad one is answered with an error."""
+        """Process a line of the program; answer an invalid one with an error."""
         self._heard = time.monotonic()
         try:
             asked = read_line(line)
@@ -120,14 +120,14 @@ class RobotProcess:
 
     async def _take(self, asked: Asked) -> None:
         try:
-            if asked.get("do") == "stop":  # it waits behind nothing, nor for what is wrong with it
+            if asked.get("do") == "stop":  # it precedes everything, even its own errors
                 await self._stop(asked)
             if id_of(asked) is None and "id" in asked:
                 raise LineError("An id must be a whole number or a text.")
             self._heed(asked)
         except LineError as error:
             self.refuse(str(error), asked)
-        except Exception as error:  # whoever asked must not wait for ever
+        except Exception as error:  # the caller must not wait forever
             self.refuse(f"It went wrong ({error!r}).", asked)
 
     async def _stop(self, asked: Asked) -> None:
@@ -138,17 +138,17 @@ class RobotProcess:
         self._break_off(why)
 
     def refuse(self, why: str, asked: Asked | None = None) -> None:
-        """Answer a line that is not heeded; without an id to answer to it is only said."""
+        """Answer an invalid line, or report it if it has no id."""
         if asked is not None and id_of(asked) is not None:
             self._answer(asked, failed=why)
         else:
             self._say({"failed": why})
 
     def _heed(self, asked: Asked) -> None:
-        """Do what a line asks for at once, or begin it.
+        """Execute an immediate request, or begin a lasting one.
 
         Raises:
-            LineError: it cannot be heeded.
+            LineError: the request is invalid.
         """
         at_once = at_once_of(asked.get("do"))
         match at_once:
@@ -238,14 +238,14 @@ class RobotProcess:
             self._answer(asked, failed=str(error))
         except (KeyError, TypeError, ValueError) as error:
             self._answer(asked, failed=f"It was not asked rightly ({error!r}).")
-        except Exception as error:  # whoever asked must not wait for ever
+        except Exception as error:  # the caller must not wait forever
             self._answer(asked, failed=f"It went wrong ({error!r}).")
         else:
             self._answer(asked, done=done or {})
 
     def _over(self, task: asyncio.Task[None], asked: Asked) -> None:
         self._doing.pop(asked["id"], None)
-        if task.cancelled():  # it was broken off before it had begun, and has not answered
+        if task.cancelled():  # cancelled before it started, so it has not answered
             self._answer(asked, failed=self._broken or "called off", broken=True)
 
     def _break_off(self, why: str) -> None:
@@ -274,7 +274,7 @@ class RobotProcess:
         return {"found": await self.robot.spin()}
 
     async def _wait(self, asked: Asked) -> None:
-        """Let time pass; with "asks" only until somebody asks who did not."""
+        """Let time pass; with "asks" only until there is a new request."""
         there = {ask.seat for ask in self.robot.asking}
         heed = bool(asked.get("asks"))
         await self.robot.passing.until(
@@ -312,15 +312,15 @@ class RobotProcess:
     # ---------------------------------------------------------------------- what it tells
 
     def _why_alone(self) -> str:
-        """Say whether the program has fallen silent."""
+        """Return why the program counts as absent, "" if it does not."""
         silent = time.monotonic() - self._heard > self._patience
         return "the program says nothing" if silent else ""
 
     async def beat(self) -> None:
-        """Tell how it is, again and again."""
+        """Send heartbeats."""
         number = 0
         while True:
-            if not self.robot.watch.overdue:  # it was frozen, and looks at that before it tells
+            if not self.robot.watch.overdue:  # after a freeze, handle that first
                 number += 1
                 async with self.robot.passing.still:
                     self._say({"beat": beat_of(self.robot, number)})
@@ -328,7 +328,7 @@ class RobotProcess:
 
 
 async def run() -> int:
-    """Be the robot process until the program ends."""
+    """Run the robot process until the program ends."""
     lines, pipe = await open_lines()
     program = int(sys.argv[1]) if sys.argv[1:] else os.getppid()
     ending = asyncio.create_task(end_with(program, lines))
@@ -344,7 +344,7 @@ async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> in
         setup = RobotSetup.from_json(await lines.readline())
         wired = assemble(setup)
         wired.starts = lambda part: out.write({"starts": part})
-        # Told to end, it does what it does when its pipe closes; before this, nothing is open.
+        # SIGTERM has the effect of a closed pipe; before this, nothing is open.
         asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, pipe.close)
         async with switched_on(wired, lines) as said:
             if said is None:
@@ -358,8 +358,8 @@ async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> in
 
 
 def main() -> None:
-    """Run it."""
+    """Run the process."""
     log_to_stderr()
     status = asyncio.run(run())
-    gc.freeze()  # or Python looks through all that was loaded once more
+    gc.freeze()  # avoids a last garbage collection over all loaded modules
     sys.exit(status)

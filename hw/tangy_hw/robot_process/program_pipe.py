@@ -1,4 +1,4 @@
-"""The robot process's end of its pipe to the program, and its end where the program has ended."""
+"""The robot process's end of its pipe to the program, and its exit when the program has ended."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ import json
 import os
 from typing import Any
 
-MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
-LOOK_SECONDS = 0.5  # between two looks at whether the program is still there
-END_SECONDS = 4.0  # after the program's end: devices that do not answer are not waited for
+MOST_UNREAD = 1 << 16  # bytes; a program that hangs reads none
+LOOK_SECONDS = 0.5  # between two checks for the program
+END_SECONDS = 4.0  # after the program's end: limit for devices that do not answer
 
 
 async def end_with(program: int, lines: asyncio.StreamReader) -> None:
-    """End once the program has ended, whatever is waited for; first let what it does be stopped."""
-    while os.getppid() == program and not lines.at_eof():  # noqa: ASYNC110 - nobody tells
+    """Exit some seconds after the program has ended, whatever is in progress."""
+    while os.getppid() == program and not lines.at_eof():  # noqa: ASYNC110 - no notification
         await asyncio.sleep(LOOK_SECONDS)
     await asyncio.sleep(END_SECONDS)
     os._exit(1)
 
 
 class AnswerPipe(asyncio.Protocol):
-    """Lines to the program; where it takes none, beats are left out and nothing waits."""
+    """Lines to the program; if it reads none, heartbeats are dropped, and nothing blocks."""
 
     transport: asyncio.WriteTransport | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Keep the transport to write to."""
+        """Store the transport for writing."""
         assert isinstance(transport, asyncio.WriteTransport)  # noqa: S101 - it is a pipe
         self.transport = transport
 

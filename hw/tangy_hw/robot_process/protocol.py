@@ -1,7 +1,7 @@
 """Strict parsing of lines to the robot process: the request, or its error.
 
-Nothing that a line can hold gets further than here unless it is of the kind that is wanted: a
-number is finite, a pose has three of them, and an id can be answered to.
+Only values of the required type pass: a number is finite, a pose has three of them, and an id can
+be used in an answer.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from tangy_profiles.cards import PATTERNS
 from tangy_profiles.worker_lines import Asked, LineError
 
 OFTEN = frozenset(("drive", "picture", "settle", "sights", "wait"))
-"""What is asked for so often that it is only logged where everything is wanted."""
+"""Frequent requests, which are only logged at the debug level."""
 
-MOST_CALLS = 4  # of people that are open at a time
+MOST_CALLS = 4  # maximum of open calls
 
 
 def level_of(do: object) -> int:
-    """Return the level at which it is logged that something is asked for, or was done."""
+    """Return the log level for a request and its outcome."""
     return logging.DEBUG if do in OFTEN else logging.INFO
 
 
 def id_of(asked: Asked) -> int | str | None:
-    """Return the id by which a line is answered; None where it has none that can be one."""
+    """Return the id of a line; None if it has no valid one."""
     number = asked.get("id")
     return number if isinstance(number, int | str) and not isinstance(number, bool) else None
 
@@ -36,7 +36,7 @@ def number_of(asked: Mapping[str, Any], key: str) -> float:
     """Return a finite number.
 
     Raises:
-        LineError: there is none under that key.
+        LineError: the key has no such number.
     """
     number = _finite(asked.get(key))
     if number is None:
@@ -45,10 +45,10 @@ def number_of(asked: Mapping[str, Any], key: str) -> float:
 
 
 def pose_of(asked: Mapping[str, Any], key: str) -> Pose:
-    """Return a pose: x and y in m, heading in radians.
+    """Return a pose: x and y in m, heading in rad.
 
     Raises:
-        LineError: there are not three finite numbers under that key.
+        LineError: the key does not have three finite numbers.
     """
     value = asked.get(key)
     numbers = [_finite(one) for one in value] if isinstance(value, list) else []
@@ -59,10 +59,10 @@ def pose_of(asked: Mapping[str, Any], key: str) -> Pose:
 
 
 def text_of(asked: Mapping[str, Any], key: str, otherwise: str) -> str:
-    """Return a text, or another where nothing stands under that key.
+    """Return a text, or a default if the key is missing.
 
     Raises:
-        LineError: something stands there that is no text.
+        LineError: the value is not a text.
     """
     value = asked.get(key, otherwise)
     if not isinstance(value, str):
@@ -71,10 +71,10 @@ def text_of(asked: Mapping[str, Any], key: str, otherwise: str) -> str:
 
 
 def wins_of(asked: Mapping[str, Any]) -> tuple[tuple[str, ...], int] | None:
-    """Return the shapes that win, and how many of them together; None: as the activity has it.
+    """Return the winning patterns, and how many are required together; None: the activity's.
 
     Raises:
-        LineError: they are none that there are.
+        LineError: the patterns are unknown.
     """
     if "patterns" not in asked:
         return None
@@ -85,7 +85,7 @@ def wins_of(asked: Mapping[str, Any]) -> tuple[tuple[str, ...], int] | None:
 
 
 def picture_of(told: Mapping[str, Any]) -> Picture:
-    """Return what the chest screen is to show."""
+    """Return the picture for the chest screen."""
     return Picture(
         str(told.get("text", "")),
         str(told.get("number", "")),
@@ -96,10 +96,10 @@ def picture_of(told: Mapping[str, Any]) -> Picture:
 
 
 def calls_of(told: Mapping[str, Any]) -> dict[str, str]:
-    """Return the open calls that the chest screen may answer: who is called, by a key.
+    """Return the open calls for the chest screen: the called person's name by key.
 
     Raises:
-        LineError: they are none.
+        LineError: the calls are invalid.
     """
     calls = told.get("calls")
     if not isinstance(calls, dict) or len(calls) > MOST_CALLS:
@@ -112,6 +112,6 @@ def _finite(value: object) -> float | None:
         return None
     try:
         number = float(value)
-    except OverflowError:  # a whole number beyond any float
+    except OverflowError:  # an integer beyond any float
         return None
     return number if math.isfinite(number) else None

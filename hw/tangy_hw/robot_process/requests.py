@@ -1,6 +1,6 @@
 """The requests to the robot process: a closed set, the same at both ends.
 
-What is at once is done as its line comes; a deed takes its time, and is answered when it is done.
+An immediate request is done when its line arrives; a deed takes time, and is answered at its end.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A trial of a robot's devices: each driver is opened and listened to, and nothing is moved."""
+"""Tests a robot's devices: opens each driver and checks its data, without moving anything."""
 
 from __future__ import annotations
 
@@ -21,17 +21,16 @@ from tangy_profiles.health import ERROR, OK, WARN
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import load_room
 
-SECONDS = 5.0  # in which a device that works has said something: cameras take the longest
+SECONDS = 5.0  # for a working device to send data: cameras take longest
 TICK_SECONDS = 0.05
-SEATED = ("1", "2", "3", "4")  # who is there makes no difference to a trial
+SEATED = ("1", "2", "3", "4")  # the people do not matter here
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """The result of one device: whether it works, and a sentence.
+    """Result for one device: whether it works, and a sentence.
 
-    `absent`: something is wanting, and not broken: nothing says what drives it, or nobody looks at
-    the screen yet.
+    `absent`: something is missing rather than broken: a driver, or a tablet for the screen.
     """
 
     device: str
@@ -51,14 +50,14 @@ async def try_robot(
     """Open every driver and camera of a robot's profile, and check their data.
 
     Args:
-        robot: whose devices they are.
-        activity: what it is for.
-        cameras: where its cameras' pictures come from, by device.
-        seconds: for which is waited for a device at most.
-        pairing: by what tablets are known, as `RobotSetup` has it.
+        robot: the robot's profile.
+        activity: the activity that it is for.
+        cameras: sources of its cameras, by device.
+        seconds: timeout for a device.
+        pairing: secrets of paired tablets, as in `RobotSetup`.
 
     Returns:
-        What was found, in the order of the profile.
+        The results, in the order of the profile.
     """
     wiring = Wiring(robot, activity, MachineClock(), pairing=pairing)
     found: dict[str, Trial] = {}
@@ -67,7 +66,7 @@ async def try_robot(
     }
     for name, driver in robot.drivers.items():
         if name == REQUESTS:
-            continue  # no driver of these: it is tried below
+            continue  # not a driver: tested below
         try:
             opened[name] = open_device(wiring, name, {"kind": driver.kind, **driver.settings})
         except DeviceError as error:
@@ -95,7 +94,7 @@ async def try_robot(
             what = "nothing says where its pictures come from; name its source in"
             found[name] = Trial(name, False, f"{what} {robot.file.name}.", absent=True)
     driven = {device for driver in known_drivers().values() for device in driver.devices}
-    for name in driven - {"navigator"}:  # without one of its own, Tangy finds the way
+    for name in driven - {"navigator"}:  # Tangy's own navigator replaces a missing one
         if name in robot.devices and name not in found:
             what = f"nothing drives it; say what does under [drivers] in {robot.file.name}."
             found[name] = Trial(name, False, what, absent=True)
@@ -104,7 +103,7 @@ async def try_robot(
 
 
 async def _try_requests(robot: Robot, seconds: float) -> Trial:
-    """Open what tells who asks for help, and see that it is there."""
+    """Open the source of requests, and check that it works."""
     from tangy_hw.perception.requests.sources import open_requests
 
     try:
@@ -136,7 +135,7 @@ def _tried(
     if isinstance(device, Camera):
         return Trial(name, False, device.sight.why or f"{where} gives no pictures.")
     why = str(getattr(device, "why", ""))
-    if why:  # whose it is stands before it; a screen that waits for a tablet is not broken
+    if why:  # without the device's name; a screen that waits for a tablet is not broken
         said = why.removeprefix(f"{name}: ")
         return Trial(name, False, said, absent=reading.state == WARN)
     link = wiring.links.get(str(robot.drivers[name].settings.get("at", "")))

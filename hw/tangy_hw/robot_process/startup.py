@@ -1,6 +1,6 @@
-"""Switching the robot on in its process, and giving that up as soon as the program does.
+"""Switches the robot on in its process, and aborts as soon as the program cancels this.
 
-The program gives it up by closing the pipe, by SIGTERM, or by ending.
+The program cancels by closing the pipe, by SIGTERM, or by exiting.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tangy_hw.robot_process.assembly import RobotRuntime
 from tangy_profiles.worker_lines import LineError, next_line
 
 GIVE_UP_SECONDS = 1.0
-"""In which a robot that was not switched on yet is let go of; then the process ends anyway."""
+"""Time for an aborted start-up to release devices; then the process exits anyway."""
 BEAT = b'{"beat"'
 
 
@@ -22,14 +22,15 @@ BEAT = b'{"beat"'
 async def switched_on(
     wired: RobotRuntime, lines: asyncio.StreamReader
 ) -> AsyncIterator[list[bytes] | None]:
-    """Switch a robot on, unless the program gives it up before that, and off again.
+    """Switch a robot on, unless the program cancels this, and off again.
 
     Args:
         wired: the robot.
-        lines: what the program says; it is read while the robot is being switched on.
+        lines: input from the program, read during the start-up.
 
     Yields:
-        What the program said meanwhile, but for its beats; None where it gave up, with nothing on.
+        The lines received meanwhile, without heartbeats; None if cancelled, with nothing switched
+        on.
 
     Raises:
         TangyError: a device cannot be switched on.
@@ -50,18 +51,18 @@ async def switched_on(
 
 
 async def _until_the_end(lines: asyncio.StreamReader, said: list[bytes]) -> None:
-    """Take what the program says, until it says no more."""
+    """Collect lines of the program until its input closes."""
     line = b"\n"
     while line:
-        with suppress(LineError):  # it is too long
+        with suppress(LineError):  # the line is too long
             line = await next_line(lines)
             if line and not line.startswith(BEAT):
                 said.append(line)
 
 
 async def _give_up(opening: asyncio.Future[RobotRuntime]) -> None:
-    """Let go of all that is open; devices and threads that do not answer are not waited for."""
-    signal.setitimer(signal.ITIMER_REAL, GIVE_UP_SECONDS)  # which ends a process
+    """Release everything that is open, without waiting for devices and threads that hang."""
+    signal.setitimer(signal.ITIMER_REAL, GIVE_UP_SECONDS)  # SIGALRM ends the process
     opening.cancel()
     with suppress(asyncio.CancelledError, Exception):
         async with AsyncExitStack() as opened:

@@ -1,36 +1,36 @@
-"""Why a robot stands still: who has stopped it, and whether its own control has failed."""
+"""Latch of stops: who has stopped the robot, and whether its own control has failed."""
 
 from __future__ import annotations
 
 from tangy_hw.device_protocols import DeviceError
 
 STAFF, FAULT = "staff", "fault"
-"""Who stops a robot: somebody at the screen, or what was diagnosed."""
+"""Sources of a stop: a person at a screen, or a diagnosed fault."""
 
 
 class Preempted(DeviceError):
-    """Something was not done to its end, because the robot has to stand still."""
+    """A task was aborted, because the robot has to stop."""
 
 
 class StopLatch:
-    """The stops that hold, one for each who asked for one; it is let go when all have."""
+    """Active stops, one for each source; the robot is released when all are."""
 
     def __init__(self) -> None:
         self.failed = ""
-        """Why nothing can let it move again but another robot process."""
+        """Permanent failure, which only a new robot process fixes."""
         self._by: dict[str, str] = {}
 
     @property
     def why(self) -> str:
-        """Why it is stopped, "" if nobody holds it."""
+        """Why the robot is stopped, "" if it is not."""
         return self.failed or next(iter(self._by.values()), "")
 
     def hold(self, why: str, by: str) -> None:
-        """Hold it for somebody, until they release it."""
+        """Stop for a source, until it releases the stop."""
         self._by.setdefault(by, why)
 
     def release(self, by: str = "") -> None:
-        """Take back what somebody said, or all that anybody did."""
+        """Release the stop of one source, or of all."""
         if by:
             self._by.pop(by, None)
         else:

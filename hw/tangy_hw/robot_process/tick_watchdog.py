@@ -1,4 +1,4 @@
-"""Whether a robot's control was frozen: ticks that come much too late tell."""
+"""Detects from very late ticks that the robot's control was frozen."""
 
 from __future__ import annotations
 
@@ -6,32 +6,32 @@ import time
 from collections.abc import Callable
 
 LATE_SECONDS = 1.5
-"""From one tick to the next: a busy machine makes them late by a few tenths; what takes longer has
-left a robot without control, and the room is not as it was."""
+"""Maximum time between ticks: a busy machine delays them by some tenths; after a longer delay, the
+robot was without control, and the room may have changed."""
 
 
 def time_awake_and_asleep() -> float:
-    """Return the time in s, in which that counts for which the whole machine slept."""
+    """Return a monotonic time in s that includes sleep of the machine."""
     if hasattr(time, "CLOCK_BOOTTIME"):
         return time.clock_gettime(time.CLOCK_BOOTTIME)
     return time.monotonic()
 
 
 class TickWatch:
-    """Watches how long after one another ticks come, once it is begun."""
+    """Watches the time between ticks, once `begin` was called."""
 
     def __init__(
         self, clock: Callable[[], float] = time_awake_and_asleep, late: float = LATE_SECONDS
     ) -> None:
-        """Prepare; a tick that comes more than `late` s after the last is much too late."""
+        """Prepare the watch; a tick more than `late` s after the last one is too late."""
         self.frozen = 0.0
-        """For how many s control was frozen, until staff have seen to it."""
+        """For how many s control was frozen, until staff acknowledge it."""
         self._clock = clock
         self._late = late
         self._last: float | None = None
 
     def begin(self) -> None:
-        """Watch from now on, with nothing known to be amiss."""
+        """Start to watch, without a known freeze."""
         self.frozen, self._last = 0.0, self._clock()
 
     @property
@@ -40,7 +40,7 @@ class TickWatch:
         return self._last is not None and self._clock() - self._last > self._late
 
     def tick(self) -> bool:
-        """Take note of a tick; return whether control was frozen before it."""
+        """Record a tick; return whether control was frozen before it."""
         if self._last is None:
             return False
         now = self._clock()

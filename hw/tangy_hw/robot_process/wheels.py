@@ -1,6 +1,6 @@
-"""Commands to a base, each of which goes its own way: none is carried out after a later stop.
+"""Sends commands to a base without blocking; no command overtakes a later stop.
 
-All that drives a base from here goes through `Wheels.send`, and no faster than its limits.
+Every command to the base passes `Wheels.send`, which applies the motion limits.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from tangy_hw.navigation.limits import MotionLimits
 
 
 class Wheels:
-    """Tells a base how to drive, without waiting for it."""
+    """Sends velocity commands to a base without waiting for it."""
 
     def __init__(self, base: Base, limits: MotionLimits) -> None:
-        """Take charge of a base that may drive so."""
+        """Set the base and its limits."""
         self.driven = STILL
-        """What it was told last."""
+        """Last command."""
         self._base, self._limits = base, limits
         self.sent: asyncio.Task[None] | None = None
         self._again = False
 
     @property
     def stand(self) -> bool:
-        """Whether it was told to stand, and after a stop once more."""
+        """Whether the last command was to stop, repeated once after a `stop`."""
         return self.driven == STILL and not self._again
 
     def send(self, command: Twist) -> None:
-        """Tell the base; a command that could not be handed over is followed by the next.
+        """Send a command; one that could not be sent is followed by the next.
 
-        One that is faster than the base may drive is carried out on the same arc, as fast as it
-        may; one that is no number stands still.
+        A command above the limits is scaled down on the same arc; one that is not finite stops the
+        base.
         """
         command = self._limits.clamped(command)
         halting = command == STILL and self.driven != STILL
@@ -50,7 +50,7 @@ class Wheels:
         self.sent = asyncio.create_task(_quietly(work))
 
     async def stop(self) -> None:
-        """Stop the base now; commands not yet handed over are dropped."""
+        """Stop the base now; pending commands are dropped."""
         self._call_off()
         self.driven, self._again = STILL, True
         await self._base.stop()
@@ -61,5 +61,5 @@ class Wheels:
 
 
 async def _quietly(work: Callable[[], Awaitable[None]]) -> None:
-    with suppress(DeviceError):  # its reading tells
+    with suppress(DeviceError):  # its reading reports the error
         await work()
