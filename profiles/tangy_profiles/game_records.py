@@ -98,6 +98,7 @@ ChangeKind = Literal[
     "claimed",
     "left",
     "came",
+    "joined",
     "visit",
     "visit put off",
     "visit over",
@@ -119,10 +120,11 @@ class GameChange(EventRecord):
 
     A call (`number`) was taken back; staff chose the next `patterns`; a winner (`person`) waits for
     the others, the game continues with the next pattern, or is won; a card was claimed to win;
-    `person` left or came, or gets an unrequested visit; some calls (`number`) come before requests;
-    all numbers were called, so each person gets a visit; after these visits nobody has won, or
-    nobody else after `number` patterns; staff allowed several winners of one call, or one; turned
-    visits on or off; or chose another pace (`seconds` between calls).
+    `person` left or came, joined a resumed game, or gets an unrequested visit; some calls
+    (`number`) come before requests; all numbers were called, so each person gets a
+    visit; after these visits nobody has won, or nobody else after `number` patterns; staff allowed
+    several winners of one call, or one; turned visits on or off; or chose another pace (`seconds`
+    between calls).
     """
 
     game: str

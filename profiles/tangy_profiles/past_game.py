@@ -7,7 +7,7 @@ the earlier games in the same run, a world can restore the state.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Protocol
 
@@ -18,7 +18,7 @@ from tangy_profiles.game_records import GameBeginning, GameChange, GameEnding, G
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.staff_records import StaffAction
-from tangy_profiles.state import ActivityState, Outcome
+from tangy_profiles.state import ActivityState, Outcome, UserState
 from tangy_profiles.store import Event, Store
 from tangy_profiles.tracker import Tracker
 
@@ -80,6 +80,9 @@ class PastGame:
     changes: tuple[GameChange, ...] = ()
     """Changes in this game and the earlier ones, besides their steps."""
 
+    newcomers: tuple[str, ...] = ()
+    """Who takes part from where it goes on; `beginning` and `steps` know them already."""
+
     acted: float = 0.0
     """The time played at staff's last logged action, in s."""
 
@@ -87,6 +90,26 @@ class PastGame:
     def world(self) -> GameWorld:
         """The world in which it was played."""
         return self.beginning.world or SIMULATED
+
+    def joined_by(self, people: Sequence[str], unread: str) -> PastGame:
+        """Return the game with people more, who have not asked for anything and have no card.
+
+        Args:
+            people: their ids.
+            unread: the state of a card that was not read.
+        """
+        more = tuple(person for person in people if person not in self.beginning.people)
+        if not more:
+            return self
+
+        def among(state: ActivityState | None) -> ActivityState | None:
+            known = {user.id for user in state.users} if state is not None else set()
+            new = tuple(UserState(one, unread, "ANR") for one in more if one not in known)
+            return None if state is None else state._replace(users=(*state.users, *new))
+
+        steps = tuple(replace(step, after=among(step.after)) for step in self.steps)
+        beginning = replace(self.beginning, people=(*self.beginning.people, *more))
+        return replace(self, beginning=beginning, steps=steps)
 
     @property
     def clock(self) -> tuple[float, ...]:
@@ -238,7 +261,14 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
     )
     began = tuple(event.record for event in run[:-1])
     return PastGame(
-        newest.record, datetime.fromisoformat(at), own, tuple(earlier), taken, began, changes, acted
+        newest.record,
+        datetime.fromisoformat(at),
+        own,
+        tuple(earlier),
+        taken,
+        began,
+        changes,
+        acted=acted,
     )
 
 

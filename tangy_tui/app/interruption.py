@@ -2,33 +2,64 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tangy_profiles.game_records import GameEnding
-from tangy_profiles.game_world import GameWorld
+from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.past_game import PastGame, interrupted_game
-from tangy_tui.app.rooms import find_room
+from tangy_tui.app.rooms import check_places, find_room
 
 if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
 
 
+@dataclass(frozen=True, slots=True)
+class TakenUp:
+    """A game that goes on, and the ids of those who came meanwhile and cannot join it."""
+
+    past: PastGame
+    waiting: tuple[str, ...] = ()
+
+
 def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
-    """Return the interrupted game of the workspace's activity in a world, None if there is none."""
+    """Return the game of the workspace's activity that was interrupted in a world, if one was."""
     past = interrupted_game(workspace.store, workspace.activity.name)
-    return past if past is not None and past.world == world else None
+    if past is None or past.world != world:
+        return None
+    game = past.beginning.game
+    joined = [one.person for one in past.changes if (one.game, one.what) == (game, "joined")]
+    return past.joined_by(joined, workspace.activity.unread)
 
 
-def take_up(workspace: Workspace, past: PastGame) -> None:
-    """Restore the seats and the room of an interrupted game that is to be resumed.
+def can_join(workspace: Workspace, past: PastGame) -> bool:
+    """Say whether people can join a game that goes on.
+
+    Simulated people cannot, and not where the game keeps facts of each person.
+    """
+    return past.world != SIMULATED and bool(workspace.activity.deck.columns)
+
+
+def take_up(workspace: Workspace, past: PastGame) -> TakenUp:
+    """Let people sit as they sat in a game that is to go on, in the same room.
+
+    Who came meanwhile joins it, on the seats after the others, if that can be. Who takes part no
+    more is on the list for this game.
 
     Raises:
-        TangyError: its room is not available.
+        TangyError: its room cannot be had, or is too small.
     """
     if not workspace.room_is_given:
         room = past.beginning.room
-        workspace.choose_room(find_room(workspace.store.folder, room) if room else None)
-    workspace.seat(past.beginning.people)
+        workspace.chosen_room = find_room(workspace.store.folder, room) if room else None
+    there = past.beginning.people
+    new = tuple(person for person in workspace.names if person not in there)
+    joins = new if can_join(workspace, past) else ()
+    if workspace.chosen_room is not None:
+        check_places(workspace.chosen_room, len(there) + len(joins))
+    workspace.gather((*there, *joins))
+    going_on = replace(past.joined_by(joins, workspace.activity.unread), newcomers=joins)
+    return TakenUp(going_on, () if joins else new)
 
 
 def end_interrupted(workspace: Workspace, past: PastGame, reason: str) -> None:

@@ -70,6 +70,12 @@ class Participants:
         self._sample = tuple(sorted(self._sample, key=lambda person: order.index(person.id)))
         self.read_people()
 
+    def gather(self, ids: Sequence[str]) -> None:
+        """Let exactly these people take part, in this order, whoever else is registered."""
+        there = {person.id: person for person in self._sample}
+        self._sample = tuple(there.get(id, Person(id, id)) for id in ids)
+        self._place()
+
     def name(self, person: str) -> str:
         """Return a person's name."""
         return next((p.name for p in self.people if p.id == person), person)

@@ -111,6 +111,7 @@ def read_games(store: Store) -> list[Game]:
     faults: dict[str, list[bool]] = {}
     policies: dict[str, str] = {}
     away: dict[str, frozenset[str]] = {}
+    joined: dict[str, list[str]] = {}
     for event in store.events(GameBeginning, GameEnding, FaultDiagnosed, PolicyLearnt, GameChange):
         match event.record:
             case PolicyLearnt(digest=digest, name=name):
@@ -118,6 +119,8 @@ def read_games(store: Store) -> list[Game]:
             case GameBeginning(game=game, policy=policy) as record:
                 begun[game] = _Begun(event, record, policies.get(policy, ""))
                 away[game] = frozenset(record.absent)
+            case GameChange(game=game, what="joined", person=person) if game in begun:
+                joined.setdefault(game, []).append(person)
             case GameChange(game=game, what="came", person=person):
                 away[game] = away.get(game, frozenset()) - {person}
             case GameEnding(game=game) as record:
@@ -136,6 +139,7 @@ def read_games(store: Store) -> list[Game]:
             steps.get(id, 0),
             worlds.get(id, SIMULATED),
             away[id],
+            joined.get(id, ()),
         )
         for number, (id, game) in enumerate(begun.items(), 1)
     ]
@@ -160,6 +164,7 @@ def _game(
     steps: int,
     world: GameWorld,
     away: frozenset[str],
+    joined: Sequence[str],
 ) -> Game:
     event, begun, policy = game
     end, ending = ended or (None, None)
@@ -171,7 +176,7 @@ def _game(
         activity=begun.activity,
         policy=policy or begun.policy[:8],
         digest=begun.policy,
-        people=begun.people,
+        people=(*begun.people, *joined),
         steps=steps if ending is None else ending.steps,
         critical=sum(faults),
         other=len(faults) - sum(faults),

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.events import KINDS
-from tangy_profiles.game_records import GameBeginning, GameStep
+from tangy_profiles.game_records import GameBeginning, GameChange, GameStep
 from tangy_profiles.reading import plain
 from tangy_profiles.rows import wrong_row
 from tangy_profiles.state import ActivityState
@@ -66,12 +66,15 @@ def _strange_game_steps(store: Store, activity: Activity) -> list[str]:
 def _strange_people(store: Store) -> Iterator[str]:
     """Report the steps that refer to people who do not take part in the game."""
     people = dict[str, frozenset[str]]()
-    for event in store.events(DemonstrationBegun, DemonstrationStep, GameBeginning, GameStep):
+    told = (DemonstrationBegun, DemonstrationStep, GameBeginning, GameChange, GameStep)
+    for event in store.events(*told):
         match event.record:
             case DemonstrationBegun(demonstration=of, people=ids):
                 people[of] = frozenset(ids)
             case GameBeginning(game=of, people=ids):
                 people[of] = frozenset(ids)
+            case GameChange(game=of, what="joined", person=person) if of in people:
+                people[of] |= {person}
             case DemonstrationStep(demonstration=of, step=step):
                 others = _others(people.get(of), step.target, step.state)
             case GameStep(game=of, target=target, state=state):

@@ -42,6 +42,8 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
             return f"{person} has left. Tangy no longer goes there."
         case "came":
             return f"{person} is here now."
+        case "joined":
+            return f"{person} takes part from now on."
         case "visit":
             return f"{person} has had no visit for a while. Tangy goes there."
         case "visit put off":

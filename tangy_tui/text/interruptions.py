@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.times import day_and_time
 
 if TYPE_CHECKING:
     from tangy_profiles.past_game import PastGame
 
 TITLE = "A game was interrupted"
+ADD = ("add", "add somebody who has come", "and then go on with it")
 RESUME = ("resume", "go on with it", "paused at first")
 END = ("end", "end it", "with a report of it")
 DISCARD = ("discard", "discard it", "and play a new game")
@@ -42,9 +44,15 @@ def begins_anew(verb: str) -> str:
     )
 
 
-def people_words(count: int) -> str:
-    """Say that other people took part in the interrupted game, and what to do."""
-    return f"The interrupted game has {counted(count, 'player')}: add --users {count}."
+def waiting_words(names: Sequence[str]) -> str:
+    """Say that people who came meanwhile cannot join the game that goes on."""
+    verb = "plays" if len(names) == 1 else "play"
+    return f"{listed(names)} cannot join this game in the middle, and {verb} in the next one."
+
+
+def with_words(names: Sequence[str]) -> str:
+    """Say who has come meanwhile, beside going on."""
+    return f"paused at first; {listed(names)} joins" if names else RESUME[2]
 
 
 def report_words(path: str) -> str:

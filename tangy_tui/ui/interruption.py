@@ -25,29 +25,68 @@ class GameToPlay:
 
 async def ask_about_interrupted(program: Program, world: GameWorld) -> GameToPlay | None:
     """Ask about a game that was interrupted in a world; None: nothing is played now."""
-    from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
-    from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+    from tangy_tui.app.interruption import end_interrupted, find_interrupted
 
     workspace = program.workspace
     past = find_interrupted(workspace, world)
     if past is None:
         return GameToPlay(None)
+    answer = await _ask(program, past)
+    while answer == text.ADD[0]:
+        await _add(program)
+        answer = await _ask(program, past)
+    try:
+        match answer:
+            case "resume":
+                return await _resume(program, past)
+            case "discard":
+                end_interrupted(workspace, past, text.ENDED)
+                return GameToPlay(None)
+            case "end":
+                end_interrupted(workspace, past, text.ENDED)
+                await _report(program, workspace, past)
+    except TangyError as error:
+        await program.tell(str(error), title=text.TITLE)
+    return None
+
+
+async def _ask(program: Program, past: PastGame) -> str | None:
+    """Ask what becomes of a game that was interrupted."""
+    from tangy_tui.app.interruption import can_join
+    from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+
+    workspace = program.workspace
     words = text.interrupted_words(past, len(past.called(workspace.activity)))
     ways = [text.RESUME, text.END, text.DISCARD]
-    if set(past.beginning.people) != set(workspace.names):
-        ways = ways[1:]
-    answer = await program.push_screen_wait(ChooseDialog(words, [Option(*way) for way in ways]))
-    match answer:
-        case "resume":
-            take_up(workspace, past)
-            return GameToPlay(past)
-        case "discard":
-            end_interrupted(workspace, past, text.ENDED)
-            return GameToPlay(None)
-        case "end":
-            end_interrupted(workspace, past, text.ENDED)
-            await _report(program, workspace, past)
-    return None
+    if can_join(workspace, past):
+        new = [name for id, name in workspace.names.items() if id not in past.beginning.people]
+        ways[:1] = [(*text.RESUME[:2], text.with_words(new)), text.ADD]
+    return await program.push_screen_wait(ChooseDialog(words, [Option(*way) for way in ways]))
+
+
+async def _add(program: Program) -> None:
+    """Ask who has come, and let them take part."""
+    from tangy_tui.app.joining import let_join
+    from tangy_tui.ui.joining import ask_who_joins
+
+    who = await ask_who_joins(program)
+    if who is not None:
+        try:
+            let_join(program.workspace, who[0], guest=who[1])
+        except TangyError as error:
+            await program.tell(str(error), title=text.TITLE)
+
+
+async def _resume(program: Program, past: PastGame) -> GameToPlay:
+    """Let people sit as they sat, and say who cannot join."""
+    from tangy_tui.app.interruption import take_up
+
+    names = program.workspace.names
+    taken_up = take_up(program.workspace, past)
+    if taken_up.waiting:
+        waiting = [names[person] for person in taken_up.waiting]
+        await program.tell(text.waiting_words(waiting), title=text.TITLE)
+    return GameToPlay(taken_up.past)
 
 
 @dataclass(frozen=True, slots=True)

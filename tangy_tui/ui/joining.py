@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from textual.app import App
 
 from tangy_tui.text import set_up as text
@@ -9,7 +11,7 @@ from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.name import NameDialog
 
 
-async def ask_who_joins(app: App[object]) -> tuple[str, bool] | None:
+async def ask_who_joins(app: App[Any]) -> tuple[str, bool] | None:
     """Return the name of who joins, and whether as a guest; None: nobody does."""
     name = await app.push_screen_wait(NameDialog("", text.ADD, text.NAME_DETAIL))
     if not name:
@@ -22,7 +24,7 @@ async def ask_who_joins(app: App[object]) -> tuple[str, bool] | None:
     return None if chosen is None else (name, chosen == "guest")
 
 
-async def ask_new_name(app: App[object], name: str) -> str | None:
+async def ask_new_name(app: App[Any], name: str) -> str | None:
     """Ask for a person's new name; None leaves it unchanged."""
     dialog = NameDialog(name, text.RENAME.format(name), text.NAME_DETAIL)
     wanted = await app.push_screen_wait(dialog)

@@ -9,6 +9,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED, GameWorld
+from tangy_profiles.reading import plain
 from tangy_tui.text import interruptions as text
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def past_game(
         asks: a screen asks about it later; else a new game begins beside it, which is said.
 
     Raises:
-        TangyError: nothing was interrupted, or other people took part in it.
+        TangyError: nothing was interrupted, or its room cannot be had.
     """
     from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
 
@@ -51,11 +52,12 @@ def past_game(
         end_interrupted(workspace, past, text.ENDED)
         return None
     if resume:
-        people = past.beginning.people
-        if set(people) != set(workspace.names):
-            raise TangyError(text.people_words(len(people)))
-        take_up(workspace, past)
-        return past
+        names = workspace.names
+        taken_up = take_up(workspace, past)
+        if taken_up.waiting:
+            waiting = text.waiting_words([names[person] for person in taken_up.waiting])
+            print(f"tangy: {plain(waiting)}", file=sys.stderr)
+        return taken_up.past
     if not asks:
         calls = len(past.called(workspace.activity))
         verb = "play" if world == SIMULATED else "live"

@@ -12,8 +12,14 @@ import pytest
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.beliefs import Beliefs
-from tangy_profiles.game_records import GameBeginning, GameEnding, GameResumed, GameStep
-from tangy_profiles.game_world import BENCH, SIMULATED
+from tangy_profiles.game_records import (
+    GameBeginning,
+    GameChange,
+    GameEnding,
+    GameResumed,
+    GameStep,
+)
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
 from tangy_profiles.past_game import NotResumable, PastGame, interrupted_game
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
@@ -21,13 +27,16 @@ from tangy_profiles.state import ActivityState
 from tangy_profiles.tracker import Tracker
 from tangy_tui.app.game_commands import AskFor, GoesAway, GoOn, StopRobot, TakeBackCall
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
+from tangy_tui.app.interruption import can_join, end_interrupted, find_interrupted, take_up
+from tangy_tui.app.joining import let_join
+from tangy_tui.app.register import archive_person
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.log_check import log_problems
 from tangy_tui.monitoring.session import read_session
 from tangy_tui.monitoring.supervision import Supervision
 from tests.hw.links import FakeLink
@@ -233,6 +242,53 @@ def test_a_live_game_goes_on_with_the_order_of_its_numbers(taught: Path) -> None
         robot.next(4)
     assert after.world.called == gone and len(after.world.called) > len(called)
     workspace.close()
+
+
+def test_who_came_meanwhile_joins_a_game_that_goes_on_and_nothing_is_lost(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.next(6)
+    before.control.apply(AskFor("user3"))
+    before.next(1)
+    called, asking = tuple(before.world.called), before.world.scene().requests
+    archive_person(workspace.store, "user2")  # who is at the table still
+    let_join(workspace, "Zelda")
+    workspace.close()
+    for _ in range(2):  # and once more
+        workspace = Workspace(taught)
+        past = find_interrupted(workspace, LIVE)
+        assert past is not None and can_join(workspace, past)
+        taken_up = take_up(workspace, past)
+        assert list(workspace.names) == ["user1", "user2", "user3", "user4", "user5"]
+        after = Robot(workspace, taken_up.past)
+        assert after.world.people == tuple(workspace.names)
+        assert tuple(after.world.called)[: len(called)] == called
+        assert after.world.scene().requests[: len(asking)] == asking
+        after.control.apply(GoOn())
+        after.next(1)
+        after.control.apply(AskFor("user5"))
+        after.next(1)
+        assert "user5" in after.world.scene().requests
+        called = tuple(after.world.called)
+        (game,) = read_session(workspace.store, read_games(workspace.store), {}, {}).replays
+        assert game.game.people == after.world.people
+        assert not log_problems(workspace.store)
+        changes = [event.record for event in workspace.store.events(GameChange)]
+        workspace.close()
+    joined = [change.person for change in changes if change.what == "joined"]
+    assert joined == ["user5"]  # the second time they were known
+
+
+def test_a_simulated_game_goes_on_without_those_who_came_meanwhile(room: Interrupted) -> None:
+    room.play(8)
+    stood = room.standing
+    let_join(room.workspace, "Zelda")
+    room.interrupt()
+    taken_up = take_up(room.workspace, room.past())
+    assert taken_up.waiting == ("user5",)
+    room.supervision = room.new()
+    room.resume()
+    assert room.standing == stood
 
 
 def test_the_clock_of_a_live_game_is_the_time_played_and_not_the_time_it_was_dead(

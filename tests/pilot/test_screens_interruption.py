@@ -7,16 +7,20 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.game_records import GameBeginning, GameEnding
+from tangy_profiles.game_world import LIVE
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.dialogs.name import NameDialog
+from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, TangyPilot
+from tests.pilot.live_games import HeldLink, live_world
 from tests.support.waiting import until, until_shown
 
 STEPS = 9
@@ -93,3 +97,32 @@ async def test_esc_leaves_it_as_it_is(interrupted: Workspace, run: Run) -> None:
         await until(lambda: isinstance(pilot.app.screen, HomeScreen))
 
     assert not list(interrupted.store.events(GameEnding))
+
+
+async def test_somebody_who_has_come_is_added_before_a_live_game_goes_on(
+    workspace: Workspace, learnt: Policy, run: Run
+) -> None:
+    world = live_world(workspace, HeldLink())
+    supervision = workspace.supervision(learnt, 5, asks=True, world=world)
+    supervision.begin()
+    while supervision.steps < 2:
+        supervision.step()
+    chosen: list[GameToPlay | None] = []
+
+    async def start(program: Program) -> None:
+        chosen.append(await ask_about_interrupted(program, LIVE))
+
+    async with run(app=Program(workspace, start, clock=StillClock())) as pilot:
+        await until_shown(pilot, lambda: "somebody who has come" in pilot.text())
+        await pilot.press("down", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NameDialog))
+        await pilot.press(*"Zelda", "enter")
+        await until_shown(pilot, lambda: "is Zelda" in pilot.text().replace("Is", "is"))
+        await pilot.press("enter")
+        await until_shown(pilot, lambda: "Zelda joins" in pilot.text())
+        await pilot.press("enter")
+        await until(lambda: chosen)
+    (to_play,) = chosen
+    assert to_play is not None and to_play.past is not None
+    assert to_play.past.newcomers == ("user5",)
+    assert to_play.past.beginning.people == tuple(workspace.names)
