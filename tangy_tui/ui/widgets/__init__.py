@@ -1,1 +1,1 @@
-"""Widgets: each draws values; none knows of a screen or a dialog."""
+"""Widgets: each draws values, and depends on no screen or dialog."""

@@ -1,4 +1,4 @@
-"""The line to answer in while Tangy asks."""
+"""The input line for answers to Tangy's questions."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from tangy_tui.ui.widgets.command_bar import CommandBar
 
 
 class AnswerBar(CommandBar):
-    """The line to answer in, whose resting text goes with the game."""
+    """A command bar whose placeholder without focus changes with the game."""
 
     def rest(self, text: str) -> None:
-        """Say other keys while the line does not have them."""
+        """Set the placeholder shown while the bar does not have the focus."""
         self._texts = (self._texts[0], text)
         if not self._input.has_focus:
             self.on_descendant_blur()

@@ -1,4 +1,4 @@
-"""One answer to a situation, with the steps that gave it: a column beside the other answers."""
+"""One answer to a situation, with the steps that gave it: a column beside other answers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LINES_OF_A_STEP = 3
 
 
 class AnswerSteps(ChoiceList):
-    """The steps that gave one answer: where, by whom, and what followed; Enter opens one."""
+    """The steps with one answer: where, by whom, and what followed; Enter opens one."""
 
     class Chosen(Message):
         """A step was chosen with Enter."""
@@ -68,7 +68,7 @@ class AnswerSteps(ChoiceList):
         return lines
 
     def _followed(self, shown: Shown) -> str:
-        """Say whom the step was for, and which situation it led to."""
+        """Describe the person the step was for, and the situation that followed."""
         step = shown.step
         whom = f"for {self._workspace.name(step.target)}, " if step.target else ""
         then = self._workspace.activity.in_words(step.after.situation)

@@ -1,4 +1,4 @@
-"""Letters and digits in blocks, to be read from a few metres away: five rows high, or ten."""
+"""Large letters and digits in block characters, readable from metres away: 5 or 10 rows high."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ G 3 4 5 5 3|H 5 5 7 5 5|I 7 2 2 2 7|J 1 1 1 5 2|K 5 5 6 5 5|L 4 4 4 4 7|M 5 7 7 
 O 2 5 5 5 2|P 6 5 6 4 4|Q 2 5 5 3 1|R 6 5 6 5 5|S 3 4 2 1 6|T 7 2 2 2 2|U 5 5 5 5 7|V 5 5 5 5 2|
 W 5 5 7 7 5|X 5 5 2 5 5|Y 5 5 2 2 2|Z 7 1 2 4 7
 """
-"""Each sign with its rows from the top, three bits each."""
+"""Each character with its rows from the top, three bits each."""
 
 GLYPHS = {
     sign: tuple(map(int, rows))
@@ -19,7 +19,7 @@ GLYPHS = {
 
 
 def block_rows(label: str, large: bool, *, dark: str = "█") -> list[str]:
-    """Draw a label, its letters and digits alone; a `large` one is twice as wide and high."""
+    """Draw the letters and digits of a label; `large` doubles width and height."""
     across = 4 if large else 2
     drawn = [""] * ROWS
     for sign in label.upper():

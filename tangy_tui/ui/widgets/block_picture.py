@@ -1,4 +1,4 @@
-"""A small picture drawn in blocks, two pixels a cell; or in shades, where there are no colours."""
+"""A small picture in half-block characters, two pixels a cell; without colours, in grey shades."""
 
 from __future__ import annotations
 
@@ -20,59 +20,59 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Cells = NDArray[Any]
-    """Rows, columns, upper and lower pixel, red-green-blue."""
+    """An array of shape (rows, columns, 2, 3): upper and lower pixel, RGB."""
 
 BLOCK = "▀"
 SHADES = " .:-=+*#%@"
-STEPS = 8  # of 256: colours that are nearer are drawn alike, so that noise costs nothing
-ALIKE = 14  # of 256: by so much a pixel changes before it is drawn anew
+STEPS = 8  # of 256: similar colours are drawn alike, so that noise sends nothing
+ALIKE = 14  # of 256: smaller changes of a pixel are not redrawn
 
 
 class Pixels(Protocol):
-    """A picture, blue, green and red, row by row."""
+    """A picture of BGR pixels, row by row."""
 
     @property
     def width(self) -> int:
-        """Its columns."""
+        """Its width in pixels."""
         ...
 
     @property
     def height(self) -> int:
-        """Its rows."""
+        """Its height in pixels."""
         ...
 
     @property
     def pixels(self) -> bytes:
-        """Its bytes."""
+        """Its BGR bytes."""
         ...
 
 
 class BlockPicture(Inked, can_focus=True):
-    """Shows a picture that was made to `fit`, in the middle; only cells that changed are drawn."""
+    """Shows a picture made to `fit`, centred; redraws only the cells that changed."""
 
     HELP: ClassVar[str] = ""
 
     def __init__(self, title: str, help: str, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self.border_title = title
-        self.HELP = help  # type: ignore[misc] # of each its own
+        self.HELP = help  # type: ignore[misc] # one for each widget
         self._cells: Cells | None = None
         self._strips: dict[int, Strip] = {}
         self._sentence = ""
 
     @property
     def fit(self) -> tuple[int, int]:
-        """The pixels that there is room for: columns and rows."""
+        """The size of the largest picture that fits, in pixels: columns and rows."""
         width, height = self.content_size
         return max(1, width), max(1, 2 * height)
 
     @property
     def there(self) -> bool:
-        """Whether there is a picture."""
+        """Whether a picture is shown."""
         return self._cells is not None
 
     def say(self, sentence: str) -> None:
-        """Show a sentence in place of a picture."""
+        """Show a sentence instead of a picture."""
         if self._cells is not None or sentence != self._sentence:
             self._cells, self._sentence = None, sentence
             self._forget()
@@ -101,11 +101,11 @@ class BlockPicture(Inked, can_focus=True):
         self.refresh(*regions)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Draw anew."""
+        """Redraw at the new size."""
         self._forget()
 
     def notify_style_update(self) -> None:
-        """Draw in the new colours."""
+        """Redraw in the new colours."""
         super().notify_style_update()
         self._strips.clear()
 
@@ -120,7 +120,7 @@ class BlockPicture(Inked, can_focus=True):
         self.refresh()
 
     def _offset(self, cells: Cells) -> tuple[int, int]:
-        """Return how many columns and lines are free before the picture."""
+        """Return the number of empty columns and lines before the picture."""
         width, height = self.content_size
         return max(0, (width - cells.shape[1]) // 2), max(0, (height - cells.shape[0]) // 2)
 
@@ -147,7 +147,7 @@ class BlockPicture(Inked, can_focus=True):
 
 
 def _cells(picture: Pixels) -> Cells:
-    """Put two rows of pixels on one line; a row that is left over at the end is doubled."""
+    """Pack two rows of pixels into one line of cells; repeat the last row of an odd number."""
     import numpy as np
 
     pixels = np.frombuffer(picture.pixels, np.uint8)
@@ -158,13 +158,13 @@ def _cells(picture: Pixels) -> Cells:
 
 
 def _shades(row: Cells) -> str:
-    """Draw a line of cells in characters, the brighter the denser."""
+    """Draw a line of cells as characters, denser for brighter ones."""
     levels = (row.astype(float) @ (0.299, 0.587, 0.114)).mean(axis=1)
     return "".join(SHADES[int(level) * len(SHADES) // 256] for level in levels)
 
 
 def _blocks(row: Cells) -> list[Segment]:
-    """Draw a line of cells in colours; cells side by side that are alike in one piece."""
+    """Draw a line of cells in colours; equal neighbours share a segment."""
     steps = row // STEPS * STEPS + STEPS // 2
     segments: list[Segment] = []
     last, count = (), 0
@@ -182,7 +182,7 @@ def _blocks(row: Cells) -> list[Segment]:
 
 @lru_cache(8192)
 def _style(red: int, green: int, blue: int, red_2: int, green_2: int, blue_2: int) -> Style:
-    """Return the style of a cell: the upper pixel is written, the lower one its background."""
+    """Return the style of a cell: the upper pixel is the foreground, the lower the background."""
     return Style(
         color=Color.from_rgb(red, green, blue), bgcolor=Color.from_rgb(red_2, green_2, blue_2)
     )

@@ -1,4 +1,4 @@
-"""The board of what was called: a line for each column of the deck, a dot for what was not."""
+"""The board of calls: a line for each column of the deck, a dot for each number not called."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from tangy_tui.ui.widgets.rows import Row, Span, draw
 
 LETTER = "B "
 CELL = 3
-"""Columns of the screen that a number takes."""
+"""Width of a number in cells."""
 
 
 class CallBoard(Inked):
-    """One line for each column; where not all numbers fit, only those that were called."""
+    """One line for each column of the deck; if not all numbers fit, only the called ones."""
 
     DEFAULT_CSS = """
     CallBoard { height: auto; }
@@ -28,10 +28,10 @@ class CallBoard(Inked):
         self._deck = deck
         self._called: tuple[int, ...] = ()
         if not deck.columns:
-            self.display = False  # nothing is called in this activity
+            self.display = False  # this activity has no calls
 
     def show(self, called: Sequence[int]) -> None:
-        """Show what was called so far."""
+        """Show the numbers called so far."""
         new = tuple(called)
         if new != self._called:
             self._called = new
@@ -39,7 +39,7 @@ class CallBoard(Inked):
             self.refresh()
 
     def get_content_height(self, container: object, viewport: object, width: int) -> int:
-        """Take a line for each column of the deck."""
+        """Return one line for each column of the deck."""
         return max(1, len(self._deck.columns))
 
     def render_line(self, y: int) -> Strip:
@@ -51,7 +51,7 @@ class CallBoard(Inked):
 
 
 def column_row(column: Column, called: Sequence[int], width: int) -> Row:
-    """Write a column of the deck as a line of so many cells: all numbers, or those called."""
+    """Format a column of the deck as a line of some cells: all numbers, or only the called ones."""
     numbers = list(range(column.low, column.high + 1))
     if len(numbers) * CELL + len(LETTER) > width:
         numbers = [n for n in numbers if n in called]

@@ -1,4 +1,4 @@
-"""A card as a few lines of text: what is marked, wrongly marked, missed, or could not be seen."""
+"""A card as lines of text: marked, wrongly marked, missed and hidden numbers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LEGEND: Row = (
 
 
 def card_lines(card: CardView) -> list[Row]:
-    """Write a card, one line for each of its rows; cards are as wide as high, or a bit wider."""
+    """Format a card, one line for each row; a card is square, or a little wider than high."""
     columns = max(1, ceil(sqrt(len(card.numbers))))
     lines: list[Row] = []
     for first in range(0, len(card.numbers), columns):
@@ -43,7 +43,7 @@ SEEN_LEGEND: Row = (
 
 
 def seen_card_lines(card: SeenCard, letters: Sequence[str]) -> list[Row]:
-    """Write a card as it was read, under its letters; what could not be seen is hatched."""
+    """Format a card as the robot read it, below its letters; hidden numbers are hatched."""
     lines: list[Row] = [tuple((_fill(letter, "  "), "strong") for letter in letters)]
     for first in range(0, len(card.numbers), card.columns):
         places = range(first, min(first + card.columns, len(card.numbers)))

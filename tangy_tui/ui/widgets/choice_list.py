@@ -1,4 +1,4 @@
-"""A panel with lines to choose among, and lines between them that are only to be read."""
+"""A list panel with selectable lines and others that are only text."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from tangy_tui.ui.widgets.rows import Row
 
 
 class ChoiceLine(NamedTuple):
-    """One line; `key` is what it stands for, None where it cannot be chosen.
+    """One line; `key` identifies its choice, None if it cannot be chosen.
 
-    Lines with the same key stand together and are chosen together.
+    Adjacent lines with the same key form one choice.
     """
 
     row: Row
@@ -23,17 +23,17 @@ class ChoiceLine(NamedTuple):
 
 
 Lines = Callable[[int, int], Sequence[ChoiceLine]]
-"""Writes the lines for a panel of so many columns and lines."""
+"""Formats the lines for a panel of some columns and lines."""
 
 
 class ChoiceList(Choosable):
-    """Lines with a cursor that is always on one of the choices, as long as there are any.
+    """A list whose cursor is always on one of the choices, if there are any.
 
-    The cursor stays on its key when the lines are written anew. `Moved` tells of every move.
+    The cursor keeps its key when the lines change. `Moved` reports every move.
     """
 
     class Moved(Message):
-        """The cursor is on another line."""
+        """The cursor moved to another line."""
 
         def __init__(self, choices: ChoiceList) -> None:
             super().__init__()
@@ -47,23 +47,23 @@ class ChoiceList(Choosable):
     def __init__(self, title: str, help: str, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self.border_title = title
-        self.HELP = help  # type: ignore[misc] # of each list its own
+        self.HELP = help  # type: ignore[misc] # one for each list
         self._write: Lines = lambda width, height: ()
         self.shown_keys: list[Hashable] = []
         self._at: dict[Hashable, range] = {}
 
     @property
     def chosen(self) -> Hashable | None:
-        """The key of the line that the cursor is on."""
+        """The key of the line at the cursor."""
         return None if self._cursor is None else self.shown_keys[self._cursor]
 
     def show(self, write: Lines, key: Hashable | None = None) -> None:
-        """Show other lines, the cursor on a key (None: where it was)."""
+        """Replace the lines, with the cursor on a key (None: unchanged)."""
         self._write = write
         self._lay_out(self.chosen if key is None else key)
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor, and tell of it."""
+        """Move the cursor, and post `Moved`."""
         before = self._cursor
         super().action_choose(by)
         if self._cursor != before:
@@ -86,7 +86,7 @@ class ChoiceList(Choosable):
             self._mark()
 
     def _kept(self, lines: Sequence[ChoiceLine]) -> Sequence[ChoiceLine]:
-        """Return the lines that are left by the filter, with those that stand above them."""
+        """Return the lines that match the filter, with the headings above them."""
         if not self.filter:
             return lines
         texts: dict[Hashable, str] = {}

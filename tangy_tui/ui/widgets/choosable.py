@@ -1,4 +1,4 @@
-"""Lines of which one can be chosen: what all lists with a cursor share."""
+"""The base of all lists with a cursor."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from tangy_tui.ui.widgets.filtering import Filtered
 
 
 class Choosable(Filtered, can_focus=True):
-    """A scrolled list with a cursor: up and down move it, Enter tells of what it is on.
+    """A scrollable list with a cursor: up and down move it, Enter chooses.
 
-    A list says how many choices it has (`_length`), which lines each stands on (`_places`), how
-    they are written (`_show`), and what is told of one (`_tell`).
+    Subclasses define the number of choices (`_length`), the lines of each (`_places`), how to draw
+    them (`_show`), and the message for a chosen one (`_tell`).
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -27,7 +27,8 @@ class Choosable(Filtered, can_focus=True):
         Binding("enter", "tell", "Tell of it", show=False),
     ]
     FOLLOWS: ClassVar[bool] = False
-    """Whether the cursor lets go past the end, so that the newest line is followed again."""
+    """Whether the cursor leaves the list at its end, so that the list follows the newest line
+    again."""
 
     def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
@@ -47,42 +48,42 @@ class Choosable(Filtered, can_focus=True):
         self._mark()
 
     def action_tell(self) -> None:
-        """Tell of what the cursor is on."""
+        """Choose the line at the cursor."""
         if self._cursor is not None:
             self._tell(self._cursor)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Lay out anew."""
+        """Lay out again."""
         self._show()
 
     def _filter_changed(self) -> None:
         self._show()
 
     def _length(self) -> int:
-        """Return how many choices there are."""
+        """Return the number of choices."""
         raise NotImplementedError
 
     def _places(self, index: int) -> range:
-        """Return the lines that a choice stands on."""
+        """Return the lines of a choice."""
         return range(index, index + 1)
 
     def _show(self) -> None:
-        """Write all lines, and mark them."""
+        """Draw all lines, and mark the cursor's."""
         raise NotImplementedError
 
     def _tell(self, index: int) -> None:
-        """Post the message of a choice."""
+        """Post the message for a chosen line."""
         raise NotImplementedError
 
     def _mark(self) -> None:
-        """Mark the lines that the cursor is on, and let them be seen."""
+        """Mark the lines at the cursor, and scroll to them."""
         places = range(0) if self._cursor is None else self._places(self._cursor)
         self._rows.mark(dict.fromkeys(places, "cursor"))
         if self._cursor is not None:
             self._reveal(self._cursor)
 
     def _reveal(self, index: int) -> None:
-        """Scroll as little as needed for a choice to be seen; the first brings the head along."""
+        """Scroll as little as needed to show a choice; with the first one also the heading."""
         places = self._places(index)
         if places:
             self._rows.show(0 if index == 0 else places[0])

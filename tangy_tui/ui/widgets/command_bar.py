@@ -1,4 +1,4 @@
-"""The command bar: one line to type a command in, with completion and history."""
+"""The command bar: an input line for commands, with completion and history."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from tangy_tui.ui.widgets.command_matches import (
 )
 
 CLOSED_SECONDS = 2.0
-"""How long the bar stays closed after a command if nobody says what became of it."""
+"""How long the bar stays closed after a command if the screen does not report the result."""
 
 ANSWERED_SECONDS = 0.2
-"""The same after a dialog has closed: the answer may bring up the next question."""
+"""The same after a dialog has closed, since the answer may open the next question."""
 
 MOST_HISTORY = 200
 LONGEST = 200
 
 
 class CommandInput(Input):
-    """The line itself. While it is `closed` it swallows what is typed."""
+    """The input line. While it is `closed` it discards keys."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("tab", "accept", "Complete the command"),
@@ -48,7 +48,7 @@ class CommandInput(Input):
     )
 
     closed = False
-    """Whether a command is being looked at, so that keys have nowhere to go."""
+    """Whether a command is being processed; keys are discarded meanwhile."""
 
     class Entered(Message):
         """A command was entered."""
@@ -58,7 +58,7 @@ class CommandInput(Input):
             self.text = text
 
     class Listed(Message):
-        """Tab was pressed: these commands fit the line, or can be carried out now."""
+        """Tab was pressed: these commands match the line, or can be carried out now."""
 
         def __init__(self, commands: tuple[str, ...]) -> None:
             super().__init__()
@@ -80,13 +80,14 @@ class CommandInput(Input):
         self._complete = complete
         self._sayable = sayable
         self._listed: tuple[str, ...] = ()
-        self._taken = -1  # which of those listed stands in the line
+        self._taken = -1  # the index of the listed command in the line
 
     async def _on_key(self, event: events.Key) -> None:
         """Handle each key before the next one.
 
-        Textual lets Enter and the arrows travel up to the app and back while the letters behind
-        them are inserted already; keys that arrive in one piece would change places.
+        Textual would send Enter and the arrows to the app and back while it already inserts the
+        letters
+        that follow; keys that arrive together would change order.
         """
         bindings = self._bindings.key_to_bindings.get(event.key, [])
         asks_for_help = event.key == "question_mark" and not self.value
@@ -116,7 +117,7 @@ class CommandInput(Input):
         self._at = len(self.history)
 
     def put(self, text: str) -> None:
-        """Replace what stands in the line, the cursor at its end."""
+        """Replace the text of the line, with the cursor at its end."""
         self.value = text
         self.cursor_position = len(text)
 
@@ -125,15 +126,15 @@ class CommandInput(Input):
         text = self.value.strip()
         if text:
             self.closed = True
-            self.forget_list()  # it is another situation then
+            self.forget_list()  # other commands apply afterwards
             self.remember(text)
             self.clear()
             self.post_message(self.Entered(text))
 
     def action_accept(self) -> None:
-        """Take the suggestion, or one after the other of what fits, or can be said now.
+        """Accept the suggestion; repeated, go through the matching or possible commands.
 
-        Over an empty line with nothing to list, go to the next widget.
+        On an empty line without commands to list, focus the next widget.
         """
         if self.listed:
             self._taken = (self._taken + 1) % len(self._listed)
@@ -147,27 +148,27 @@ class CommandInput(Input):
             self.post_message(self.Listed(fitting))
         elif listed := self._sayable():
             self._listed, self._taken = listed, -1
-            self.put("")  # blanks alone are an empty line
+            self.put("")  # a line of spaces counts as empty
             self.post_message(self.Listed(listed))
         else:
             self.screen.focus_next()
 
     @property
     def _standing(self) -> str:
-        """What of the list stands in the line, if nothing else was typed."""
+        """The listed command that is in the line, "" if the user typed anything else."""
         return self._listed[self._taken] if self._taken >= 0 else ""
 
     @property
     def listed(self) -> tuple[str, ...]:
-        """What was listed, while one chooses from it."""
+        """The listed commands, while the user chooses from them."""
         return self._listed if self.value == self._standing else ()
 
     def forget_list(self) -> None:
-        """List anew next time: something else was typed, or can be done."""
+        """Clear the list: other text was typed, or other commands apply."""
         self._listed, self._taken = (), -1
 
     def action_recall(self, by: int) -> None:
-        """Bring back a command from the history; after the last one, what was being typed."""
+        """Recall a command from the history; after the last one, the unfinished line."""
         if not self.history:
             return
         if self._at >= len(self.history):
@@ -177,20 +178,20 @@ class CommandInput(Input):
         self.put(self._draft if self._at == len(self.history) else self.history[self._at])
 
     def action_leave(self) -> None:
-        """Give the keys back to the screen."""
+        """Remove the focus from the line."""
         self.screen.set_focus(None)
 
 
 class CommandBar(Vertical):
-    """A line of matches and a line to type in: two lines high.
+    """A line of matches above an input line: two lines high.
 
-    While it does not have the keys it says which keys there are (`resting`).
+    Without the focus, its placeholder lists the available keys (`resting`).
 
-    `Given` carries a command. From that moment the bar is closed and swallows keys, so that what
-    is typed ahead neither answers a question that is about to come nor lands in the next command.
-    It opens again when the screen says what became of the command: `ready()` (done, or refused in
-    words elsewhere) or `restore(text)` (not understood, or answered with no), or by itself: soon
-    after a dialog above it has closed, or two seconds after a command that brought up none.
+    `Given` carries a command. From then on the bar is closed and discards keys, so that keys typed
+    ahead neither answer a coming question nor end up in the next command. It opens when the screen
+    reports the result: `ready()` (done, or refused elsewhere on the screen) or `restore(text)` (not
+    understood, or answered with no). Otherwise it opens by itself: soon after a dialog above it has
+    closed, or two seconds after a command that opened none.
     """
 
     DEFAULT_CSS = """
@@ -205,7 +206,7 @@ class CommandBar(Vertical):
     """
 
     class Given(Message):
-        """A command was given. `text` is what was typed, without spaces around it."""
+        """A command was given. `text` is the typed text without surrounding spaces."""
 
         def __init__(self, bar: CommandBar, text: str) -> None:
             super().__init__()
@@ -214,7 +215,7 @@ class CommandBar(Vertical):
 
         @property
         def control(self) -> CommandBar:
-            """The bar it was given in."""
+            """The bar that it was given in."""
             return self.bar
 
     def __init__(
@@ -228,16 +229,16 @@ class CommandBar(Vertical):
         letters: bool = True,
         id: str | None = "command",
     ) -> None:
-        """Make the bar.
+        """Create the bar.
 
         Args:
-            complete: gives the commands that fit what was typed.
-            sayable: gives the commands that can be carried out now.
-            placeholder: what stands in the empty line.
-            resting: the keys there are while the bar does not have them.
-            closed: take no keys until it is `ready`.
-            letters: letters are among these keys; otherwise they work while one types, too.
-            id: its id.
+            complete: returns the commands that match the typed text.
+            sayable: returns the commands that can be carried out now.
+            placeholder: the placeholder of the focused line.
+            resting: the placeholder without focus: the available keys.
+            closed: discard keys until `ready`.
+            letters: whether these keys include letters; others also work while typing.
+            id: the widget's id.
         """
         super().__init__(id=id)
         self._complete = complete
@@ -250,7 +251,7 @@ class CommandBar(Vertical):
         self.reopening: Timer | None = None
 
     def compose(self) -> ComposeResult:
-        """Lay out the matches above the line."""
+        """Lay out the matches above the input line."""
         yield self._matches
         with Horizontal():
             yield self._prompt
@@ -258,38 +259,38 @@ class CommandBar(Vertical):
 
     @property
     def text(self) -> str:
-        """What stands in the bar."""
+        """The text in the bar."""
         return self._input.value
 
     @property
     def closed(self) -> bool:
-        """Whether it swallows keys because a command is being looked at."""
+        """Whether it discards keys while a command is processed."""
         return self._input.closed
 
     def focus_input(self) -> None:
-        """Give the keys to the bar."""
+        """Focus the input line."""
         self._input.focus()
 
     @property
     def has_keys(self) -> bool:
-        """Whether keys go to the line."""
+        """Whether the input line has the focus."""
         return self._input.has_focus
 
     def type(self, character: str) -> None:
-        """Write a character that was typed elsewhere, and take the keys from then on."""
+        """Insert a character typed elsewhere, and take the focus."""
         if not self._input.closed:
             self._input.replace(character, *self._input.selection)
             self.screen.set_focus(self._input)  # at once: Enter may come with it
 
     @property
     def typing(self) -> bool:
-        """Whether somebody is typing in it: it has the keys, and there is a text."""
+        """Whether the user is typing: it has the focus, and text."""
         return self._input.has_focus and bool(self._input.value)
 
     def restore(self, text: str, *, focus: bool = True) -> None:
-        """Put a text back, selected: what is typed next replaces it, and an arrow keeps it.
+        """Put a text back, selected: typing replaces it, an arrow key keeps it.
 
-        Opens the bar, and gives it the keys.
+        Opens the bar, and focuses it.
         """
         self._input.put(clean(text)[:LONGEST])
         self._input.select_all()
@@ -299,11 +300,11 @@ class CommandBar(Vertical):
 
     @property
     def lists(self) -> bool:
-        """Whether it shows what can be said now."""
+        """Whether it lists the commands that can be carried out now."""
         return bool(self._input.listed)
 
     def drop(self) -> None:
-        """Empty the line and close the list, wherever the keys are."""
+        """Empty the line and close the list, without changing the focus."""
         self._input.forget_list()
         self._input.put("")
         self._show_above()
@@ -317,29 +318,29 @@ class CommandBar(Vertical):
             self._prompt.update("> ")
 
     def on_descendant_focus(self) -> None:
-        """Say that a command can be typed."""
+        """Show the placeholder for typing."""
         self._input.placeholder = self._texts[0]
         self._show_above()
 
     def on_descendant_blur(self) -> None:
-        """Say which letters are keys while the bar does not have them."""
+        """Show the available keys as the placeholder."""
         self._input.placeholder = self._texts[1]
         self._show_above()
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Show what fits."""
+        """Show the matches."""
         event.stop()
         if not self._input.listed:
             self._input.forget_list()
         self._show_above()
 
     def on_command_input_listed(self, event: CommandInput.Listed) -> None:
-        """Show what can be said now, or that nothing fits."""
+        """Show the possible commands, or that nothing matches."""
         event.stop()
         self._matches.show("", event.commands, "" if event.commands else NOTHING_FITS)
 
     def _show_above(self) -> None:
-        """Show what fits; over a text that was left there, the keys, which are keys again."""
+        """Show the matches; if text is left in a bar without focus, the keys."""
         typed = self._input.value
         if self._input.listed:
             self._matches.show(typed, self._input.listed)
@@ -349,18 +350,18 @@ class CommandBar(Vertical):
             self._matches.show(typed, self._complete(typed) if typed.strip() else ())
 
     def on_command_input_entered(self, event: CommandInput.Entered) -> None:
-        """Give the command."""
+        """Post the command."""
         event.stop()
         self._prompt.update("· ")
         self.reopening = self.set_timer(CLOSED_SECONDS, self.ready)
         self.post_message(self.Given(self, event.text))
 
     def on_mount(self) -> None:
-        """Watch for dialogs that close."""
+        """Watch for closing dialogs."""
         self.app.screen_change_signal.subscribe(self, self._screen_changed)
 
     def _screen_changed(self, screen: Screen[object]) -> None:
-        """Stay closed under a dialog for as long as it takes, and open soon after it."""
+        """Stay closed below a dialog, and open soon after it closes."""
         self._stop_waiting()
         if screen is self.screen and self._input.closed:
             self.reopening = self.set_timer(ANSWERED_SECONDS, self.ready)

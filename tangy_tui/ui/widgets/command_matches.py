@@ -1,4 +1,4 @@
-"""What fits what was typed: the ghost behind the cursor, and the line of commands above it."""
+"""Matches of the typed text: the suggestion after the cursor, and the line of commands above."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 Sayable = Callable[[], tuple[str, ...]]
-"""Gives the commands that can be carried out now, best first."""
+"""Returns the commands that can be carried out now, best first."""
 
 Complete = Callable[[str], tuple[str, ...]]
-"""Gives the commands that begin with (or are meant by) what was typed, likeliest first."""
+"""Returns the commands that start with the typed text, or that it means, likeliest first."""
 
 
 class CommandSuggester(Suggester):
-    """Shows the first match that goes on from what was typed."""
+    """Suggests the first match that continues the typed text."""
 
     def __init__(self, complete: Complete) -> None:
         super().__init__(use_cache=False, case_sensitive=True)
         self._complete = complete
 
     async def get_suggestion(self, value: str) -> str | None:
-        """Return the whole line with the first command that goes on from it."""
+        """Return the line completed to the first command that continues it."""
         matches = self._complete(value) if value.strip() else ()
         return next((value + m[len(value) :] for m in matches if goes_on(value, m)), None)
 
 
 def goes_on(value: str, match: str) -> bool:
-    """Say whether a command goes on from what was typed."""
+    """Return whether a command continues the typed text."""
     return len(match) > len(value) and match.lower().startswith(value.lower())
 
 
 class CommandMatches(Inked):
-    """One line with the commands that fit what was typed so far, or with the keys there are."""
+    """One line with the commands that match the typed text, or with the available keys."""
 
     DEFAULT_CSS = """
     CommandMatches { height: 1; padding: 0 0 0 2; }
@@ -51,7 +51,7 @@ class CommandMatches(Inked):
         self._keys = ""
 
     def show(self, typed: str, matches: tuple[str, ...], keys: str = "") -> None:
-        """Show these matches, what was typed of them written strongly; or, if given, the keys."""
+        """Show these matches, with the typed part highlighted; or the keys, if given."""
         if (typed, matches, keys) != (self._typed, self._matches, self._keys):
             self._typed = typed
             self._matches = matches

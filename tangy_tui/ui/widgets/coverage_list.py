@@ -1,4 +1,4 @@
-"""What Tangy has been shown and what not: the missing situations in plain words, then the seen."""
+"""The coverage of the demonstrations: missing situations first, then the covered ones."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from tangy_tui.ui.widgets.wrapping import wrap
 
 
 class CoverageList(RowView, can_focus=True):
-    """First what nobody has shown yet, a sentence each; below it, dimmed, what was seen how often.
+    """Lists the situations not demonstrated yet; below them, dimmed, the counts of the others.
 
-    The title counts them, so that a glance at the frame is enough.
+    The title has the totals.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -38,13 +38,13 @@ class CoverageList(RowView, can_focus=True):
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """What nobody has shown yet, in words."""
+        """The situations not demonstrated yet, in words."""
         return self._missing
 
     def show(
         self, missing: Sequence[str], seen: Sequence[tuple[str, int]], here: int | None = None
     ) -> None:
-        """Show what is missing, what was seen how often, and how much of it in the present game."""
+        """Show the missing situations, the counts of the others, and the number in this game."""
         new = tuple(missing), tuple(seen)
         count, of = len(seen), len(missing) + len(seen)
         game = "" if here is None else f", {here} in this game"
@@ -55,7 +55,7 @@ class CoverageList(RowView, can_focus=True):
         self._draw()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Wrap anew."""
+        """Wrap again."""
         self._draw()
 
     def _draw(self) -> None:
@@ -81,7 +81,7 @@ class CoverageList(RowView, can_focus=True):
 
 @lru_cache(256)
 def _sentence(mark: str, text: str, ink: str, width: int) -> tuple[Row, ...]:
-    """Write a sentence on as many lines as it needs, the mark before the first."""
+    """Wrap a sentence, with the mark before its first line."""
     return tuple(
         ((mark if n == 0 else "  ", "good" if ink == "good" else "warn"), (line, ink))
         for n, line in enumerate(wrap(text, width - 2))

@@ -1,4 +1,4 @@
-"""The demonstrations as a table: who showed it and when, how much it shows, what is to be known."""
+"""The demonstrations as a table: teacher, date, steps, coverage, state and notes."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from tangy_tui.ui.widgets.rows import Row, fit, shorten
 
 WIDEST_TEACHER = 12
 BESIDE = 43
-"""Columns of a line beside teacher, state and notes."""
+"""The width of all columns but teacher, state and notes."""
 
 SHORTEST_NOTES = 12
-"""Columns below which the notes stand under the table alone."""
+"""The least width of the notes; if they do not fit, they are shown only below the table."""
 
 
 class DemonstrationList(ChoiceList):
-    """One line for each demonstration, by its id; those that are marked have a star."""
+    """One line for each demonstration, by its id; marked ones have a star."""
 
     class Chosen(Message):
         """A demonstration was chosen with Enter."""
@@ -45,7 +45,7 @@ class DemonstrationList(ChoiceList):
         )
 
     def fill(self, rows: Sequence[ListRow], marked: Collection[str]) -> None:
-        """Show these demonstrations; the cursor stays on the one that it is on."""
+        """Show these demonstrations; the cursor stays on its demonstration."""
         kept, stars = tuple(rows), frozenset(marked)
         self.show(lambda width, height: demonstration_lines(kept, stars, width))
 
@@ -56,7 +56,7 @@ class DemonstrationList(ChoiceList):
 def demonstration_lines(
     rows: Sequence[ListRow], marked: Collection[str], width: int
 ) -> list[ChoiceLine]:
-    """Write the table for so many columns; with no demonstrations, how to begin."""
+    """Format the table for a width in cells; without demonstrations, tell how to begin."""
     if not rows:
         return [ChoiceLine(((NONE_TO_LIST, "dim"),))]
     teacher = min(WIDEST_TEACHER, max(7, *(cell_len(clean(row.teacher)) for row in rows)))

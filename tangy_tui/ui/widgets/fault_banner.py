@@ -1,6 +1,6 @@
-"""The banner of a fault: under the status line, there only while there is a fault.
+"""The banner of a fault, below the status line; hidden while there is no fault.
 
-While Tangy asks somebody for help, its words stand there in full, whatever room there is below.
+While Tangy asks a person for help, the banner shows its words in full.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from tangy_tui.ui.widgets.rows import draw, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
 SEEN, ESC_SEEN = "  [{acknowledge}] seen", "  [esc {acknowledge}] seen"
-"""The key that says that a fault was seen; and while keys are letters of a line."""
+"""The key that acknowledges a fault; the second while an input line takes letters."""
 
 MOST_LINES = 4
-"""Lines from which the screen gives no more room to the banner."""
+"""From this number of lines on, the screen gives the banner no more room."""
 
 
 class FaultBanner(Inked):
-    """Says what is wrong and what is done about it, with the key that says it was seen.
+    """Tells the fault and its recovery, with the key that acknowledges it.
 
-    The screen that it is on has the class `-banner-2` while it has two lines, and so on.
+    Its screen gets the class `-banner-2` while the banner has two lines, and so on.
     """
 
     DEFAULT_CSS = """
@@ -45,12 +45,12 @@ class FaultBanner(Inked):
 
     @property
     def words(self) -> str:
-        """What it says, at its longest; nothing while there is no fault."""
+        """Its text in the longest form, "" if there is no fault."""
         return self._forms[0] if self._forms else ""
 
     @property
     def said(self) -> str:
-        """What Tangy asks somebody for."""
+        """Tangy's request for help."""
         return self._said
 
     def show(
@@ -62,14 +62,14 @@ class FaultBanner(Inked):
         critical: bool = False,
         key: str = "",
     ) -> None:
-        """Say this; without a form go away.
+        """Show a fault; without a form, hide the banner.
 
         Args:
-            forms: the same from its longest to its shortest form.
-            said: what Tangy asks somebody for, which stands below.
-            more: how many other faults there are.
-            critical: whether it halts the robot.
-            key: which key takes it away.
+            forms: the text, from its longest to its shortest form.
+            said: Tangy's request for help, shown below.
+            more: the number of other faults.
+            critical: whether the fault halts the robot.
+            key: the key that acknowledges it.
         """
         ink = "bad" if critical else "warn"
         new = (tuple(clean(form) for form in forms), clean(said), more, ink, key)
@@ -78,12 +78,12 @@ class FaultBanner(Inked):
             self._lay_out()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Give the words the lines that they need."""
+        """Wrap again."""
         self._lay_out()
 
     def _lay_out(self) -> None:
         there = bool(self._forms)
-        width = max(10, self.app.size.width - 2)  # while it is hidden it has none itself
+        width = max(10, self.app.size.width - 2)  # its own width is 0 while it is hidden
         self._lines = wrap(f"“{self._said}”", width) if self._said and there else []
         self.set_class(there, "-there")
         lines = 1 + len(self._lines)
@@ -93,7 +93,7 @@ class FaultBanner(Inked):
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
-        """Draw a line; what is to be done with it stands at the end of the first."""
+        """Draw a line; the first ends with the key."""
         width = self.size.width
         if y:
             text = self._lines[y - 1] if y <= len(self._lines) else ""

@@ -1,4 +1,4 @@
-"""The faults of a game as a list to choose in, filtered by words."""
+"""The faults of a game as a list, filtered by words."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ WIDEST_NAME = 32
 TIME, STEP, STATE, SHORT_STATE = 7, 5, 16, 7
 SHORTEST_NAME = 10
 SHORTEST_LAST = 14
-"""Columns that what happened last is given before less important columns."""
+"""The least width of the last event; narrower lists drop other columns for it."""
 
 HINT = "enter tells   / finds"
 
 
 class FaultList(ChoiceList):
-    """One line for each fault; `/` keeps those in which all the words occur, esc all of them."""
+    """One line for each fault; `/` filters by words, esc shows all."""
 
     class Chosen(Message):
         """A fault was chosen with Enter."""
@@ -66,7 +66,7 @@ class FaultList(ChoiceList):
         self._write_all()
 
     def _kept(self, lines: Sequence[ChoiceLine]) -> Sequence[ChoiceLine]:
-        return lines  # they are filtered by more than is seen of them
+        return lines  # already filtered, also by text that is not shown
 
     def _hint(self) -> str:
         return HINT if self._faults else ""
@@ -87,7 +87,7 @@ class FaultList(ChoiceList):
 
 
 class Columns(NamedTuple):
-    """How wide the columns of a list are; a column without width is left out."""
+    """The widths of the columns of a list; a column of width 0 is left out."""
 
     time: int
     step: int
@@ -97,11 +97,11 @@ class Columns(NamedTuple):
 
 
 def columns_for(width: int, name: int) -> Columns:
-    """Give out so many columns: what a fault is and what was done last, then the others.
+    """Divide the width: name and last event first, then the other columns.
 
     Args:
-        width: columns that there are.
-        name: the columns of the longest name.
+        width: the available width in cells.
+        name: the width of the longest name in cells.
     """
     name = min(WIDEST_NAME, name)
     for time, step, state in (
@@ -118,7 +118,7 @@ def columns_for(width: int, name: int) -> Columns:
 
 
 def fault_list_lines(faults: Sequence[Fault], width: int, none: str) -> list[ChoiceLine]:
-    """Write the list for so many columns."""
+    """Format the list for a width in cells."""
     if not faults:
         return [ChoiceLine(((none, "dim"),))]
     columns = columns_for(width, max(cell_len(clean(fault.name)) for fault in faults))

@@ -1,7 +1,7 @@
-"""Filtering a list: `/` begins, words are typed at its foot, Enter keeps them, esc shows all.
+"""Filtering of lists: `/` starts, words appear at the foot, Enter keeps them, esc shows all.
 
-In a list of which letters are no keys (`LETTERS_FILTER`) they filter at once; Enter is a key there,
-and the typed word stop still stops the robot.
+A list without letter keys (`LETTERS_FILTER`) is filtered by typing letters, and Enter stays a
+key. The typed word stop still stops the robot.
 """
 
 from __future__ import annotations
@@ -15,42 +15,42 @@ from tangy_tui.ui.typed_stop import WORD
 from tangy_tui.ui.widgets.rows import RowView
 
 LONGEST = 40
-"""Characters of a filter."""
+"""The longest filter in characters."""
 
 
 class Filtered(RowView):
-    """A list of which only the lines are shown in which all the typed words occur.
+    """A list that shows only the lines that contain all filter words.
 
-    A list says what it shows while it is filtered (`_show`, by `_has`), and what stands at its
-    foot while it is not (`_hint`).
+    Subclasses define how the list is redrawn (`_show`, using `_has`), and the foot of an unfiltered
+    list (`_hint`).
     """
 
     LETTERS_FILTER: ClassVar[bool] = False
 
     filtering = False
-    """Whether words are being typed, and nothing else."""
+    """Whether keys are taken as filter words only."""
 
     filter = ""
-    """The words by which it is filtered."""
+    """The filter words."""
 
     @property
     def filtered(self) -> bool:
-        """Whether esc has something to take back."""
+        """Whether esc clears a filter."""
         return self.filtering or bool(self.filter)
 
     @property
     def writes(self) -> bool:
-        """Whether the next letter is one of a word, and cannot be one of a stop.
+        """Whether the next letter belongs to a filter word, and cannot be part of a typed stop.
 
-        Where letters filter, "stop" stops, but "Christopher" does not.
+        If letters filter, "stop" stops, but "Christopher" does not.
         """
         word = self.filter.casefold().rpartition(" ")[2]
         return self.filtering or (self.LETTERS_FILTER and not WORD.startswith(word))
 
     def begin_filter(self) -> None:
-        """Begin to type words."""
+        """Start to type filter words."""
         self.filtering = True
-        self.screen.set_focus(self)  # at once: words may come with the key
+        self.screen.set_focus(self)  # at once: words may arrive with the key
         self._refilter()
 
     def unfilter(self) -> None:
@@ -59,13 +59,13 @@ class Filtered(RowView):
         self._refilter()
 
     def on_key(self, event: events.Key) -> None:
-        """While words are typed, letters are letters and no keys; esc takes the words back."""
+        """Take letters as filter words while filtering; esc clears the filter."""
         if event.key == "escape" and self.filtered:
             self.filtering, self.filter = False, ""
         elif not self.filtering and not (self.LETTERS_FILTER and self._filters(event)):
             return
         elif event.key == "slash" and not self.filter:
-            pass  # it begins, as in every list
+            pass  # it starts the filter, as in every list
         elif event.key == "enter":
             self.filtering = False
         elif event.key == "backspace":
@@ -79,14 +79,14 @@ class Filtered(RowView):
         self._refilter()
 
     def _filters(self, event: events.Key) -> bool:
-        """Say whether a key filters by itself: a letter, a digit, or one within the words."""
+        """Return whether a key edits the filter: a letter, a digit, backspace or space."""
         typed = event.character or ""
         if self.filter and event.key in ("backspace", "space"):
             return True
         return event.is_printable and (typed.isalnum() or event.key == "slash")
 
     def on_paste(self, event: events.Paste) -> None:
-        """Take pasted words while words are typed."""
+        """Append pasted text to the filter."""
         if self.filtering or self.LETTERS_FILTER:
             event.stop()
             pasted = " ".join(event.text.split())
@@ -94,13 +94,13 @@ class Filtered(RowView):
             self._refilter()
 
     def on_blur(self) -> None:
-        """Type no further when the keys go elsewhere."""
+        """Stop taking words when the list loses the focus."""
         if self.filtering:
             self.filtering = False
             self._refilter()
 
     def _has(self, text: str) -> bool:
-        """Say whether a line has all the words."""
+        """Return whether a line contains all filter words."""
         return not self.filter or all(w in text.lower() for w in self.filter.lower().split())
 
     def _refilter(self) -> None:
@@ -108,15 +108,15 @@ class Filtered(RowView):
         self._say_filter()
 
     def _say_filter(self, count: str = "") -> None:
-        """Say at the foot what is filtered by, and how many are left."""
+        """Show the filter and the number of matches at the foot."""
         typed = f"/{clean(self.filter)}{'_' if self.filtering else ''}" if self.filtered else ""
         foot = f"{typed}  {count}".strip() if typed else self._hint()
         self.border_subtitle = foot.replace("[", "\\[")
 
     def _hint(self) -> str:
-        """Return what stands at the foot of the whole list."""
+        """Return the foot of the unfiltered list."""
         return ""
 
     def _filter_changed(self) -> None:
-        """Show what is left."""
+        """Redraw after a change of the filter."""
         raise NotImplementedError

@@ -1,4 +1,4 @@
-"""Inks: the styles that widgets draw their lines in, named after what they say (see `themes`)."""
+"""Inks: the text styles of the widgets, named after their meaning (see `themes`)."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ from rich.style import Style
 from textual.widget import Widget
 
 SHAPES = ("curve",)
-"""Inks of text that is a picture."""
+"""Inks of text that forms a picture."""
 
 
 class Inked(Widget):
-    """A widget that draws in inks. They are components of the screen it is on.
+    """A widget that draws with inks, which are component classes of its screen.
 
-    Textual works out the style of each component of each widget whenever a class changes: as
-    components of the widgets, inks took a fifth of the time of all screens.
+    Textual recomputes the style of each component class of each widget whenever a class changes: as
+    component classes of the widgets, inks took a fifth of the time of all screens.
     """
 
     _inks: dict[tuple[str, str], Style] | None = None
 
     def ink(self, name: str, over: str = "") -> Style:
-        """Return the style of an ink here, on a row that is marked `over` (cursor, now)."""
+        """Return the style of an ink, on a row that is marked `over` (cursor, now)."""
         if self._inks is None:
             self._inks = {}
         if (style := self._inks.get((name, over))) is None:
@@ -28,10 +28,10 @@ class Inked(Widget):
 
     def _mixed(self, name: str, over: str) -> Style:
         style = Style(bgcolor=self.rich_style.bgcolor)
-        if name != "blank":  # a foreground would be written to the terminal for nothing
+        if name != "blank":  # a foreground would be sent to the terminal for nothing
             style += self._component(name)
         if name in SHAPES and self.app.native_ansi_color:
-            over = ""  # a picture is not to be reversed
+            over = ""  # do not reverse a picture
         if over:
             mark = self._component(over)
             style += Style(
@@ -46,6 +46,6 @@ class Inked(Widget):
         return self.screen.get_component_rich_style(f"ink--{name}", partial=True)
 
     def notify_style_update(self) -> None:
-        """Draw in the new colours."""
+        """Redraw in the new colours."""
         super().notify_style_update()
         self._inks = None

@@ -1,4 +1,4 @@
-"""What happened, in sentences: the newest at the end, bounded, following the end."""
+"""The log of the game in sentences: bounded, the newest last, scrolled to the end."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from tangy_tui.ui.widgets.wrapping import wrap
 Kind = Literal["text", "dim", "good", "warn", "bad"]
 
 MARKS: dict[str, str] = {"text": "  ", "dim": "  ", "good": "✓ ", "warn": "! ", "bad": "✗ "}
-"""What stands before a sentence, so that no kind is told by colour alone."""
+"""The mark before a sentence, so that its kind does not depend on colour alone."""
 
 
 class LogView(Filtered, can_focus=True):
-    """Sentences with a mark before them, wrapped to the width.
+    """Sentences, each with a mark, wrapped to the width.
 
-    It follows the newest, unless it is a list to be read from its beginning (`follow=False`).
+    Scrolls to the newest, unless it is meant to be read from the start (`follow=False`).
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -49,11 +49,11 @@ class LogView(Filtered, can_focus=True):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What stands in the log."""
+        """The sentences in the log."""
         return tuple(text for text, _ in self._lines)
 
     def write(self, sentence: str, kind: Kind = "text") -> None:
-        """Add a sentence; the view follows unless it was scrolled back."""
+        """Append a sentence; the view scrolls to it unless the user has scrolled back."""
         follow = self._at_end
         self._lines.append((clean(sentence), kind))
         self._show(follow)
@@ -64,11 +64,11 @@ class LogView(Filtered, can_focus=True):
         self._show(True)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Wrap anew, at the end where the end was shown before."""
+        """Wrap again; stay at the end if the end was shown."""
         self._show(self._at_end)
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Take note whether the end (in rows) is shown: the size of now is not known later."""
+        """Remember whether the end (in rows) is shown: the present size is not known later."""
         super().watch_scroll_y(old_value, new_value)
         self._at_end = self.is_vertical_scroll_end
 
@@ -90,7 +90,7 @@ class LogView(Filtered, can_focus=True):
 
 @lru_cache(1_024)
 def _rows(text: str, kind: Kind, width: int) -> tuple[Row, ...]:
-    """Write one sentence on as many lines as it needs, the mark before the first."""
+    """Wrap a sentence, with the mark before its first line."""
     return tuple(
         ((MARKS[kind] if n == 0 else "  ", kind), (line, kind))
         for n, line in enumerate(wrap(text, width - 2))

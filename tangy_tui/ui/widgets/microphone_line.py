@@ -1,4 +1,4 @@
-"""The microphone on one line: what it does, how loud it is, the words so far, and what is wrong."""
+"""The microphone on one line: its state, level, words so far, and trouble."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from tangy_hw.audio.meter import SoundTrouble
 
 HERTZ = 10
-"""How often the line may be drawn in a second."""
+"""The highest frame rate of the line, in Hz."""
 
 LOOKS = 5
-"""Every so many drawings it is asked whether something is wrong."""
+"""Trouble is checked once in this many frames."""
 
 BAR = 12  # cells
 GAP = 3  # cells between level and text
 OPENS = ("listening", "speaking")
-"""The states in which the microphone is open, so that level, words and trouble may change."""
+"""The states with an open microphone, in which level, words and trouble may change."""
 
 STATES = {
     "starting": "getting ready ...",
@@ -38,38 +38,38 @@ STATES = {
     "over": "closed",
 }
 MARKS = {"listening": "●", "speaking": "●", "off": "○", "shut": "○", "over": "○", "thinking": "○"}
-"""What stands before the state: a filled dot while the microphone is open."""
+"""The mark before the state: a filled dot while the microphone is open."""
 RECORDING = "◉ rec"
 HINTS = {
     "off": "then say what Tangy should do",
     "listening": "{key} ends it",
     "speaking": "{key} ends it",
 }
-"""What push-to-talk adds, while there are no words yet."""
+"""The hint of push-to-talk while there are no words yet."""
 
 
 class Level(Protocol):
-    """How loud it is."""
+    """A sound level."""
 
     @property
     def level(self) -> float:
-        """The loudness, from 0 to 1."""
+        """The level, from 0 to 1."""
 
 
 class Microphone(Protocol):
-    """What the line shows; see `Ears`."""
+    """The interface to the microphone; see `Ears`."""
 
     @property
     def live(self) -> bool:
-        """Whether somebody speaks now, rather than on a recording."""
+        """Whether the sound is live, rather than a recording."""
 
     @property
     def hands_free(self) -> bool:
-        """Whether it is open all the time."""
+        """Whether the microphone is always open."""
 
     @property
     def state(self) -> str:
-        """What it is doing."""
+        """Its state."""
 
     @property
     def words(self) -> str:
@@ -77,22 +77,23 @@ class Microphone(Protocol):
 
     @property
     def trouble(self) -> SoundTrouble | None:
-        """The fault; None if there is none."""
+        """The trouble with the sound, None if there is none."""
 
     @property
     def records(self) -> bool:
-        """Whether what is said is kept."""
+        """Whether the sound is recorded."""
 
     @property
     def meter(self) -> Level:
-        """How loud it is."""
+        """The level meter."""
 
 
 class MicrophoneLine(Inked):
-    """One line; while the microphone is not open, it costs nothing.
+    """One line; costs nothing while the microphone is closed.
 
-    `look` is to be called when state or words may have changed. Level and trouble are looked at
-    ten times a second at most, and drawn when they are others.
+    Call `look` when the state or the words may have changed. Level and trouble are polled at most
+    ten
+    times a second, and redrawn when they change.
     """
 
     DEFAULT_CSS = """
@@ -102,7 +103,7 @@ class MicrophoneLine(Inked):
     def __init__(
         self, ears: Microphone, expects: Callable[[], str] = str, *, id: str | None = "microphone"
     ) -> None:
-        """Make the line; `expects` says what alone is listened for ("": commands)."""
+        """Create the line; `expects` names what alone the recogniser listens for ("": commands)."""
         super().__init__(id=id)
         self.ears = ears
         self._expects = expects
@@ -113,20 +114,20 @@ class MicrophoneLine(Inked):
 
     @property
     def text(self) -> str:
-        """What it says."""
+        """Its text."""
         return "".join(text for text, _ in self._row)
 
     def on_mount(self) -> None:
-        """Prepare to follow the level."""
+        """Create the paused timer that follows the level."""
         self.timer = self.set_interval(1 / HERTZ, self.tick, pause=True)
         self.look()
 
     def on_resize(self) -> None:
-        """Use the room there is."""
+        """Redraw at the new size."""
         self._show()
 
     def look(self) -> None:
-        """Show what has changed; words that come while it is open are drawn with the level."""
+        """Show the changes; while the microphone is open, words are drawn with the level."""
         if self.timer is None:
             return
         follows = self.ears.live and self.ears.state in OPENS
@@ -143,7 +144,7 @@ class MicrophoneLine(Inked):
         return draw(self, self._row, self.size.width)
 
     def tick(self) -> None:
-        """Look at level and words, and now and then at what is wrong."""
+        """Redraw level and words, and check for trouble from time to time."""
         if self.ticks % LOOKS == 0:
             trouble = self.ears.trouble
             self._trouble = "" if trouble is None else trouble_words(trouble)
@@ -159,7 +160,7 @@ class MicrophoneLine(Inked):
 
     @property
     def _key(self) -> str:
-        """The key that is pushed to talk: in a line to type in, a letter is a letter."""
+        """The push-to-talk key: if an input line takes letters, a control key."""
         from textual.widgets import Input
 
         typing = isinstance(self.screen.focused, Input)
@@ -188,7 +189,7 @@ class MicrophoneLine(Inked):
         if self._trouble:
             trouble = f"! {self._trouble}"
             while row and _cells(row) + GAP + cell_len(trouble) > width:
-                row.pop()  # what is wrong is to be read whole
+                row.pop()  # trouble is shown in full
             gap = " " * GAP if row else ""
             return (*row, (f"{gap}{shorten(trouble, width)}", "warn"))
         left = width - _cells(row) - GAP
@@ -205,7 +206,7 @@ def _cells(row: list[Span]) -> int:
 
 
 def _end(words: str, width: int) -> str:
-    """Return the end of words that are too long: what is being said now is looked for."""
+    """Cut words to their end, which is being said now."""
     if cell_len(words) <= width:
         return words
     kept = words

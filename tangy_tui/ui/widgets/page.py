@@ -1,4 +1,4 @@
-"""A page to read in which some lines can be chosen, as links are in a text browser."""
+"""A page of text with lines to choose, like the links in a text browser."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from tangy_tui.ui.widgets.rows import Row
 from tangy_tui.ui.widgets.wrapping import wrap
 
 PAGE = 10
-"""Steps of the cursor that are a page."""
+"""Cursor steps of a page up or down."""
 
 
 class PageLine(NamedTuple):
-    """One line, and the choice that it belongs to (from 0), if it does to any."""
+    """One line, and the index of its choice, if it belongs to one."""
 
     row: Row = ()
     choice: int | None = None
 
 
 Write = Callable[[int], Sequence[PageLine]]
-"""Writes the page for so many columns; the choices come in order."""
+"""Formats the page for a width in cells; the choices come in order."""
 
 
 def paragraph(text: str, width: int, ink: str = "text") -> list[PageLine]:
-    """Write a sentence on as many lines as it needs."""
+    """Wrap a sentence."""
     return [PageLine(((line, ink),)) for line in wrap(text, width)]
 
 
 def heading(text: str) -> list[PageLine]:
-    """Write a heading with an empty line above it."""
+    """Format a heading with an empty line above it."""
     return [PageLine(), PageLine(((text, "robot"),))]
 
 
@@ -43,10 +43,10 @@ def _text(line: PageLine) -> str:
 
 
 class Page(Choosable):
-    """Up and down go to the next choice, and scroll where it is out of sight; Enter tells of it."""
+    """Up and down go to the next choice, or scroll if it is out of sight; Enter chooses it."""
 
     class Chosen(Message):
-        """A line was chosen with Enter; `index` says which of the choices."""
+        """A line was chosen with Enter; `index` is that of the choice."""
 
         def __init__(self, page: Page, index: int) -> None:
             super().__init__()
@@ -63,28 +63,28 @@ class Page(Choosable):
     ) -> None:
         super().__init__(id=id, classes=classes)
         self._write = write
-        self._lines: dict[int, range] = {}  # of each choice that is shown, by its place
-        self._choices: list[int] = []  # which they are
+        self._lines: dict[int, range] = {}  # of each choice that is shown, by its position
+        self._choices: list[int] = []  # their indices
 
     @property
     def chosen(self) -> int | None:
-        """The choice that the cursor is on."""
+        """The index of the choice at the cursor."""
         if self._cursor is None or self._cursor >= len(self._choices):
             return None
         return self._choices[self._cursor]
 
     def show(self, write: Write, cursor: int | None = 0) -> None:
-        """Show another page, the cursor on one of its choices."""
+        """Replace the page, with the cursor on one of its choices."""
         self._write = write
         self._cursor = cursor
         self._show()
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        """Ask for as many lines as there are."""
+        """Return the number of lines."""
         return len(self._write(width)) if self._write is not None and width > 0 else 0
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor to a choice that is in sight; otherwise scroll towards it."""
+        """Move the cursor to a choice in sight; otherwise scroll towards it."""
         if abs(by) > PAGE:
             super().action_choose(by)
             self.scroll_to(y=0 if by < 0 else self.max_scroll_y, animate=False, force=True)
@@ -102,7 +102,7 @@ class Page(Choosable):
                 self._follow(step)
 
     def _follow(self, step: int) -> None:
-        """Bring the cursor along after a page was turned."""
+        """Move the cursor into sight after a page up or down."""
         top = self.scroll_offset.y
         seen = range(top, top + self._rows.height)
         found = [n for n, places in self._lines.items() if places[0] in seen]
@@ -121,7 +121,7 @@ class Page(Choosable):
             self.post_message(self.Chosen(self, self._choices[index]))
 
     def _kept(self, lines: Sequence[PageLine]) -> Sequence[PageLine]:
-        """Return the lines that are left by the filter; those of one choice stay together."""
+        """Return the lines that match the filter; lines of one choice stay together."""
         if not self.filter:
             return lines
         texts: dict[int, str] = {}

@@ -1,4 +1,4 @@
-"""The learnt policy as a table (Table II): in which situation Tangy does what, and how surely."""
+"""The learnt policy as a table (Table II): situation, behaviour, and share of votes."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row, Span, fit
 
 UNSURE = 0.7
-"""A share of the votes below this one is written as a warning."""
+"""A smaller share of votes is shown as a warning."""
 
 VOTES = (10, 5, 0)
-"""Columns that the bar of the votes may have, the widest that fits."""
+"""Widths of the bar of votes, of which the widest that fits is used."""
 
 EIGHTHS = " ▏▎▍▌▋▊▉█"
 
 
 @dataclass(frozen=True, slots=True)
 class PolicyRow:
-    """One situation: what is done there, the share of votes (0 to 1), and how often it was seen.
+    """One situation: its behaviour, share of votes (0 to 1), and number of demonstrations.
 
-    `note` is a word on it, such as "never shown"; it is written as a warning.
+    `note` is a remark such as "never shown", written as a warning.
     """
 
     situation: str
@@ -38,17 +38,17 @@ class PolicyRow:
 
 
 def bar(share: float, width: int) -> str:
-    """Draw a share as a bar that is full at 1."""
+    """Draw a share of 0 to 1 as a bar."""
     eighths = round(min(1.0, max(0.0, share)) * width * 8)
     full, rest = divmod(eighths, 8)
     return ("█" * full + (EIGHTHS[rest] if rest else "")).ljust(width)
 
 
 class PolicyTable(Choosable):
-    """Rows of situation and behaviour; up and down choose one, Enter tells of it.
+    """Rows of situation and behaviour; up and down move the cursor, Enter chooses.
 
-    `highlight` marks the row that is in use at the moment. Where there is no room for a situation
-    and its behaviour side by side they stand one under the other.
+    `highlight` marks the row of the present situation. If the width does not suffice, the behaviour
+    is on a second line below its situation.
     """
 
     HELP = (
@@ -67,7 +67,7 @@ class PolicyTable(Choosable):
 
         @property
         def control(self) -> PolicyTable:
-            """The table it was chosen in."""
+            """The table that it was chosen in."""
             return self.table
 
     def __init__(
@@ -83,29 +83,29 @@ class PolicyTable(Choosable):
         self._empty = clean(empty)
         self.marked: int | None = None
         self._stacked = False
-        self._seen: list[int] = []  # the rows that are shown, by their places
+        self._seen: list[int] = []  # the indices of the rows that are shown
 
     @property
     def rows(self) -> tuple[PolicyRow, ...]:
-        """What is shown."""
+        """All rows."""
         return self._table
 
     @property
     def chosen(self) -> int | None:
-        """The row that the cursor is on."""
+        """The index of the row at the cursor."""
         if self._cursor is None or self._cursor >= len(self._seen):
             return None
         return self._seen[self._cursor]
 
     def show(self, rows: Sequence[PolicyRow], highlight: str | None = None) -> None:
-        """Show these rows; `highlight` names the situation that is in use."""
+        """Replace the rows; `highlight` names the present situation."""
         self._table = tuple(rows)
         self._cursor = None
         self.marked = self._index(highlight)
         self._show()
 
     def highlight(self, situation: str | None) -> None:
-        """Mark the row that is in use; None marks none."""
+        """Mark the row of the present situation; None marks none."""
         self.marked = self._index(situation)
         self._mark()
 
@@ -191,19 +191,19 @@ class PolicyTable(Choosable):
             self._reveal(seen)
 
     def _places(self, index: int) -> range:
-        """Return the lines that a row of the table stands on."""
+        """Return the lines of a row of the table."""
         if self._stacked:
             return range(2 * index, 2 * index + 2)
         return range(index + 1, index + 2)
 
 
 def _worth(columns: int) -> int:
-    """Give a note no room rather than too little to be read; a mark then stands for it."""
+    """Return the width of a note, 0 if it would be too narrow to read; a mark then replaces it."""
     return columns if columns >= 8 else 0
 
 
 def _decision(row: PolicyRow, behaviour: int, votes: int, note: int) -> tuple[Span, ...]:
-    """Write what is done, how surely, how often it was seen, and the note on it."""
+    """Format behaviour, votes, number of demonstrations, and note."""
     sure = row.share >= UNSURE and row.seen > 0
     share = "1.0" if row.share >= 0.995 else f"{row.share:.2f}"[1:]
     spans: list[Span] = [

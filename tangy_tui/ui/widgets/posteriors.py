@@ -1,4 +1,4 @@
-"""What is believed of each person (Eq. 1): a small curve for every persuasive strategy."""
+"""The posterior of each person (Eq. 1): a small curve for every persuasive strategy."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from tangy_tui.ui.widgets.rows import Row, RowView, Span, fit, shorten
 
 BLOCKS = " ▁▂▃▄▅▆▇█"
 LOWEST_PEAK = 3.0
-"""A density up to this one is drawn to the same scale, so that an unknown belief lies flat."""
+"""Lower densities share this scale, so that an uninformed posterior looks flat."""
 
 LINES_FROM = 36
-"""From this width each strategy has a line; below it, each person has one."""
+"""From this width in cells, each strategy has a line; below it, each person."""
 
 WORDS_FROM = 50
-"""From this width it says in words what is the probability of being best."""
+"""From this width in cells, P(best) is labelled."""
 
 LONGEST_CURVE = 24
 
 
 def curve(belief: Beta, width: int) -> str:
-    """Draw the density from 0 (left) to 1 (right) in so many characters."""
+    """Draw the density from 0 (left) to 1 (right) in some characters."""
     density = belief.density(width)
     peak = max(LOWEST_PEAK, *density)
     levels = len(BLOCKS) - 1
@@ -36,10 +36,11 @@ def curve(belief: Beta, width: int) -> str:
 
 
 class Posteriors(RowView, can_focus=True):
-    """For each person and strategy: curve, times complied of times asked, mean and P(best).
+    """For each person and strategy: curve, complied / asked, mean and P(best).
 
-    The strategy that alone is most probably the best has a mark, and what is settled is said beside
-    the name. Only lines that changed are drawn.
+    A star marks the strategy with the highest P(best) if it is unique; a settled one is named
+    beside
+    the person. Only changed lines are redrawn.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -62,11 +63,11 @@ class Posteriors(RowView, can_focus=True):
         id: str | None = "posteriors",
         classes: str | None = None,
     ) -> None:
-        """Make the view.
+        """Create the view.
 
         Args:
-            world: whose games the beliefs are from, for the title; "" leaves it out.
-            compact: gives each person one line (None: where it is narrow).
+            world: the world whose games the posteriors are from, for the title; "" omits it.
+            compact: give each person one line (None: only if the widget is narrow).
             id: the widget's id.
             classes: the widget's classes.
         """
@@ -84,7 +85,7 @@ class Posteriors(RowView, can_focus=True):
         names: Mapping[str, str],
         highlight: tuple[str, str] | None = None,
     ) -> None:
-        """Show what is believed; `highlight` marks the person and strategy in use."""
+        """Show the posteriors; `highlight` marks the person and strategy in use."""
         for person, profile in beliefs.items():
             if self._beliefs.get(person) != profile:
                 self._best[person] = probability_best(profile)
@@ -94,7 +95,7 @@ class Posteriors(RowView, can_focus=True):
         self._show()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Lay out anew."""
+        """Lay out again."""
         self._show()
 
     def _show(self) -> None:
@@ -114,7 +115,7 @@ class Posteriors(RowView, can_focus=True):
                 continue
             known = settled(self._best[person])
             if known is not None and (len(profile) == 1 or not profile[known].complied):
-                known = None  # one alone is no choice, and what never worked is no answer
+                known = None  # a single strategy is no choice, and one that never worked no answer
             head: Row = ((fit(name, width), "person"),)
             if known is not None:
                 mark = f"  settled: {clean(known)}"
@@ -129,7 +130,7 @@ class Posteriors(RowView, can_focus=True):
             self._rows.show(min(marks))
 
     def _line(self, person: str, strategy: str, belief: Beta, width: int) -> Row:
-        """One strategy: name, curve, counts, mean, P(best)."""
+        """Format one strategy: name, curve, counts, mean, P(best)."""
         best = self._best[person]
         leads = len(best) > 1 and leading(best) == strategy and belief.trials > 0
         label = min(12, max(cell_len(s) for s in self._beliefs[person]))
@@ -151,7 +152,7 @@ class Posteriors(RowView, can_focus=True):
         )
 
     def _compact(self, person: str, name: str, profile: Beliefs, width: int) -> Row:
-        """One person: the strategy in use or the best one, with its curve and mean."""
+        """Format one person: the strategy in use or the best one, with its curve and mean."""
         best = self._best[person]
         strategy = max(best, key=lambda s: best[s])
         if self._highlight is not None and self._highlight[0] == person:
@@ -178,5 +179,5 @@ def _counts(belief: Beta) -> str:
 
 
 def share(value: float) -> str:
-    """Write a share in three characters, as papers do: .87, and 1.0 when it is as good as sure."""
+    """Format a probability in three characters, as papers do: .87, and 1.0 from .995 on."""
     return "1.0" if value >= 0.995 else f".{round(value * 100):02d}"

@@ -1,4 +1,4 @@
-"""The room on paper: everything in it but the robot, placed on lines by a plan."""
+"""The drawing of a room without the robot, line by line as a plan lays it out."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPla
 from tangy_tui.ui.widgets.rows import Row, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
-FLOOR_DOTS = 8  # columns from one dot to the next
-BELOW = 12  # lines for what does not fit, which are cut off
+FLOOR_DOTS = 8  # columns between dots
+BELOW = 12  # extra lines, cut off at the end
 
 
 class RoomDrawing:
@@ -32,7 +32,7 @@ class RoomDrawing:
 
     @property
     def lines(self) -> list[PlanLine]:
-        """What was drawn, cut to the height of the plan."""
+        """The drawn lines, cut to the height of the plan."""
         return self._lines[: self._plan.height]
 
     def _wall(self) -> None:
@@ -45,7 +45,7 @@ class RoomDrawing:
                 self._lines[y].put(x, "·", "floor")
 
     def called(self, labels: Sequence[str]) -> None:
-        """Write what was called: on a line of its own, or only the newest beside the front."""
+        """Draw the calls: on a line of their own, or only the newest beside the front."""
         if not labels:
             return
         plan = self._plan
@@ -69,7 +69,7 @@ class RoomDrawing:
         self._lines[row].put(start + width, rest, "dim")
 
     def speech(self, speech: str) -> None:
-        """Write what the robot says, cut to the lines there are for it."""
+        """Draw the robot's speech, cut to the lines for it."""
         plan = self._plan
         if not speech or not plan.speech:
             return
@@ -81,7 +81,7 @@ class RoomDrawing:
             self._lines[y].centre(plan.width // 2, text, "text")
 
     def table(self, read: str | None) -> None:
-        """Draw the table with a card for each person; `read` is whose card the robot reads."""
+        """Draw the tables with a card for each person; the robot reads that of `read`."""
         plan = self._plan
         row = plan.table_row
         for left, right in self._grid.tables:
@@ -97,7 +97,7 @@ class RoomDrawing:
             self._lines[row + plan.table // 2].put(centre - 1, "[▦]", ink)
 
     def card(self, card: CardView, robot: int) -> None:
-        """Draw a card on the floor beside the robot's column, where there is room for it."""
+        """Draw a card on the floor beside the robot's column, if there is room."""
         plan = self._plan
         name = next((clean(p.name) for p in self._people if p.id == card.person), card.person)
         title: Row = ((shorten(card_title(name), 30), "strong"),)
@@ -116,18 +116,18 @@ class RoomDrawing:
                 column += cell_len(text)
 
     def everybody(self, scene: Scene) -> None:
-        """Draw the people: head with the mark of a request, name, and what they do."""
+        """Draw the people: head with the mark of a request, name, and activity."""
         slots = list(zip(self._people, self._grid.slots, strict=False))
         deep = self._names_deep()
         for place, (person, (start, end)) in enumerate(slots):
-            if deep > 1:  # to the middle of the slots of the next names on the same line
+            if deep > 1:  # up to the middle of the slots of the next names on the same line
                 start = (slots[place - deep + 1][1][0] + start) // 2 if place >= deep - 1 else 0
                 after = place + deep - 1
                 end = (slots[after][1][1] + end) // 2 if after < len(slots) else self._plan.width
             self._person(person, scene, place, (start, end - 1), place % deep, deep)
 
     def _names_deep(self) -> int:
-        """Return on how many lines names stand by turns, so that neighbours' names have room."""
+        """Return on how many lines names alternate, so that neighbours' names have room."""
         if not self._plan.crowded:
             return 1
         slots = zip(self._people, self._grid.slots, strict=False)
@@ -143,7 +143,7 @@ class RoomDrawing:
         below: int,
         deep: int,
     ) -> None:
-        """Draw a person; the name stands so many lines `below`, of `deep`, between two columns."""
+        """Draw a person; the name is on line `below` of `deep`, between two columns."""
         row, most, centre = self._plan.head_row, self._plan.doing, self._grid.centres[place]
         width = within[1] - within[0]
         asking, away = person.id in scene.requests, person.id in scene.away
@@ -153,7 +153,7 @@ class RoomDrawing:
         name = shorten(clean(person.name), width)
         self._lines[row + 1 + below].within(centre, *within, name, ink)
         if deep > 1:
-            return  # names have taken the lines of what people do
+            return  # names use the lines for people's activities
         doing = wrap(clean(scene.doing.get(person.id, "")), width)
         if len(doing) > most:
             doing = [*doing[: most - 1], " ".join(doing[most - 1 :])]
@@ -175,12 +175,12 @@ def draw_room(
 
     Args:
         plan: the rows to draw on.
-        grid: where everything stands, in cells.
-        people: who takes part.
-        scene: what there is to see.
-        speech: what Tangy says.
-        label: names a number.
-        robot: the column of the robot, if it stands; beside it lies the card that it reads.
+        grid: the positions in cells.
+        people: the participants.
+        scene: the scene.
+        speech: the robot's speech.
+        label: returns the label of a number.
+        robot: the column of the robot, if it stands still; the card it reads lies beside it.
     """
     drawing = RoomDrawing(plan, grid, people)
     drawing.called([clean(label(number)) for number in scene.called])

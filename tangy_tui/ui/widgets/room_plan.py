@@ -1,4 +1,4 @@
-"""Where things are drawn in a room of so many characters: rows, columns, and what gets left out."""
+"""The layout of a room in characters: rows, columns, and what is left out."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from tangy_tui.ui.widgets.rows import Row, Span
 
 SPRITE_WIDTH = 7
 ROOMY_SLOT = 14
-"""Columns for each person from which what they do stands on one line."""
+"""From this width of a slot in cells, a person's activity fits on one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class RoomPlan:
-    """The rows of a room view; a height of 0 means that there was no room for it.
+    """The rows of a room view; a height of 0 means that there was no room for a part.
 
-    From the top: wall, board (numbers called), speech, floor, table, head and name and doings of
-    the people.
+    From the top: wall, board (calls), speech, floor, table; then head, name and activity of the
+    people.
     """
 
     width: int
@@ -31,41 +31,41 @@ class RoomPlan:
     table: int
     doing: int
     crowded: bool = False
-    """Whether a person's slot is too narrow for what they do to stand on one line."""
+    """Whether slots are too narrow for a person's activity on one line."""
 
     @property
     def board_row(self) -> int:
-        """The first row under the wall."""
+        """The first row below the wall."""
         return 1
 
     @property
     def speech_row(self) -> int:
-        """Where speech begins."""
+        """The first row of speech."""
         return 1 + self.board
 
     @property
     def floor_row(self) -> int:
-        """Where the floor begins."""
+        """The first row of the floor."""
         return 1 + self.board + self.speech
 
     @property
     def table_row(self) -> int:
-        """Where the table begins."""
+        """The first row of the table."""
         return self.floor_row + self.floor
 
     @property
     def head_row(self) -> int:
-        """Where the people begin: heads and request marks, then names, then what they do."""
+        """The first row of the people: heads and request marks, then names, then activities."""
         return self.table_row + self.table
 
     @property
     def sprite(self) -> int:
-        """How many rows the robot has."""
+        """The height of the robot in rows."""
         return 2 if self.floor >= 4 else 1
 
 
 def plan(width: int, height: int, people: int = 4) -> RoomPlan:
-    """Give the rows out: what a teacher must see first, then comfort, then floor to drive on."""
+    """Assign the rows: first what a teacher must see, then comfort, then floor to drive on."""
     crowded = width < people * ROOMY_SLOT
     rows = {"board": 0, "speech": 0, "floor": 2, "table": 1, "doing": 1}
     spare = height - 3 - sum(rows.values())  # the wall, heads and names
@@ -89,7 +89,7 @@ def plan(width: int, height: int, people: int = 4) -> RoomPlan:
 
 
 class Grid:
-    """Turns metres into columns and rows: zoomed to the table, a slot for each person."""
+    """Maps metres to columns and rows: zoomed to the table, with a slot for each person."""
 
     def __init__(self, room: Room, people: int, plan: RoomPlan) -> None:
         seats = [seat.x for seat in room.seated(people)]
@@ -112,7 +112,7 @@ class Grid:
         self.front = self.column(room.front.x)
 
     def _ends(self, left: float, right: float) -> tuple[int, int]:
-        """Return the columns where a table (from and to in m) ends: beside the cards on it."""
+        """Return the end columns of a table (from and to in m), outside the cards on it."""
         start, end = self.column(left), self.column(right)
         cards = [centre for centre in self.centres if start <= centre <= end]
         if not cards:
@@ -120,15 +120,15 @@ class Grid:
         return max(0, min(start, cards[0] - 2)), min(self._plan.width - 1, max(end, cards[-1] + 2))
 
     def on_floor(self, point: Point) -> bool:
-        """Say whether a place in m is in front of the table, where there is floor to draw on."""
+        """Return whether a point in m is in front of the table, where the floor is drawn."""
         return point.y < self._near
 
     def column(self, x: float) -> int:
-        """Return the column, in cells, of a place in m."""
+        """Return the column, in cells, of an x in m."""
         return min(self._plan.width - 1, max(0, int((x - self._from) * self._scale)))
 
     def sprite(self, point: Point) -> tuple[int, int]:
-        """Return column and row of the left upper corner of the robot at a place."""
+        """Return column and row of the robot's upper left corner at a point."""
         plan = self._plan
         share = min(1.0, max(0.0, (point.y - self._top) / self._depth))
         row = plan.floor_row + round(share * (plan.floor - plan.sprite))
@@ -136,7 +136,7 @@ class Grid:
         return min(plan.width - SPRITE_WIDTH, max(0, column)), row
 
     def floor(self, point: Point) -> tuple[int, int]:
-        """Return column and row of a place on the floor, as the middle of the robot is there."""
+        """Return column and row of a point on the floor, on which the robot is centred."""
         plan = self._plan
         share = min(1.0, max(0.0, (point.y - self._top) / self._depth))
         row = plan.floor_row + round(share * (plan.floor - plan.sprite)) + plan.sprite // 2
@@ -144,7 +144,7 @@ class Grid:
 
 
 class PlanLine:
-    """One line of cells to place pieces of text on, later ones over earlier ones."""
+    """A line of cells on which later pieces of text overwrite earlier ones."""
 
     def __init__(self, width: int) -> None:
         self._cells = [" "] * width
@@ -152,7 +152,7 @@ class PlanLine:
         self._kept = range(0)
 
     def put(self, column: int, text: str, ink: str) -> None:
-        """Place text from a column on; what lies outside the line is cut."""
+        """Write text from a column on; text outside the line is cut."""
         for character in text:
             cells = cell_len(character)
             if cells and column >= 0 and column + cells <= len(self._cells):
@@ -166,7 +166,7 @@ class PlanLine:
             column += cells
 
     def copy(self) -> PlanLine:
-        """Return the same line, to place more on."""
+        """Return a copy of the line."""
         line = PlanLine(0)
         line._cells = self._cells[:]
         line._inks = self._inks[:]
@@ -174,27 +174,27 @@ class PlanLine:
         return line
 
     def keep(self, start: int, end: int) -> None:
-        """Let no mark be put on the columns from `start` to before `end`."""
+        """Protect the columns from `start` to before `end` from marks."""
         self._kept = range(start, end)
 
     def mark(self, column: int, character: str, ink: str) -> None:
-        """Place a mark, except where something stands that has to stay readable."""
+        """Write a mark, except on protected columns."""
         if column not in self._kept:
             self.put(column, character, ink)
 
     def within(self, column: int, start: int, end: int, text: str, ink: str) -> None:
-        """Place text around a column, moved as far as it has to be to stay from start to end."""
+        """Write text centred on a column, shifted to stay between start and end."""
         at = column - (cell_len(text) - 1) // 2
         self.put(max(start, min(at, end - cell_len(text))), text, ink)
 
     def centre(self, column: int, text: str, ink: str) -> None:
-        """Place text around a column, within the line."""
+        """Write text centred on a column, within the line."""
         cells = cell_len(text)
         start = column - (cells - 1) // 2
         self.put(max(0, min(start, len(self._cells) - cells)), text, ink)
 
     def row(self) -> Row:
-        """Return the line in as few pieces as it has inks; a blank needs no ink of its own."""
+        """Return the line as one span per ink; blanks need no ink of their own."""
         spans: list[Span] = []
         for cell, ink in zip(self._cells, self._inks, strict=True):
             if spans and (cell == " " or spans[-1][1] == ink):

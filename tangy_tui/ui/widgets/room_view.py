@@ -1,7 +1,7 @@
 """The room as a grid of characters: robot, front, table, and what each person is doing.
 
-It draws by the line and puts on the terminal only the cells that changed: over a slow link, a
-robot that walks at ten frames a second costs some hundred bytes a frame, and one that stands none.
+It draws line by line and sends only changed cells to the terminal. A robot that drives at ten
+frames a second costs some hundred bytes a frame, one that stands none.
 """
 
 from __future__ import annotations
@@ -27,19 +27,20 @@ from tangy_tui.ui.widgets.rows import Row, draw
 
 FRAME_SECONDS = 0.1
 SLOW_FRAME_SECONDS = 1.0
-"""Between two pictures of the robot on its way, and over a slow link."""
+"""The frame intervals of a driving robot, normally and over a slow link."""
 
 Mark = tuple[Point, str, str]
-"""Something on the floor: where, the character that it is drawn with, and the ink."""
+"""A mark on the floor: position, character, and ink."""
 
 EMPTY = Scene(FRONT, (), {}, (), None)
 
 
 class RoomView(Inked):
-    """Robot and people in the activity room, seen from behind the people's backs.
+    """Robot and people in the activity room, seen from behind the people.
 
-    `show` draws a scene at once; `drive` lets the robot walk to where it is going, and `hold`
-    keeps it where it is seen, whatever is shown meanwhile.
+    `show` draws a scene at once; `drive` animates the robot to its destination, and `hold` freezes
+    it
+    at its drawn position, whatever scene is shown.
     """
 
     DEFAULT_CSS = """
@@ -60,7 +61,7 @@ class RoomView(Inked):
 
         @property
         def control(self) -> RoomView:
-            """The room it arrived in."""
+            """The room that it arrived in."""
             return self.room
 
     def __init__(
@@ -74,21 +75,21 @@ class RoomView(Inked):
         id: str | None = "room",
         classes: str | None = None,
     ) -> None:
-        """Make the view.
+        """Create the view.
 
         Args:
             room: size, front, table and seats, in metres.
-            people: who sits where, in the order of the seats.
+            people: the people in the order of their seats.
             robot: the name on the robot.
-            label: writes a called number (`activity.deck.label`).
-            clock: seconds (default: the app's).
-            id: of the widget.
-            classes: of the widget.
+            label: returns the label of a number (`activity.deck.label`).
+            clock: returns seconds (default: the app's clock).
+            id: the widget's id.
+            classes: the widget's classes.
         """
         super().__init__(id=id, classes=classes)
         self.border_title = "Room"
         self.pace = 1.0
-        """How many times faster than told the robot walks."""
+        """The speed-up of the animation."""
         self._room = room
         self._people = tuple(people)
         self._ids = tuple(person.id for person in people)
@@ -117,36 +118,36 @@ class RoomView(Inked):
 
     @property
     def scene(self) -> Scene:
-        """What is shown."""
+        """The scene shown."""
         return self._scene
 
     @property
     def going(self) -> str | None:
-        """The place that the robot is walking to, or None while it stands."""
+        """The destination that the robot is driving to, None while it stands."""
         return self._going
 
     @property
     def place_of_robot(self) -> Point:
-        """Where the robot is seen at this moment, in metres."""
+        """The position at which the robot is drawn, in m."""
         return self._seen
 
     def show(self, scene: Scene) -> None:
-        """Draw a scene. A robot that is walking to the scene's place goes on walking."""
+        """Draw a scene. A robot that is driving to the scene's place continues to drive."""
         self._scene = scene
         if self._tracked:
-            pass  # it is where it is
+            pass  # its position is tracked
         elif self._held:
             if self._at == self._stand(scene.place):
                 self._halt()
             elif self._going != scene.place:
-                self._aim(scene.place)  # it walks there when it is let go
+                self._aim(scene.place)  # it drives there once released
         elif self._going != scene.place:
             self._halt()
             self._at = self._stand(scene.place)
         self._draw_again()
 
     def put(self, place: str) -> None:
-        """Put the robot in a place at once, without walking, unless it is tracked."""
+        """Put the robot at a place without animation, unless it is tracked."""
         if self._tracked:
             return
         self._halt()
@@ -154,12 +155,13 @@ class RoomView(Inked):
         self._draw_again()
 
     def track(self, at: Point, heading: str, marks: Sequence[Mark]) -> None:
-        """Draw the robot where it believes to be, and what it knows of the floor round it.
+        """Draw the robot at its estimated position, and marks on the floor around it.
 
         Args:
-            at: where the robot is, in m.
+            at: the robot's position, in m.
             heading: an arrow, "" while it stands.
-            marks: points in metres with a character and an ink each, later ones over earlier ones.
+            marks: positions in m with a character and an ink each; later ones overwrite earlier
+                ones.
         """
         self._halt()
         self._tracked = True
@@ -172,15 +174,16 @@ class RoomView(Inked):
         self._draw_again()
 
     def say(self, speech: str) -> None:
-        """Show what the robot says; nothing if empty."""
+        """Show the robot's speech; "" shows none."""
         self.speech = clean(speech)
         self._draw_again()
 
     def drive(self, to: str, seconds: float) -> None:
-        """Let the robot walk to the front or a person in so many s; posts `Arrived` when there.
+        """Animate the robot to the front or a person in some s; posts `Arrived` at the end.
 
-        It walks from where it is seen, so it does not matter whether the scene that has it at
-        the end of its way is shown before or after.
+        It starts from the drawn position, so that the scene with its destination may be shown
+        before or
+        after.
         """
         self._at = self._seen
         self._seconds = max(0.0, seconds)
@@ -190,12 +193,12 @@ class RoomView(Inked):
             return
         if self._scene.card is None:
             self._move_sprite(turned=True)
-        else:  # it is read when the robot is there
+        else:  # the card is shown on arrival
             self._draw_again()
         self._walk()
 
     def hold(self, held: bool) -> None:
-        """Hold the robot where it is seen, or let it walk on to where it is to be."""
+        """Freeze the robot at its drawn position, or let it continue to its destination."""
         if held == self._held:
             return
         self._held = held
@@ -206,12 +209,12 @@ class RoomView(Inked):
             self._walk()
 
     def skip(self) -> None:
-        """Let the robot be where it is going."""
+        """Move the robot to its destination at once."""
         if self._going is not None:
             self._arrive()
 
     def tick(self) -> None:
-        """Draw the next frame of a walk."""
+        """Draw the next frame of the animation."""
         if self._going is None or self._held:
             return
         now = self._clock()
@@ -224,7 +227,7 @@ class RoomView(Inked):
             self._move_sprite()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Lay everything out anew."""
+        """Lay out again."""
         people = max(1, len(self._people))
         self._plan = plan(max(SPRITE_WIDTH, self.size.width), max(1, self.size.height), people)
         self._grid = Grid(self._room, people, self._plan)
@@ -232,12 +235,12 @@ class RoomView(Inked):
         self._draw_again()
 
     def notify_style_update(self) -> None:
-        """Draw in the new colours."""
+        """Redraw in the new colours."""
         super().notify_style_update()
         self._strips.clear()
 
     def render_line(self, y: int) -> Strip:
-        """Draw one line, or take it as it was drawn."""
+        """Return a line, drawn or from the cache."""
         self._seen = self._at
         if y not in self._strips:
             self._rows[y] = self._row(y).row()
@@ -252,7 +255,7 @@ class RoomView(Inked):
         return self._room.stand(place if known else FRONT, self._ids)
 
     def _aim(self, place: str) -> None:
-        """Let a place be where the robot is to walk to from where it is."""
+        """Set the destination of the robot from its present position."""
         self._from, self._to = self._at, self._stand(place)
         self._going = place
         self._share = 0.0
@@ -286,7 +289,7 @@ class RoomView(Inked):
             self.post_message(self.Arrived(self, place))
 
     def _turn(self) -> None:
-        """Find the direction of travel as it is seen."""
+        """Set the arrow of the direction of travel on the screen."""
         if self._going is None or self._grid is None:
             self._heading = ""
             return
@@ -297,7 +300,7 @@ class RoomView(Inked):
             self._heading = "▾" if y2 > y1 else "▴"
 
     def _move_sprite(self, *, turned: bool = False) -> None:
-        """Put on the screen the cells that the robot left and those that it came to."""
+        """Redraw the cells that the robot left and those that it covers."""
         if self._grid is None:
             return
         old, new = self._sprite_at, self._grid.sprite(self._at)
@@ -316,7 +319,7 @@ class RoomView(Inked):
         self.refresh(*regions)
 
     def _draw_again(self) -> None:
-        """Lay out the scene, and put on the screen the lines that are not as they were."""
+        """Lay out the scene, and redraw the lines that changed."""
         if self._grid is None:
             return
         self._sprite_at = self._grid.sprite(self._at)

@@ -1,4 +1,4 @@
-"""Lines of text in inks: how the widgets that draw line by line keep, compare and draw them."""
+"""Lines of styled text: how line-drawing widgets store, compare and draw them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from textual.strip import Strip
 from tangy_tui.ui.widgets.inks import Inked
 
 Span = tuple[str, str]
-"""A piece of text and the ink it is written in."""
+"""A piece of text and its ink."""
 
 Row = tuple[Span, ...]
 """One line."""
 
 
 def fit(text: str, width: int) -> str:
-    """Return text in exactly so many cells: filled with spaces, or cut with an ellipsis."""
+    """Return text in exactly `width` cells: padded with spaces, or cut with an ellipsis."""
     if width <= 0:
         return ""
     if cell_len(text) <= width:
@@ -29,7 +29,7 @@ def fit(text: str, width: int) -> str:
 
 
 def shorten(text: str, width: int) -> str:
-    """Return text in at most so many cells, cut with an ellipsis."""
+    """Return text in at most `width` cells, cut with an ellipsis."""
     if cell_len(text) <= width:
         return text
     return set_cell_size(text, width - 1).rstrip() + "…" if width > 0 else ""
@@ -46,7 +46,7 @@ def draw(widget: Inked, row: Row, width: int, over: str = "") -> Strip:
 
 
 class Rows:
-    """The lines of one scrolled widget; puts on the screen only those that changed."""
+    """The lines of a scrollable widget; redraws only those that changed."""
 
     def __init__(self, widget: RowView) -> None:
         self._widget = widget
@@ -60,16 +60,16 @@ class Rows:
 
     @property
     def width(self) -> int:
-        """The cells that a line has at present."""
+        """The width of a line in cells."""
         return self._widget.scrollable_content_region.width
 
     @property
     def height(self) -> int:
-        """The lines that are seen at once."""
+        """The number of visible lines."""
         return self._widget.scrollable_content_region.height
 
     def put(self, rows: Sequence[Row], marks: Mapping[int, str] | None = None) -> None:
-        """Show these lines; `marks` names the ink that lies over a whole line (cursor, now)."""
+        """Replace the lines; `marks` names the ink over a whole line (cursor, now)."""
         new_marks = dict(marks or {})
         old = self._rows
         changed = {
@@ -87,13 +87,13 @@ class Rows:
         self.redraw(changed)
 
     def mark(self, marks: Mapping[int, str]) -> None:
-        """Move the marks that lie over whole lines."""
+        """Replace the marks over whole lines."""
         changed = {y for y in {*self._marks, *marks} if self._marks.get(y) != marks.get(y)}
         self._marks = dict(marks)
         self.redraw(changed)
 
     def redraw(self, changed: set[int]) -> None:
-        """Draw some lines again, if they are seen."""
+        """Redraw some lines, if they are visible."""
         top = self._widget.scroll_offset.y
         width = self._widget.size.width
         regions: list[Region] = []
@@ -105,11 +105,11 @@ class Rows:
             self._widget.refresh(*regions)
 
     def forget(self) -> None:
-        """Forget what was drawn, after the colours changed."""
+        """Clear the cache after a change of colours."""
         self._strips.clear()
 
     def strip(self, y: int) -> Strip:
-        """Return what is drawn on line `y` of the widget."""
+        """Return line `y` of the widget, drawn or from the cache."""
         width = self.width
         if width != self._width:
             self._strips.clear()
@@ -121,7 +121,7 @@ class Rows:
         return self._strips[index]
 
     def show(self, index: int) -> None:
-        """Scroll as little as needed for a line to be seen."""
+        """Scroll as little as needed to show a line."""
         top, height = self._widget.scroll_offset.y, max(1, self.height)
         if index < top:
             self._widget.scroll_to(y=index, animate=False, force=True)
@@ -130,7 +130,7 @@ class Rows:
 
 
 class RowView(ScrollView, Inked):
-    """A scrolled widget that is made of rows: `_rows.put` shows them, and draws what changed."""
+    """A scrollable widget made of rows: `_rows.put` sets them, and redraws the changed ones."""
 
     DEFAULT_CSS = """
     RowView { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
@@ -141,7 +141,7 @@ class RowView(ScrollView, Inked):
         self._rows = Rows(self)
 
     def notify_style_update(self) -> None:
-        """Draw in the new colours."""
+        """Redraw in the new colours."""
         super().notify_style_update()
         self._rows.forget()
 

@@ -1,4 +1,4 @@
-"""The commands that can be given now, the most usual first."""
+"""The commands that can be given now, the most frequent first."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tangy_tui.ui.clean_output import clean
 
 
 class SayableList(Static):
-    """What can be said now, one after the other."""
+    """Lists the commands that can be given now."""
 
     DEFAULT_CSS = """
     SayableList { height: auto; }

@@ -1,4 +1,4 @@
-"""The lines of the page on which a game is set up: people at tables, choices and checks."""
+"""The lines of the set-up screen: people at tables, choices and checks."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row, Span, fit, shorten
 
 LABEL = 22
-"""Columns of what a line is about."""
+"""The width of a line's label in cells."""
 STATE = 6
-"""Columns of whether a person is here, at one of several tables."""
+"""The width of a person's presence at one of several tables, in cells."""
 
 TURNS = "  ← →"
-"""Says at the cursor that left and right change a choice."""
+"""Shown at the cursor if left and right change a choice."""
 KEYED = ("activity", "room", "patterns")
 """Choices that left and right do not change."""
 
@@ -28,10 +28,10 @@ LineKind = Literal["head", "person", "choice", "check"]
 
 @dataclass(frozen=True, slots=True)
 class SetUpLine:
-    """One line: its kind and id, what it is about, how it is, and in which ink that is.
+    """One line: its kind and id, its label, its value, and the ink of the value.
 
-    People have their `seat` in a room of several tables: which table, and which place at it, both
-    from 0 on. They stand side by side, table by table.
+    In a room of several tables, people have a `seat`: table and place, both from 0. They are shown
+    side by side, table by table.
     """
 
     kind: LineKind
@@ -43,13 +43,13 @@ class SetUpLine:
 
 
 class SetUpList(Choosable):
-    """Everything that is set up; Enter, left and right act on the line that the cursor is on.
+    """The lines of the set-up; Enter, left and right act on the line at the cursor.
 
-    Space takes hold of a person, and the arrows carry them to other seats until they are let go.
+    Space picks a person up; the arrows then move them to other seats until they are put down.
     """
 
     ALLOW_MAXIMIZE = False
-    BINDINGS = [  # noqa: RUF012 - as Textual has it
+    BINDINGS = [  # noqa: RUF012 - as in Textual
         Binding("left", "turn(-1)", "Less, or the table to the left", show=False, id="left"),
         Binding("right", "turn(1)", "More, or the table to the right", show=False, id="right"),
         Binding("space", "carry", "Take a person to another seat", show=False, id="still"),
@@ -70,14 +70,14 @@ class SetUpList(Choosable):
             super().__init__()
 
     class Carried(Message):
-        """A person was carried to another's seat."""
+        """A person was moved to another's seat."""
 
         def __init__(self, line: SetUpLine, to: SetUpLine) -> None:
             self.line, self.to = line, to
             super().__init__()
 
     class Held(Message):
-        """A person was taken hold of (their id), or let go ("")."""
+        """A person was picked up (their id), or put down ("")."""
 
         def __init__(self, person: str) -> None:
             self.person = person
@@ -90,7 +90,7 @@ class SetUpList(Choosable):
         self._carries = False
 
     def show(self, lines: Sequence[SetUpLine]) -> None:
-        """Show lines; the cursor stays with what it was on."""
+        """Replace the lines; the cursor stays on its line."""
         on = self.chosen
         self._lines = list(lines)
         ids = [line.id for line in self.choices]
@@ -101,24 +101,24 @@ class SetUpList(Choosable):
 
     @property
     def choices(self) -> list[SetUpLine]:
-        """The lines that the cursor goes to."""
+        """The lines that the cursor can be on."""
         return [line for line in self._lines if line.kind != "head"]
 
     @property
     def chosen(self) -> SetUpLine | None:
-        """The line that the cursor is on."""
+        """The line at the cursor."""
         lines = self.choices
         return lines[self._cursor] if self._cursor is not None and lines else None
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor, or the person who is carried."""
+        """Move the cursor, or the person who is picked up."""
         if not self._carries:
             super().action_choose(by)
         elif 0 <= (to := (self._cursor or 0) + by) < len(self.choices):
             self._carry_to(self.choices[to])
 
     def action_turn(self, by: int) -> None:
-        """Turn the line that the cursor is on; from a person, go to the next table."""
+        """Turn the line at the cursor; from a person, go to the next table."""
         line = self.chosen
         if line is None or (line.kind == "person" and line.seat is None):
             return
@@ -131,7 +131,7 @@ class SetUpList(Choosable):
             self._mark()
 
     def action_carry(self) -> None:
-        """Take hold of a person, or let them go; on any other line do what Enter does."""
+        """Pick a person up, or put them down; on any other line, act like Enter."""
         if self.chosen is not None and self.chosen.kind == "person":
             self._carries = not self._carries
             self._mark()
@@ -140,7 +140,7 @@ class SetUpList(Choosable):
             self.action_tell()
 
     def action_tell(self) -> None:
-        """Describe the line at the cursor, or put down the person who is carried."""
+        """Choose the line at the cursor, or put down the person who is picked up."""
         if self._carries:
             self.action_carry()
         else:
@@ -151,8 +151,8 @@ class SetUpList(Choosable):
             self.post_message(self.Carried(self.chosen, to))
 
     def _beside(self, line: SetUpLine, by: int) -> SetUpLine | None:
-        """Return who sits at the next table, at the same place or at the last one."""
-        assert line.seat is not None  # noqa: S101 - asked for at several tables alone
+        """Return the person at the next table, at the same place or at the last one."""
+        assert line.seat is not None  # noqa: S101 - only called at several tables
         table, place = line.seat[0] + by, line.seat[1]
         there = [one for one in self.choices if one.seat is not None and one.seat[0] == table]
         return there[min(place, len(there) - 1)] if there else None
@@ -169,7 +169,7 @@ class SetUpList(Choosable):
         self._mark()
 
     def _mark(self) -> None:
-        """Write all lines; a person at one of several tables is marked without the line."""
+        """Draw all lines; a person at one of several tables is marked, not the whole line."""
         rows, chosen = self._laid_out(), self.chosen
         marks: dict[int, str] = {}
         if chosen is not None and chosen.seat is None and self._cursor is not None:
@@ -183,7 +183,7 @@ class SetUpList(Choosable):
         self.post_message(self.Entered(self.choices[index]))
 
     def _laid_out(self) -> list[list[SetUpLine]]:
-        """Return what stands on each line of the screen: people side by side, table by table."""
+        """Return the items on each line of the screen: people side by side, table by table."""
         rows: list[list[SetUpLine]] = []
         first = 0
         for line in self._lines:
@@ -207,12 +207,12 @@ class SetUpList(Choosable):
         there = line == self.chosen
         turns = TURNS if there and line.kind == "choice" and line.id not in KEYED else ""
         value = shorten(clean(line.value), max(0, width - LABEL - 3 - len(turns)))
-        mark = "▸ " if there else "  "  # the stripe of colour alone is not seen by everybody
+        mark = "▸ " if there else "  "  # not everybody sees colour
         label = fit(clean(line.label), LABEL)
         return ((f"{mark}{label} ", "text"), (value, line.ink), (turns, "dim"))
 
     def _sitting(self, line: SetUpLine, width: int) -> tuple[Span, ...]:
-        """Write a person at a table."""
+        """Format a person at a table."""
         there = line == self.chosen
         over = ("now" if self._carries else "cursor") if there else ""
         mark = "▸" if there else " "

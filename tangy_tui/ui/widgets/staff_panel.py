@@ -1,4 +1,4 @@
-"""What staff have to see of a game: the call in blocks, the clock, what comes next, and people."""
+"""The panel for staff: the call in large blocks, the clock, the next step, and people."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from tangy_tui.ui.widgets.rows import Row, RowView, fit, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
 LARGE_WIDTH, LARGE_HEIGHT = 56, 22
-"""From so many columns and lines on the call is drawn twice as large."""
+"""From this size in columns and lines on, the call is drawn twice as large."""
 BESIDE = 30
-"""Columns from which facts stand beside the call, and not below it."""
+"""With this width in cells left, facts are beside the call, otherwise below it."""
 SLOT, NARROW = 36, 25
-"""Columns for one person, and where people do not fit so; they stand side by side."""
+"""The width of one person in cells, and the width if people do not fit otherwise."""
 NAME, SHORT_NAME = 14, 10
-"""Columns of a person's name, in either."""
+"""The width of a person's name in cells, in either."""
 BOARD = 48
-"""Columns of the board of calls, where it stands here."""
+"""The width of the board of calls in cells, if it is shown here."""
 BOARD_HEIGHT = 9
-"""Lines from which the board stands here; the facts are then below the call."""
+"""From this height in lines on, the board is shown here, with the facts below the call."""
 
 HARD = "\N{NO-BREAK SPACE}"
 
 PersonLine = tuple[str, str, str]
-"""The name of a person, how they are, and the ink of that."""
+"""The name of a person, their state, and its ink."""
 
 
 class StaffPanel(RowView, can_focus=True):
-    """Draws what it is told, line by line: only lines that changed go to the terminal."""
+    """Draws given values line by line; only changed lines go to the terminal."""
 
     DEFAULT_CSS = """
     StaffPanel { scrollbar-gutter: auto; }
@@ -59,21 +59,21 @@ class StaffPanel(RowView, can_focus=True):
         people: Sequence[PersonLine],
         board: Sequence[Row] = (),
     ) -> None:
-        """Show the last call, what comes next, facts beside the call, people, and the board."""
+        """Show the last call, the next step, facts beside the call, people, and the board."""
         new = call, next_step, tuple(facts), tuple(people), tuple(board)
         if new != (self._call, self._next, self._facts, self._people, self._board):
             self._call, self._next, self._facts, self._people, self._board = new
             self._draw()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Lay out anew."""
+        """Lay out again."""
         self._draw()
 
     def _draw(self) -> None:
         width, height = self._rows.width, self._rows.height
         if not self.is_attached or width < 10:
             return
-        empty = not self._call and not self._board  # as where nothing is called
+        empty = not self._call and not self._board  # the activity has no calls
         most = 3 if empty else 2 if height > 11 else 1
         next_lines = wrap(clean(self._next), width)[:most]
         rows: list[Row] = [((line, "strong"),) for line in next_lines]
@@ -113,7 +113,7 @@ class StaffPanel(RowView, can_focus=True):
         return rows + [((line.replace(HARD, " "), "text"),) for line in lines[:2]]
 
     def _everybody(self, width: int, height: int) -> list[Row]:
-        """Draw people in as many columns as fit; of too many, the first ones."""
+        """Draw people in as many columns as fit; the first ones, if there are too many."""
         across = max(1, width // SLOT)
         if across * height < len(self._people):
             across = max(1, width // NARROW)
@@ -135,7 +135,7 @@ class StaffPanel(RowView, can_focus=True):
     @staticmethod
     def _person(person: PersonLine, width: int, columns: int) -> Row:
         name, how, ink = person
-        if not how:  # how many more there are
+        if not how:  # the number of people left out
             return ((fit(clean(name), width), ink),)
         how = how if width >= SLOT else how.partition(",")[0]
         return (

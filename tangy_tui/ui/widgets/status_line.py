@@ -1,4 +1,4 @@
-"""The line that is always seen: which part of Tangy, how the robot is, where in the activity."""
+"""The line at the top of every screen: mode, state of the robot, position in the activity."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ GAP = " │ "
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """What the status line says; empty parts are left out.
+    """The parts of the status line; empty ones are left out.
 
-    `robot` and STOP are seen at every width; where there is no room the step goes first, as its
-    list has it as well, and then the others from the right.
-    `stage` says in words how the game stands.
-    `alarm` writes the robot's part as a warning, with a mark; `seen` says how much was shown.
+    `robot` and STOP are shown at every width; if there is no room, the step is dropped first, since
+    its list shows it too, then the others from the right.
+    `stage` is the phase of the game in words.
+    `alarm` shows the robot's part as a warning, with a mark; `seen` is the coverage of situations.
     """
 
     mode: str = ""
@@ -48,11 +48,11 @@ class StatusLine(Inked):
 
     @property
     def status(self) -> Status:
-        """What it says."""
+        """The parts shown."""
         return self._status
 
     def show(self, status: Status) -> None:
-        """Say something else."""
+        """Replace the parts."""
         if status != self._status:
             self._status = status
             self.refresh()

@@ -15,13 +15,13 @@ from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row, shorten
 
 ARROW = "->"
-SITUATION_FROM = 13  # columns that a situation keeps beside a long behaviour
+SITUATION_FROM = 13  # minimum width of a situation beside a long behaviour
 
 
 class Transcript(Choosable):
-    """Numbered steps, the newest at the end; up and down choose one, Enter tells of it.
+    """Numbered steps, the newest at the end; up and down move the cursor, Enter chooses.
 
-    Keeps the last `most` lines; the numbers go on all the same.
+    Keeps the last `most` lines; the numbering continues.
     """
 
     FOLLOWS = True
@@ -31,7 +31,7 @@ class Transcript(Choosable):
     )
 
     class Chosen(Message):
-        """A step was chosen with Enter. `number` is its number, `text` what stands there."""
+        """A step was chosen with Enter. `number` is its number, `text` its line."""
 
         def __init__(self, transcript: Transcript, number: int, text: str) -> None:
             super().__init__()
@@ -45,7 +45,7 @@ class Transcript(Choosable):
             return self.transcript
 
     class Moved(Message):
-        """The cursor is on another step, or (None) on none and follows the end."""
+        """The cursor moved to another step, or (None) off the list, which follows the end."""
 
         def __init__(self, transcript: Transcript, number: int | None) -> None:
             super().__init__()
@@ -70,7 +70,7 @@ class Transcript(Choosable):
         self.steps: deque[str] = deque(maxlen=most)
         self._empty = clean(empty)
         self._count = 0
-        self._seen: list[int] = []  # the steps that are shown, by their places
+        self._seen: list[int] = []  # the indices of the steps that are shown
 
     @property
     def count(self) -> int:
@@ -79,13 +79,13 @@ class Transcript(Choosable):
 
     @property
     def chosen(self) -> int | None:
-        """The number of the step that the cursor is on, or None while it follows the end."""
+        """The number of the step at the cursor, None while it follows the end."""
         if self._cursor is None or self._cursor >= len(self._seen):
             return None
         return self._number(self._cursor)
 
     def append(self, step: str) -> None:
-        """Add a step at the end."""
+        """Append a step."""
         self._count += 1
         if len(self.steps) == self.steps.maxlen and self._cursor:
             self._cursor -= 1
@@ -93,7 +93,7 @@ class Transcript(Choosable):
         self._show()
 
     def remove_last(self) -> None:
-        """Take the last step back."""
+        """Remove the last step."""
         if self.steps:
             self.steps.pop()
             self._count -= 1
@@ -101,7 +101,7 @@ class Transcript(Choosable):
             self._show()
 
     def fill(self, steps: list[str]) -> None:
-        """Show these steps and no others, numbered from 1."""
+        """Replace the steps, numbered from 1."""
         self.steps.clear()
         self.steps.extend(clean(step) for step in steps)
         self._count = len(steps)
@@ -109,7 +109,7 @@ class Transcript(Choosable):
         self._show()
 
     def point(self, number: int) -> None:
-        """Put the cursor on a step, or on the nearest one that is kept."""
+        """Move the cursor to a step, or to the nearest one that is kept."""
         if self.steps:
             if self.filter:
                 self.unfilter()
@@ -125,12 +125,12 @@ class Transcript(Choosable):
         self.post_message(self.Moved(self, None))
 
     def clear(self, after: int = 0) -> None:
-        """Begin again; the next step is the one after so many that are not shown."""
+        """Clear the steps; the next one is numbered `after` + 1."""
         self.fill([])
         self._count = after
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor; past the end it lets go, and the newest step is followed again."""
+        """Move the cursor; at the end it leaves the list, which then follows the newest step."""
         super().action_choose(by)
         if self.steps:
             self.post_message(self.Moved(self, self.chosen))
@@ -169,7 +169,7 @@ class Transcript(Choosable):
 
 @lru_cache(4_096)
 def _row(number: int, step: str, digits: int, width: int) -> Row:
-    """Write one step; where there is little room, the behaviour is cut last."""
+    """Format one step; if there is little room, the behaviour is cut last."""
     situation, arrow, behaviour = step.partition(f" {ARROW} ")
     label = f"{number:>{digits}} "
     room = width - len(label)

@@ -1,4 +1,4 @@
-"""Breaking text into lines by the cells it takes."""
+"""Wrapping of text by its width in terminal cells."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from rich.cells import cell_len, chop_cells
 
 
 def wrap(text: str, width: int) -> list[str]:
-    """Break text into lines of at most so many cells, at spaces where there are any."""
+    """Wrap text into lines of at most `width` cells, at spaces if possible."""
     width = max(1, width)
     lines: list[str] = []
     line = ""
