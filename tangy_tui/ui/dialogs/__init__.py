@@ -1,1 +1,1 @@
-"""Dialogs: one question or one message over a screen."""
+"""Dialogs: modal screens with one question or one message."""

@@ -1,4 +1,4 @@
-"""What a person did, asked afterwards: yes, no, or still not known."""
+"""The question whether a person complied: yes, no, or unknown."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 
 class AnswerDialog(Dialog[bool | None]):
-    """Asks whether a person complied: y, n, or esc to leave it open. Keys typed ahead do not."""
+    """Asks whether a person complied: y, n, or esc to leave it open. Ignores keys typed ahead."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y", "nothing", "They complied"),
@@ -45,7 +45,7 @@ class AnswerDialog(Dialog[bool | None]):
         yield Static(Content.assemble(*parts), id="answer", classes="box")
 
     def on_mount(self) -> None:
-        """Take note of the moment from which keys count."""
+        """Accept keys from now on."""
         self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
@@ -58,4 +58,4 @@ class AnswerDialog(Dialog[bool | None]):
             self.answer(None)
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""

@@ -1,4 +1,4 @@
-"""Choosing one of several: people, policies, activities."""
+"""The choice of one of several options: people, policies, activities."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ class OptionPage(Page):
     LETTERS_FILTER = True
 
     def _say_filter(self, count: str = "") -> None:
-        """Say at the foot of the dialog what is filtered by."""
+        """Show the filter at the foot of the dialog."""
         keys = FILTERED.format(clean(self.filter)) if self.filter else UNFILTERED
         self.screen.query_one(".box").border_subtitle = keys.replace("[", "\\[")
 
 
 class ChooseDialog(Dialog[str | None]):
-    """Up and down choose, letters filter, Enter takes it.
+    """Up and down move the cursor, letters filter, Enter chooses.
 
-    The answer is the word of the option, or None.
+    The answer is the id of the option, or None.
     """
 
     DEFAULT_CSS = """
@@ -72,7 +72,7 @@ class ChooseDialog(Dialog[str | None]):
         yield box
 
     def on_mount(self) -> None:
-        """Let the arrows choose."""
+        """Focus the list."""
         self.query_one(Page).focus()
 
     def on_page_chosen(self, event: Page.Chosen) -> None:
@@ -81,7 +81,7 @@ class ChooseDialog(Dialog[str | None]):
         self.answer(self._options[event.index].id)
 
     def action_close(self) -> None:
-        """Take none."""
+        """Choose none."""
         self.answer(None)
 
     def _write(self, width: int) -> list[PageLine]:

@@ -1,4 +1,4 @@
-"""A line in which staff type what they want done in a game."""
+"""The input line for a command of staff in a game."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from tangy_tui.ui.dialogs.line import LineDialog
 
 
 class CommandDialog(LineDialog[GameCommand | Perform]):
-    """Reads a command; a line that is none is explained, and stays."""
+    """Parses a command; a line that is none stays, with an explanation."""
 
     HELP = "Type what you want done, and press Enter. Esc goes back."
 
     def __init__(
         self, read: Callable[[str], GameCommand | Perform | None], begun: str, example: str
     ) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
-            read: returns the command that words are.
-            begun: stands in the line already.
-            example: what can be typed.
+            read: parses a command.
+            begun: the initial text of the line.
+            example: examples of commands.
         """
         super().__init__(text.TITLE, example, text.KEYS, begun=begun)
         self._read = read
 
     def taken(self, line: str) -> GameCommand | Perform:
-        """Return the command that a line is, or raise TangyError where it is none."""
+        """Parse a command; raises TangyError if the line is none."""
         command = self._read(line)
         if command is None:
             raise TangyError(text.not_known(line))

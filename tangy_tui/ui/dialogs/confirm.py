@@ -1,4 +1,4 @@
-"""A yes or no before something that cannot be taken back."""
+"""A yes or no before an action that cannot be undone."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, yes_key_of
 
 
 class ConfirmDialog(Dialog[bool]):
-    """Asks a question; only y says yes, and n or esc say no. Keys typed ahead do not answer."""
+    """Asks a question; only y means yes, n or esc mean no. Ignores keys typed ahead."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y", "nothing", "Yes"),
@@ -55,11 +55,11 @@ class ConfirmDialog(Dialog[bool]):
         yield Static(Content.assemble(*parts), id="confirm", classes="box")
 
     def on_mount(self) -> None:
-        """Take note of the moment from which keys count."""
+        """Accept keys from now on."""
         self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Answer by its yes, n or esc."""
+        """Answer with the key for yes, n or esc."""
         if not self._keys.take(event):
             return
         if event.key.lower() == self.yes_key:
@@ -68,4 +68,4 @@ class ConfirmDialog(Dialog[bool]):
             self.answer(False)
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""

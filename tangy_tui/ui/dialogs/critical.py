@@ -1,4 +1,4 @@
-"""The dialog of a critical fault: the fault, the advice, and clearing it deliberately."""
+"""The dialog of a critical fault: the fault, the advice, and the keys to clear it."""
 
 from __future__ import annotations
 
@@ -50,34 +50,34 @@ class Desk(Protocol):
 
     @property
     def takes_time(self) -> bool:
-        """Whether it takes its time to do something about the fault."""
+        """Whether commands about the fault take time."""
 
     @property
     def restarts(self) -> bool:
-        """Whether calling the expert starts the robot process again."""
+        """Whether calling the expert also restarts the robot process."""
 
     @property
     def simulated(self) -> bool:
-        """Whether the expert is simulated, as all else in the room."""
+        """Whether the expert is simulated, like the room."""
 
     def acknowledge(self) -> None:
-        """Say that it was seen."""
+        """Acknowledge the fault."""
 
     async def call_expert(self) -> None:
-        """Note that the expert is needed, and do what Tangy itself can."""
+        """Call the expert, and recover what Tangy can."""
 
     def reached(self) -> None:
-        """Say that the expert was reached."""
+        """Log that staff reached the expert."""
 
     async def clear(self) -> None:
-        """Let the robot go on, if the fault is gone."""
+        """Clear the fault, if it is gone, so that the robot continues."""
 
     def give_up(self) -> None:
         """End the game."""
 
 
 class CriticalDialog(Dialog[None]):
-    """Stands until its fault is cleared or the game was given up; esc does not just hide it."""
+    """Stays open until its fault is cleared or the game is given up; esc does not just hide it."""
 
     DEFAULT_CSS = """
     CriticalDialog { background: $background; }  /* a dimmed game would take long to draw */
@@ -116,18 +116,18 @@ class CriticalDialog(Dialog[None]):
         self._status = Status()
         self._now = ""
         self._doing = ""
-        """What is being done, which takes its time; keys wait for it."""
+        """The command in progress, in words; other keys wait for it."""
         self._done = False
-        self._call = self._call_state()  # how the call to the expert stood when it was said last
-        self._staff = staff_words(desk.supervision)  # how the call to staff did
+        self._call = self._call_state()  # the state of the call to the expert when last shown
+        self._staff = staff_words(desk.supervision)  # the same for the call to staff
 
     @property
     def fault(self) -> Fault:
-        """The fault for which Tangy stands still."""
+        """The fault that halts the robot."""
         return self._fault
 
     def compose(self) -> ComposeResult:
-        """Lay out the status, which stays in sight, and the fault with its keys."""
+        """Lay out the status line, which stays visible, and the fault with its keys."""
         yield StatusLine(self._status)
         fault = self._fault
         said = halts.SEEN if fault.acknowledged else halts.SEEN_FIRST
@@ -146,13 +146,13 @@ class CriticalDialog(Dialog[None]):
         return Content(clean(halts.title(known_now(self._fault, self._desk.supervision))))
 
     def on_mount(self) -> None:
-        """Let the arrows scroll, and take note of the moment from which keys count."""
-        for page in self.query(Page):  # it may come up while the program is being left
+        """Focus the page, and accept keys from now on."""
+        for page in self.query(Page):  # it may open while the program is ending
             page.focus()
         self.fresh_keys.watch(self, self._clock)
 
     def show(self, status: Status) -> None:
-        """Show what has changed, in the status line and of the fault."""
+        """Update the status line and the fault."""
         self._status = status
         for line in self.query(StatusLine):
             line.show(status)
@@ -166,8 +166,8 @@ class CriticalDialog(Dialog[None]):
             keys.show(*self._key_words())
 
     def look(self) -> None:
-        """Update whether the fault is still there."""
-        if self._doing:  # it is being looked at, by another thread
+        """Update whether the fault is still present."""
+        if self._doing:  # another thread is checking it
             return
         if self._call != self._call_state() is not None:
             self.say(self._whom_to_call(False))
@@ -191,27 +191,27 @@ class CriticalDialog(Dialog[None]):
         return self._now
 
     def say(self, sentence: str) -> None:
-        """Say what a key did, or what has to be done first."""
+        """Show the result of a key, or what has to be done first."""
         for said in self.query(".said").results(Static):
             said.update(f"! {clean(with_keys(sentence, keymap_of(self.app)))}")
 
     def take_sentence(self, sentence: str) -> bool:
-        """Say a sentence of the program's here: nothing is to lie over the fault."""
+        """Show a sentence of the application here, so that nothing covers the fault."""
         self.say(sentence)
         return True
 
     def on_stop(self, message: Stop) -> None:
-        """Stay: the robot stands still, and the fault is still there."""
-        message.prevent_default()  # to a dialog of another kind STOP is a no
+        """Stay open on STOP: the robot stands still, and the fault is still present."""
+        message.prevent_default()  # STOP answers other dialogs with no
         self.say(halts.STOPPED)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
-        """Close where it was cleared while something lay over it."""
+        """Close if the fault was cleared while another screen was on top."""
         if self._done:
             self.answer(None)
 
     async def on_key(self, event: events.Key) -> None:
-        """Do what a key says, if the fault was on the screen by then."""
+        """Run the action of a key, if the fault was visible before."""
         key = keymap_of(self.app).action(event.key)
         if key not in ACTIONS or not self.fresh_keys.take(event):
             return
@@ -226,7 +226,7 @@ class CriticalDialog(Dialog[None]):
             await self._tried(key)
 
     def _takes(self, key: str) -> str:
-        """Say what a key has done that takes its time, "" if it has nothing done."""
+        """Describe the action of a key if it takes time; "" if it does not."""
         if key == "expert" and not self._called:
             if self._desk.restarts:
                 return halts.RESTARTING
@@ -273,7 +273,7 @@ class CriticalDialog(Dialog[None]):
                 self.run_worker(self._confirm(), group="give up", exclusive=True)
 
     def _whom_to_call(self, restarted: bool) -> str:
-        """Show whom to call, and how the call stands."""
+        """Tell whom to call, and the state of the call."""
         if self._desk.simulated:
             return halts.SIMULATED
         self._call = self._call_state()
@@ -285,14 +285,14 @@ class CriticalDialog(Dialog[None]):
 
     @property
     def _called(self) -> bool:
-        """Whether `e` has done what it can: no call failed, and `r` did not find it still there."""
+        """Whether the expert was called: no call failed, and no later check found the fault."""
         if (state := self._call_state()) is not None and state.stage == "failed":
             return False
         kinds = [m.kind for m in self._fault.moves if m.kind in ("expert called", "still there")]
         return kinds[-1:] == ["expert called"]
 
     async def _confirm(self) -> None:
-        """Give the game up, if that is meant."""
+        """Give the game up, after confirmation."""
         dialog = ConfirmDialog(
             halts.GIVE_UP,
             halts.GIVE_UP_DETAIL,
@@ -309,7 +309,7 @@ class CriticalDialog(Dialog[None]):
             self.answer(None)
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
     def _key_words(self) -> tuple[str, ...]:
         if self._doing:

@@ -1,4 +1,4 @@
-"""A policy that does not come out as it was kept: looked at, row by row, before it is used."""
+"""The rows in which a policy differs from the stored one, shown before it is used."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 
 Use = Literal["use", "keep", "back"]
-"""What is done with it: used this time, kept as it is now and used, or not used."""
+"""What to do with the policy: use it once, store and use it, or not use it."""
 
 ANSWERS: dict[str, Use] = {"y": "use", "1": "keep", "n": "back", "escape": "back"}
 
 
 class DifferenceDialog(Dialog[Use]):
-    """Says why the policy is another one, shows the rows that differ, and asks before using it."""
+    """Tells why the policy differs, shows the rows, and asks before using it."""
 
     DEFAULT_CSS = """
     DifferenceDialog > .box { width: 76; padding: 0 1; }
@@ -66,18 +66,18 @@ class DifferenceDialog(Dialog[Use]):
         yield box
 
     def on_mount(self) -> None:
-        """Let the arrows scroll, and take note of the moment from which keys count."""
+        """Focus the page, and accept keys from now on."""
         self.query_one(Page).focus()
         self.fresh_keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Answer by y, 1, n or esc; the arrows scroll."""
+        """Answer with y, 1, n or esc; the arrows scroll."""
         answer = ANSWERS.get(event.key.lower())
         if answer is not None and self.fresh_keys.take(event):
             self.answer(answer)
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
     def _write(self, width: int) -> list[PageLine]:
         lines = paragraph(clean(self._notice), width)

@@ -1,4 +1,4 @@
-"""Driving the robot by keys: it moves as long as a key is held, and stands when it is let go."""
+"""Driving the robot by keys: it moves while a key is held, and stops when it is released."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class DrivingDialog(HandDriving, Dialog[None]):
-    """The arrow keys drive; nothing moves that must not (a STOP, a fault)."""
+    """The arrow keys drive; a STOP or a fault prevents motion."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         *DRIVE_KEYS,
@@ -29,26 +29,26 @@ class DrivingDialog(HandDriving, Dialog[None]):
     HELP = DRIVE_HELP
 
     def __init__(self, link: RobotLink) -> None:
-        """Make the dialog for the robot at the other end of a link."""
+        """Create the dialog for the robot of a link."""
         HandDriving.__init__(self, link)
         Dialog.__init__(self, None)
 
     def compose(self) -> ComposeResult:
-        """Say what the keys do."""
+        """Show the keys."""
         box = Vertical(Static(DRIVE_HELP, markup=False), Static("", id="hazard"), classes="box")
         box.border_title = DRIVE_TITLE
         box.border_subtitle = Content("↑ ↓ ← → drive   esc ends")
         yield box
 
     def on_mount(self) -> None:
-        """Look all the time what the robot does."""
+        """Poll the robot's response."""
         self.set_interval(TELL_SECONDS, self.tell_held)
 
     def show_words(self, words: str) -> None:
-        """Show them below the keys."""
+        """Show the words below the keys."""
         self.query_one("#hazard", Static).update(Content(words))
 
     def action_close(self) -> None:
-        """Stand still, and drive no more."""
+        """Stop driving, and close."""
         self.drive(Twist())
         self.answer(None)

@@ -1,4 +1,4 @@
-"""One fault in full: what happened when, by what it was recognised, and what staff should do."""
+"""One fault in detail: timeline, evidence, and advice for staff."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from tangy_tui.ui.widgets.wrapping import wrap
 
 
 class FaultDialog(Dialog[None]):
-    """The timeline of a fault, its evidence, and the steps of the staff."""
+    """The timeline of a fault, its evidence, and the advice."""
 
     DEFAULT_CSS = """
     FaultDialog > .box { width: 78; padding: 0 1; }
@@ -52,7 +52,7 @@ class FaultDialog(Dialog[None]):
 
     @property
     def fault(self) -> Fault:
-        """The fault that is told of."""
+        """The fault shown."""
         return self._fault
 
     def compose(self) -> ComposeResult:
@@ -63,11 +63,11 @@ class FaultDialog(Dialog[None]):
         yield box
 
     def on_mount(self) -> None:
-        """Let the arrows scroll."""
+        """Focus the page."""
         self.query_one(Page).focus()
 
     def action_close(self) -> None:
-        """Go back."""
+        """Close the dialog."""
         self.answer(None)
 
     def _write(self, width: int) -> list[PageLine]:
@@ -82,7 +82,7 @@ class FaultDialog(Dialog[None]):
 
 
 def timeline(fault: Fault, width: int) -> list[PageLine]:
-    """Write each move with the time in the game."""
+    """Format each move with its time in the game, and its speech."""
     lines = _entry(fault.seconds, "noticed", width)
     for move in fault.moves:
         lines += _entry(move.seconds, move_words(move), width)
@@ -116,7 +116,7 @@ def evidence_lines(pieces: Sequence[EvidenceLine], width: int) -> list[PageLine]
 
 
 def advice_lines(advice: Sequence[str], width: int) -> list[PageLine]:
-    """Number the steps of the staff."""
+    """Format the numbered steps for staff."""
     lines: list[PageLine] = []
     for number, step in enumerate(advice, 1):
         first, *more = wrap(clean(step), max(10, width - 3))

@@ -1,4 +1,4 @@
-"""Choosing a fault to bring about in the simulated world, or to put right again."""
+"""The choice of a fault to inject into the simulated world, or to lift."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LONGEST = 30
 
 
 class InjectDialog(Dialog[str | None]):
-    """Lists all kinds of faults; letters filter them, a number or Enter takes one."""
+    """Lists all kinds of fault; letters filter, a number or Enter chooses."""
 
     DEFAULT_CSS = """
     InjectDialog > .box { width: 78; padding: 0 1; }
@@ -44,13 +44,14 @@ class InjectDialog(Dialog[str | None]):
     def __init__(
         self, there: Collection[str], to_come: Collection[str], called: Mapping[str, str]
     ) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
-            there: the kinds of fault that are there now.
+            there: the kinds of the present faults.
             to_come: the kinds that are still to come.
-            called: the kinds that can come to this robot, and what the console calls the fault of
-                each; it can be searched for, too.
+            called: the kinds that are possible for this robot, with the console's name of each
+                fault,
+                which the filter also matches.
         """
         super().__init__(None)
         self._all = [kind for kind in KINDS.values() if kind.name in called]
@@ -69,7 +70,7 @@ class InjectDialog(Dialog[str | None]):
         yield box
 
     def on_mount(self) -> None:
-        """Show all of them."""
+        """Show all kinds."""
         self.query_one(ChoiceList).focus()
         self._show()
 
@@ -112,7 +113,7 @@ class InjectDialog(Dialog[str | None]):
         return kind.name in self._there or kind.name in self._to_come
 
     def on_key(self, event: events.Key) -> None:
-        """Take one with Enter or a number; letters filter."""
+        """Choose with Enter or a number; letters filter."""
         if event.key in ("up", "down", "pageup", "pagedown", "home", "end"):
             return
         if event.key != "question_mark":
@@ -136,9 +137,9 @@ class InjectDialog(Dialog[str | None]):
             self._show()
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
 
 def comes_later(kind: str) -> bool:
-    """Say whether a fault shows only when the robot does something."""
+    """Return whether a fault is noticed only when the robot does something."""
     return KINDS[kind].shows != AT_ONCE

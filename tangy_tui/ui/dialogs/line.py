@@ -1,4 +1,4 @@
-"""A line that people type over a screen: what the dialogs have in common that ask for one."""
+"""The base of dialogs with one input line."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ class FreshInput(Input):
 
 
 class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
-    """Takes a line: Enter takes what `taken` makes of it, esc leaves.
+    """An input line: Enter submits it to `taken`, esc closes.
 
-    A line that is refused stays, with the reason below it.
+    A rejected line stays, with the reason below it.
     """
 
     DEFAULT_CSS = """
@@ -65,7 +65,7 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
         unasked: bool = False,
         clock: Clock | None = None,
     ) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
             title: the question.
@@ -83,10 +83,10 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
         self._fresh_keys, self._clock = FreshKeys() if unasked else None, clock
 
     def taken(self, line: str) -> ValueT | None:
-        """Return what a line means; None leaves.
+        """Return the value of a line; None closes the dialog.
 
         Raises:
-            TangyError: it is not to be taken.
+            TangyError: the line is rejected.
         """
         raise NotImplementedError
 
@@ -102,7 +102,7 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
         yield box
 
     def on_mount(self) -> None:
-        """Let the line be typed."""
+        """Focus the line."""
         line = self.query_one(Input)
         line.focus()
         if self._fresh_keys is not None:
@@ -111,7 +111,7 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
             line.cursor_position = len(self._begun)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Take the line, if it can be taken."""
+        """Submit the line, and show why if it is rejected."""
         event.stop()
         try:
             self.answer(self.taken(event.value))
@@ -121,10 +121,10 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
             wrong.add_class("-shown")
 
     def on_key(self, event: events.Key) -> None:
-        """Type letters into the line: none is a shortcut here."""
+        """Send letters to the line: none is a shortcut here."""
         if event.is_printable:
             event.stop()
 
     def action_leave(self) -> None:
-        """Go back."""
+        """Close the dialog."""
         self.answer(None)

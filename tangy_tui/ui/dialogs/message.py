@@ -1,4 +1,4 @@
-"""Something to read before going on: what went wrong, or where something was put."""
+"""A message to read before going on."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CLOSING_KEYS = ("enter", "space", "escape", "q")
 
 
 class MessageDialog(Dialog[None]):
-    """Shows a text, one paragraph for each line, until Enter, space or esc."""
+    """Shows a text, one paragraph for each line, until Enter, space, esc or q."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "nothing", "Close")]
     DEFAULT_CSS = """
@@ -48,14 +48,14 @@ class MessageDialog(Dialog[None]):
         yield box
 
     def on_mount(self) -> None:
-        """Let the arrows scroll, and take note of the moment from which keys count."""
+        """Focus the text, and accept keys from now on."""
         self.query_one(VerticalScroll).focus()
         self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Close on Enter, space or esc; the arrows scroll."""
+        """Close on Enter, space, esc or q; the arrows scroll."""
         if event.key in CLOSING_KEYS and self._keys.take(event):
             self.answer(None)
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""

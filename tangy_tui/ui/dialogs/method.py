@@ -1,4 +1,4 @@
-"""How Tangy is to choose and to learn for one person: three settings, and the way back."""
+"""The persuasion method for one person: three settings, and a reset."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FORGETTING = {
     (0.99, "day"): "1% with each day",
     (0.97, "day"): "3% with each day",
 }
-"""What can be chosen here; the command line takes any share."""
+"""The choices here; the command line takes any share."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class MethodChoice:
 
 
 class MethodDialog(Dialog[MethodChoice | None]):
-    """Shows the method for a person: 1, 2, 3 change a setting, 0 is the activity's own, y takes."""
+    """Shows a person's method: 1, 2, 3 change a setting, 0 resets to the activity's, y accepts."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("1", "nothing", "Change a setting", key_display="1-3", id="number"),
@@ -64,14 +64,14 @@ class MethodDialog(Dialog[MethodChoice | None]):
         *,
         clock: Clock | None = None,
     ) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
-            name: what the person is called.
-            current: what holds now; `own` says that it was chosen for this person alone.
-            own: whether it was chosen for this person.
-            default: the activity's.
-            clock: gives the time, in s.
+            name: the person's name.
+            current: the present settings.
+            own: whether they were chosen for this person alone.
+            default: the activity's settings.
+            clock: returns the time, in s.
         """
         super().__init__(None)
         self._whose = clean(name)
@@ -88,11 +88,11 @@ class MethodDialog(Dialog[MethodChoice | None]):
         yield box
 
     def on_mount(self) -> None:
-        """Take note of the moment from which keys count."""
+        """Accept keys from now on."""
         self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Change a setting, take the method, or leave it."""
+        """Change a setting, accept the method, or cancel."""
         if not self._keys.take(event):
             return
         match event.key.lower():
@@ -117,7 +117,7 @@ class MethodDialog(Dialog[MethodChoice | None]):
                 self._set(replace(self._chosen, forgetting=keep, forgetting_per=per))
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
     def _set(self, chosen: PersuasionConfig, *, own: bool = True) -> None:
         self._chosen, self._own = chosen, own
@@ -143,6 +143,6 @@ class MethodDialog(Dialog[MethodChoice | None]):
 
 
 def _next(known: dict[KeyT, str], now: KeyT) -> KeyT:
-    """Return the choice after the present one; after one that is not listed, the first."""
+    """Return the choice after the present one; after an unlisted one, the first."""
     keys = list(known)
     return keys[(keys.index(now) + 1) % len(keys)] if now in known else keys[0]

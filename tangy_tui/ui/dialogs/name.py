@@ -1,4 +1,4 @@
-"""Asking the teacher's name."""
+"""The dialog that asks for a name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tangy_tui.ui.type_ahead_guard import Clock
 
 
 class NameDialog(LineDialog[str]):
-    """Asks for a name; Enter takes what stands in the line, esc leaves it for another time."""
+    """Asks for a name; Enter accepts the line, esc closes."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Not now", priority=True)]
     HELP = "Type the name under which Tangy keeps what you show, and press Enter. Esc: not now."
@@ -42,5 +42,5 @@ class NameDialog(LineDialog[str]):
         )
 
     def taken(self, line: str) -> str:
-        """Return the name, or raise TangyError where it may not be kept."""
+        """Return the name; raises TangyError if it is not valid."""
         return checked(line)

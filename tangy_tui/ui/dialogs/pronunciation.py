@@ -1,4 +1,4 @@
-"""How a person's name is said: heard, accepted as suggested, or written otherwise."""
+"""The pronunciation of a person's name: listen, accept the suggestion, or edit it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ ACTIONS = {"enter": "submit", "escape": "screen.leave"}
 
 
 class PhonesInput(Input):
-    """The line with the phones; Enter counts once the dialog has been seen."""
+    """The input line for phones; Enter counts once the dialog is visible."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         *bind("hear", "screen.hear"),
@@ -64,7 +64,7 @@ class PhonesInput(Input):
 
 
 class PronunciationDialog(Dialog[NewPronunciation | None]):
-    """Shows how a name is said now or may be said; Enter notes what stands in the line."""
+    """Shows the present or suggested pronunciation of a name; Enter stores the line."""
 
     HELP = (
         "{hear} says what stands in the line. Enter notes it for this person, and what you say "
@@ -79,13 +79,13 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
         *,
         clock: Clock | None = None,
     ) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
-            person: whose name it is.
-            hear: has phones said aloud.
-            check: raises a `TangyError` if the name cannot be told from another when said so.
-            clock: seconds, on the scale of `time.monotonic` (default: the app's).
+            person: the person with the name.
+            hear: speaks phones aloud.
+            check: raises a `TangyError` if the pronunciation could be confused with another name.
+            clock: returns seconds, on the scale of `time.monotonic` (default: the app's clock).
         """
         super().__init__(None)
         self._person = person
@@ -95,7 +95,7 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
         self._clock = clock
 
     def compose(self) -> ComposeResult:
-        """Lay out what is known, the line, and the keys."""
+        """Lay out the present pronunciation, the line, and the keys."""
         with Vertical(classes="box") as box:
             box.border_title = Content(said_title(clean(self._person.name)))
             yield Static(clean(said_words(self._said)), markup=False)
@@ -111,14 +111,14 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
             )  # fmt: skip
 
     def on_mount(self) -> None:
-        """Give the line the keys, from the moment that it is seen."""
+        """Focus the line; keys count once it is visible."""
         line = self.query_one(PhonesInput)
         line.focus()
         line.cursor_position = len(line.value)
         line.keys.watch(self, self._clock)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Save the pronunciation, if it can be spoken."""
+        """Store the pronunciation, if it is valid."""
         if not event.value.strip():
             self.answer(NewPronunciation(None))
         elif phones := self._checked():
@@ -134,16 +134,16 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
         self._tell("")
 
     def action_hear(self) -> None:
-        """Say what stands in the line."""
+        """Speak the phones in the line."""
         if phones := self._checked():
             self._hear(phones)
 
     def action_leave(self) -> None:
-        """Go back."""
+        """Close the dialog."""
         self.answer(None)
 
     def _checked(self) -> str:
-        """Return the phones in the line; "" if they are wrong, which is then said."""
+        """Return the phones in the line; "" if they are wrong, after showing the mistake."""
         try:
             return check_name(self.query_one(PhonesInput).value, self._person.name)
         except TangyError as error:

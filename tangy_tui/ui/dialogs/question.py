@@ -1,7 +1,6 @@
-"""The verification of a command (III-A-1): a pop-up names the behaviour that was understood.
+"""The verification of a command (III-A-1): a pop-up names the recognised behaviour.
 
-Where words are unsure it offers up to three of them; each that is chosen is asked about in its
-turn.
+If recognition is unsure, it offers up to three behaviours; a chosen one is then verified in turn.
 """
 
 from __future__ import annotations
@@ -42,14 +41,14 @@ CONFIDENCE = "confidence"
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What the teacher said: yes, or no, or no but the alternative of this index (from 0)."""
+    """The teacher's answer: yes, no, or the alternative with this index (from 0)."""
 
     yes: bool
     alternative: int | None = None
 
     @property
     def reply(self) -> Reply:
-        """The answer as a session takes it."""
+        """The answer in the form that a session takes."""
         return Reply(self.yes, None if self.alternative is None else self.alternative + 1)
 
 
@@ -59,11 +58,12 @@ Parts = list[str | tuple[str, str] | Content]
 
 
 class VerifyingDialog(Dialog[Answer]):
-    """Base of both dialogs: the heard words, numbered choices, and guarded keys.
+    """Base of both dialogs: the recognised words, numbered choices, and guarded keys.
 
-    It is drawn in the place of the command bar, so that little changes on the screen. Enter and
-    space do nothing. Keys that were typed before it was seen do not answer it, nor does what was
-    said before. On a no the caller puts the text back into the command bar.
+    It replaces the command bar, so that little changes on the screen. Enter and space do nothing.
+    Keys typed, or words spoken, before it was visible do not answer it. On a no, the caller puts
+    the
+    text back into the command bar.
     """
 
     DEFAULT_CSS = """
@@ -83,14 +83,14 @@ class VerifyingDialog(Dialog[Answer]):
         aloud: str = "",
         clock: Clock | None = None,
     ) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
-            heard: the words that it was understood from.
-            confidence: from 0 to 1.
+            heard: the recognised words.
+            confidence: of the recognition, from 0 to 1.
             choices: behaviours in the words of the activity; the first three are offered.
-            aloud: how an answer by voice begins ("Or say"), if there can be one.
-            clock: seconds, on the scale of `time.monotonic` (default: the app's).
+            aloud: the words before the spoken answers ("Or say"), "" if answers cannot be spoken.
+            clock: returns seconds, on the scale of `time.monotonic` (default: the app's clock).
         """
         super().__init__(NO)
         self._heard = shorten(clean(heard), LONGEST_HEARD)
@@ -105,20 +105,20 @@ class VerifyingDialog(Dialog[Answer]):
 
     @property
     def painted(self) -> bool:
-        """Whether it is on the screen, so that it can be answered."""
+        """Whether it is visible, so that it can be answered."""
         return self._keys.seen
 
     def compose(self) -> ComposeResult:
-        """Lay out question, keys, and what it rests on."""
+        """Lay out question, keys, and the recognised words."""
         self.yes_key = yes_key_of(self.app)
         yield Static(self._content(), id=self.ID, classes="box")
 
     def on_mount(self) -> None:
-        """Take note of the moment from which keys count."""
+        """Accept keys from now on."""
         self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Answer by its yes, n, esc or a number, if the question was seen by then."""
+        """Answer with the key for yes, n, esc or a number, if the question was visible before."""
         key = event.key.lower()
         if not self._keys.take(event):
             if key in (self.yes_key, "y", "n", "escape", *self._numbers):
@@ -134,11 +134,11 @@ class VerifyingDialog(Dialog[Answer]):
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """What can be chosen by its number or its words."""
+        """The choices, by number or by their words."""
         return self._choices
 
     def hear(self, *, yes: bool, alternative: int | None = None) -> str:
-        """Take a spoken answer; return the problem with it, "" if there is none."""
+        """Handle a spoken answer; return the problem with it, "" if there is none."""
         if not self.painted:
             return SAID_TOO_EARLY
         if alternative is not None and alternative <= len(self._choices):
@@ -150,9 +150,9 @@ class VerifyingDialog(Dialog[Answer]):
         return ""
 
     def tell(self, sentence: str, colour: str = "$foreground") -> None:
-        """Show a sentence about hearing at the foot, in place of the last one; "" shows none.
+        """Show a sentence about speech input at the foot, instead of the last one; "" shows none.
 
-        The log behind the dialog may be hidden by it.
+        The dialog may cover the log, which also has the sentence.
         """
         told = (shorten(clean(sentence), LONGEST_TOLD), colour) if sentence else None
         if told != self._told and self.is_attached:
@@ -160,27 +160,27 @@ class VerifyingDialog(Dialog[Answer]):
             self._write()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Show as much as there is room for."""
+        """Show as much as fits."""
         if self._told is not None:
             self._write()
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
     def _write(self) -> None:
         self.query_one(f"#{self.ID}", Static).update(self._content())
 
     def _yes(self) -> str:
-        """Take a yes; return the problem with it."""
+        """Handle a yes; return the problem with it."""
         raise NotImplementedError
 
     @property
     def _sayable(self) -> str:
-        """The answers that can be given by voice."""
+        """The answers that can be spoken."""
         return "yes or no"
 
     def _content(self) -> Content:
-        """Write the question."""
+        """Format the question."""
         raise NotImplementedError
 
     def _listed(self, before: str = "   ") -> Parts:
@@ -210,10 +210,9 @@ class VerifyingDialog(Dialog[Answer]):
 
 
 class QuestionDialog(VerifyingDialog):
-    """Asks "Did you say: call number?" and takes y for yes, n or esc for no, 1-3 for another.
+    """Asks "Did you say: call number?" : y is yes, n or esc no, 1-3 another behaviour.
 
-    Only y and Y execute. An alternative is verified again by the caller, with a question of its
-    own.
+    Only y and Y execute. The caller verifies an alternative with another question.
     """
 
     ID = "question"
@@ -238,15 +237,16 @@ class QuestionDialog(VerifyingDialog):
         aloud: str = "",
         clock: Clock | None = None,
     ) -> None:
-        """Make the question.
+        """Create the question.
 
         Args:
-            behaviour: what was understood, in the words of the activity (with whom, if need be).
-            heard: what was typed or said.
-            confidence: how sure it is, from 0 to 1.
-            alternatives: other behaviours it may have been; the first three are offered.
-            aloud: whether the answer may be spoken.
-            clock: gives the time, in s.
+            behaviour: the recognised behaviour, in the words of the activity, with its target if
+                any.
+            heard: the typed or recognised words.
+            confidence: of the recognition, from 0 to 1.
+            alternatives: other possible behaviours; the first three are offered.
+            aloud: the words before the spoken answers, "" if answers cannot be spoken.
+            clock: returns the time, in s.
         """
         super().__init__(
             heard=heard, confidence=confidence, choices=alternatives, aloud=aloud, clock=clock
@@ -280,9 +280,9 @@ class QuestionDialog(VerifyingDialog):
 
 
 class ChoicesDialog(VerifyingDialog):
-    """Asks "Did you mean" one of up to three: 1-3 choose one to be asked about, n or esc none.
+    """Asks "Did you mean" with up to three choices: 1-3 choose one, which is then verified.
 
-    A yes chooses where there is only one; of several it does not say which.
+    n or esc choose none. A yes only chooses if there is a single choice.
     """
 
     ID = "choices"
@@ -319,7 +319,7 @@ class ChoicesDialog(VerifyingDialog):
 
 
 def dialog_for(question: Asked | Offered, aloud: str = "") -> VerifyingDialog:
-    """Make the dialog for what a session asks; words typed letter by letter are not repeated."""
+    """Create the dialog for a session's question; exactly typed words are not repeated."""
     if isinstance(question, Offered):
         return ChoicesDialog(
             heard=question.heard,

@@ -1,4 +1,4 @@
-"""A remark on the last step, in the place of the command bar: a number answers it, esc waits."""
+"""A remark on the last step, instead of the command bar: a number answers it, esc postpones it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 
 class RemarkDialog(Dialog[RemarkAnswer]):
-    """Says what may have been overlooked; a number answers it, esc leaves it for later."""
+    """Tells what may have been overlooked; a number answers it, esc postpones it."""
 
     DEFAULT_CSS = """
     RemarkDialog { align: left bottom; background: transparent; }
@@ -48,13 +48,13 @@ class RemarkDialog(Dialog[RemarkAnswer]):
         *,
         clock: Clock | None = None,
     ) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
             sentence: the remark.
-            answers: what can be answered, with its words; the first one by 1.
-            later: what esc does, in words.
-            clock: seconds, on the scale of `time.monotonic` (default: the app's).
+            answers: the possible answers with their words; 1 gives the first.
+            later: the action of esc, in words.
+            clock: returns seconds, on the scale of `time.monotonic` (default: the app's clock).
         """
         super().__init__("later")
         self._sentence = clean(sentence)
@@ -65,15 +65,15 @@ class RemarkDialog(Dialog[RemarkAnswer]):
         self._told = ""
 
     def compose(self) -> ComposeResult:
-        """Lay out the sentence and the answers."""
+        """Lay out the remark and the answers."""
         yield Static(self._content(), id="remark", classes="box")
 
     def on_mount(self) -> None:
-        """Take note of the moment from which keys count."""
+        """Accept keys from now on."""
         self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Answer by a number or esc, if the remark was seen by then."""
+        """Answer with a number or esc, if the remark was visible before."""
         known = event.key == "escape" or event.key in self._answers
         if not self._keys.take(event):
             if known:
@@ -86,7 +86,7 @@ class RemarkDialog(Dialog[RemarkAnswer]):
             self._tell(NUMBER_OR_ESC)
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
     def _tell(self, sentence: str) -> None:
         if sentence != self._told:
@@ -104,7 +104,7 @@ class RemarkDialog(Dialog[RemarkAnswer]):
 
 
 def remark_dialog(remark: Remark, teaching: TeachingSession) -> RemarkDialog:
-    """Make the dialog for a remark of a session."""
+    """Create the dialog for a remark of a session."""
     activity, game = teaching.activity, teaching.demonstration.id
     answers = zip(answers_to(remark), answer_words(remark, activity), strict=True)
     sentence = remark_words(remark, activity, teaching.name, game)

@@ -17,11 +17,11 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import Stop
 
 LOOK_SECONDS = 0.2
-"""Between two looks at what is being started."""
+"""The interval of checks for the part that is being started, in s."""
 
 
 class SwitchingOnDialog(Dialog[None]):
-    """Stays until the robot is on, or off again. Esc, STOP, and leaving the program call it off."""
+    """Stays until the robot is on, or off again. Esc, STOP and the end of the program cancel it."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "call_off", "Leave it off")]
     HELP = "Wait until the robot is switched on, or press esc to leave it off."
@@ -32,12 +32,12 @@ class SwitchingOnDialog(Dialog[None]):
         call_off: Callable[[], None],
         parts: Callable[[], Sequence[str]] = tuple,
     ) -> None:
-        """Make it.
+        """Create the dialog.
 
         Args:
-            title: which robot it is.
-            call_off: is called when somebody wants it left off, perhaps more than once.
-            parts: returns, in lines, what was started so far, and what is being started.
+            title: the robot's title.
+            call_off: cancels the start; may be called more than once.
+            parts: returns lines with the parts that are started, and the one in progress.
         """
         super().__init__(None)
         self._title = clean(title)
@@ -45,45 +45,45 @@ class SwitchingOnDialog(Dialog[None]):
         self._parts = parts
         self._told: Sequence[str] = ()
         self.called_off = False
-        """Whether somebody wants it left off."""
+        """Whether the start was cancelled."""
         self._shown = asyncio.Event()
 
     def compose(self) -> ComposeResult:
-        """Lay out what goes on, and the key."""
+        """Lay out the progress and the key."""
         yield Static(self._text(), id="switching-on", classes="box")
 
     def on_mount(self) -> None:
-        """Take note when this can be read."""
+        """Note when the dialog is visible."""
         self.call_after_refresh(self._shown.set)
         self.set_interval(LOOK_SECONDS, self._look)
 
     def _look(self) -> None:
-        """Show what is being started, if that is another part now."""
+        """Show the part in progress, if it changed."""
         if (parts := tuple(self._parts())) != self._told:
             self._told = parts
             self.query_one("#switching-on", Static).update(self._text())
 
     async def shown(self) -> None:
-        """Wait until this can be read, and keys are heard."""
+        """Wait until the dialog is visible and takes keys."""
         await self._shown.wait()
 
     def over(self) -> None:
-        """Go: the robot is on, or off again."""
+        """Close: the robot is on, or off again."""
         if self not in self.app.screen_stack:
             return
-        while self.app.screen is not self:  # somebody may read the help
+        while self.app.screen is not self:  # help may be open
             self.app.pop_screen()
         self.answer(None)
 
     def action_call_off(self) -> None:
-        """Leave the robot off."""
+        """Cancel the start."""
         self.called_off = True
         self._call_off()
         for text in self.query(Static):
             text.update(self._text())
 
     def on_stop(self, message: Stop) -> None:
-        """Take STOP for it."""
+        """Cancel the start on STOP."""
         self.action_call_off()
 
     def _text(self) -> Content:

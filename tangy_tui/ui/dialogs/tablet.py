@@ -22,7 +22,7 @@ class TabletDialog(MessageDialog):
 
 
 def qr_lines(text: str) -> list[str]:
-    """Draw a text as a QR code, two modules to a line of cells: dark ones are left blank."""
+    """Draw a text as a QR code, with two modules in a cell; dark ones are blank."""
     import segno
 
     rows = [[not dark for dark in row] for row in segno.make(text, error="l").matrix]

@@ -1,4 +1,4 @@
-"""Telling what a person answers or does, in a line."""
+"""The input line for a report about a person."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tangy_tui.ui.dialogs.line import LineDialog
 
 
 class TellDialog(LineDialog[str]):
-    """Takes a line; Enter tells it, esc tells nothing."""
+    """An input line: Enter submits the report, esc closes."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "leave", "Tell nothing", priority=True)
@@ -20,11 +20,11 @@ class TellDialog(LineDialog[str]):
     HELP = TELL_HELP
 
     def __init__(self, waits_for: str, sayable: Sequence[str]) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
-            waits_for: the name of whom the game waits for, "" for nobody.
-            sayable: words that say something now.
+            waits_for: the name of the person the game waits for, "" for nobody.
+            sayable: the words that have a meaning now.
         """
         super().__init__(TELL, telling_words(waits_for, sayable), TELL_KEYS)
 

@@ -1,4 +1,4 @@
-"""Why this? The grounds of one decision: votes, demonstrated steps, and the draws of a strategy."""
+"""The explanation of one decision: votes, demonstrated steps, and the draws of a strategy."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ SHORTEST_CURVE = 4
 
 
 class WhyDialog(Dialog[None]):
-    """The situation, the votes, the steps that it rests on, and the draws behind a strategy.
+    """The situation, the votes, the steps behind a decision, and the draws of a strategy.
 
-    Up and down go from step to step and scroll; Enter opens the step where it was demonstrated.
+    Up and down go from step to step and scroll; Enter opens the step in its demonstration.
     """
 
     DEFAULT_CSS = """
@@ -62,14 +62,14 @@ class WhyDialog(Dialog[None]):
         title: str = "Why this?",
         remarks: Sequence[str] = (),
     ) -> None:
-        """Make the dialog.
+        """Create the dialog.
 
         Args:
-            workspace: what it belongs to.
-            why: the grounds of a decision.
-            choice: the strategy that was chosen with the decision, if one was.
-            title: what stands in the frame.
-            remarks: sentences that go before the others, such as who answered what.
+            workspace: the workspace of the decision.
+            why: the explanation of the decision.
+            choice: the strategy that was chosen with the decision, if any.
+            title: the title of the dialog.
+            remarks: sentences before the others, such as who answered what.
         """
         super().__init__(None)
         self._workspace = workspace
@@ -82,7 +82,7 @@ class WhyDialog(Dialog[None]):
 
     @property
     def why(self) -> Why:
-        """What is explained."""
+        """The explanation shown."""
         return self._why
 
     def compose(self) -> ComposeResult:
@@ -93,11 +93,11 @@ class WhyDialog(Dialog[None]):
         yield box
 
     def on_mount(self) -> None:
-        """Let the arrows choose."""
+        """Focus the page."""
         self.query_one(Page).focus()
 
     def action_close(self) -> None:
-        """Go back."""
+        """Close the dialog."""
         self.answer(None)
 
     def on_page_chosen(self, event: Page.Chosen) -> None:
@@ -130,7 +130,7 @@ class WhyDialog(Dialog[None]):
         return lines
 
     def _step(self, shown: Shown, elsewhere: bool, width: int) -> tuple[Span, ...]:
-        """Write a step: what, where it stands, by whom; of a near one its situation too."""
+        """Format a step: behaviour, demonstration, teacher; for a similar situation, that too."""
         number = self._numbers.get(shown.demonstration)
         where = f"demonstration {number}" if number else shown.demonstration
         behaviour = clean(self._workspace.activity.behaviour_words(shown.step.behaviour))
@@ -147,7 +147,7 @@ class WhyDialog(Dialog[None]):
 
 
 def vote_lines(activity: Activity, why: Why, width: int) -> list[PageLine]:
-    """Draw the votes as bars, most first."""
+    """Draw the votes as bars, the largest first."""
     votes = why.decision.votes
     names = [clean(activity.behaviour_words(behaviour)) for behaviour, _ in votes]
     label = min(max(map(cell_len, names)), max(8, width - 12))
@@ -171,7 +171,7 @@ def vote_lines(activity: Activity, why: Why, width: int) -> list[PageLine]:
 
 
 def choice_lines(choice: StrategyChoice, name: str, width: int) -> list[PageLine]:
-    """Tell how a strategy was chosen: the number of each, and the belief that it came from."""
+    """Explain the choice of a strategy: the draw of each, and its posterior."""
     lines = heading(strategy_title(clean(name), clean(choice.strategy)))
     if choice.method:
         lines += paragraph(chosen_words(clean(choice.method)), width)

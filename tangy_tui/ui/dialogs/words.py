@@ -1,4 +1,4 @@
-"""Choosing one of some words."""
+"""The choice of one of some words."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tangy_tui.ui.widgets.rows import Row
 
 
 class WordsDialog(Dialog[str | None]):
-    """Shows words; up and down, or their first letter, go to one, and Enter chooses it."""
+    """Lists words; up and down or first letters move the cursor, Enter chooses."""
 
     DEFAULT_CSS = """
     WordsDialog > .box { width: 50; padding: 0 1; }
@@ -44,7 +44,7 @@ class WordsDialog(Dialog[str | None]):
         yield box
 
     def on_mount(self) -> None:
-        """Show the words, and take note of the moment from which keys count."""
+        """Show the words, and accept keys from now on."""
         words = self.query_one(ChoiceList)
         words.styles.height = len(self._words)
         words.show(lambda width, height: [ChoiceLine(_row(word), word) for word in self._words])
@@ -52,7 +52,7 @@ class WordsDialog(Dialog[str | None]):
         self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Choose with Enter, go back with esc, jump to a first letter."""
+        """Choose with Enter, close with esc, jump to a first letter."""
         words = self.query_one(ChoiceList)
         if event.key in ("enter", "escape"):
             if self._keys.take(event):
@@ -62,7 +62,7 @@ class WordsDialog(Dialog[str | None]):
             self._jump(words, event.character.lower())
 
     def _jump(self, words: ChoiceList, letter: str) -> None:
-        """Put the cursor on the next word that begins with a letter."""
+        """Move the cursor to the next word with this first letter."""
         at = self._words.index(str(words.chosen))
         turned = self._words[at + 1 :] + self._words[: at + 1]
         found = next((word for word in turned if word.lower().startswith(letter)), None)
@@ -70,7 +70,7 @@ class WordsDialog(Dialog[str | None]):
             words.action_choose(self._words.index(found) - at)
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
 
 def _row(word: str) -> Row:
