@@ -1,1 +1,1 @@
-"""The screens: everything that knows of Textual."""
+"""The user interface: everything that depends on Textual."""

@@ -1,4 +1,4 @@
-"""Choosing at home which activity is taught and played."""
+"""The choice of another activity on the home screen."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 async def choose_at_home(program: Program) -> None:
-    """Ask for another activity, and switch to it."""
+    """Ask for another activity, and change to it."""
     from tangy_tui.ui.screens.home import HomeScreen
 
     before = program.workspace.profile
@@ -34,7 +34,7 @@ async def choose_activity(program: Program, take: Callable[[str], object]) -> No
     """Ask for another activity, and call `take` with it.
 
     Raises:
-        TangyError: it cannot be taken up.
+        TangyError: it cannot be used.
     """
     from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 
@@ -50,9 +50,9 @@ async def choose_activity(program: Program, take: Callable[[str], object]) -> No
 
 
 def choices(workspace: Workspace) -> list[tuple[str, str, str]]:
-    """Return the activities there are: word, title, and what each is like; the present one first.
+    """Return the activities to choose from: name, title and note, the present one first.
 
-    A file of one's own is among them while it is the present one.
+    The user's own file is included while it is the present activity.
     """
     there = choosable(workspace.profile, workspace.activity)
     return [(name, activity.title, activity_note(activity)) for name, activity in there]

@@ -1,23 +1,16 @@
-"""The frame of the program: colours, keys that work everywhere, and leaving in good order.
+"""The application: colours, global key bindings, and an orderly exit.
 
-Widget ids that scripts and testers may rely on:
-    #home        the choices of the first screen
-    #status      the status line, at the top of every screen
-    #room        the room with robot and people
-    #transcript  the numbered steps of a demonstration or a game
-    #command     the command bar (its line to type in is #command-input)
-    #question    the question that verifies a command
-    #confirm, #message, #help    the other dialogs
-    #switching-on  says that a robot is being switched on
-    #posteriors  what is believed of each person
-    #policy      the policy table
-    #log         what happened, in sentences
-    #coverage    which situations were shown, and which not
-    #demonstrations  the list of the library; #step is one step of a demonstration in full
-    #answers     the answers of a conflict, side by side
-    #why         the grounds of a decision
-    #devices     the state of every device; #about one of them, #picture what a camera sees,
-                 #card the last card that was read
+Stable widget ids for scripts and testers:
+    #home        the choices of the first screen #status      the status line, at the top of every
+        screen #room        the room with robot and people #transcript  the numbered steps of a
+        demonstration or a game #command     the command bar (its input line is #command-input)
+        #question    the question that verifies a command #confirm, #message, #help    the other
+        dialogs #switching-on  shown while a robot is being switched on #posteriors  the posteriors
+        of each person #policy      the policy table #log         the events in sentences #coverage
+        the situations covered by demonstrations, and the missing ones #demonstrations  the list of
+        the library; #step is one step of a demonstration in detail #answers     the answers of a
+        conflict, side by side #why         the explanation of a decision #devices     the state of
+        every device; #about one of them, #picture the picture of a camera, #card the last card read
 """
 
 from __future__ import annotations
@@ -66,14 +59,14 @@ HANGUP_CODE = 129
 TERMINATED_CODE = 143
 
 FirstScreen = Callable[[], Screen[Any]]
-"""Makes the screen that the program begins with."""
+"""Creates the first screen of the program."""
 
 
 class TangyApp(App[None]):
-    """The program on a terminal. The screens bring the rest.
+    """The Textual application. Its screens are pushed from outside.
 
-    `return_code` is 0 after a normal end, 129 when the terminal went away, 143 after SIGTERM.
-    Every way out says `Stop` to all open screens first.
+    `return_code` is 0 after a normal end, 129 after the terminal was closed, 143 after SIGTERM.
+    Every exit first sends `Stop` to all open screens.
     """
 
     TITLE = "Tangy"
@@ -104,16 +97,16 @@ class TangyApp(App[None]):
         keymap: Keymap = DEFAULT,
         link: LinkSpeed = "auto",
     ) -> None:
-        """Make the program.
+        """Create the application.
 
         Args:
-            first: makes the first screen (default: an empty one).
-            kind: how the terminal is to be used (`terminal.terminal_kind()` finds out).
-            pictures: the folder that pictures of the screen are saved to (default: the current).
-            clock: seconds, on the scale of `time.monotonic`; dialogs and the room use it.
-            question: how a question takes a yes.
-            keymap: which keys do what.
-            link: how fast the way to the terminal is.
+            first: creates the first screen (default: an empty one).
+            kind: the capabilities of the terminal (see `terminal.terminal_kind()`).
+            pictures: the folder for screenshots (default: the current one).
+            clock: returns seconds, on the scale of `time.monotonic`; dialogs and the room use it.
+            question: the key for a yes to a question.
+            keymap: the keys of the actions.
+            link: the speed of the connection to the terminal.
         """
         kind = kind or TerminalKind()
         super().__init__(ansi_color=True if kind.ansi else None)
@@ -125,11 +118,12 @@ class TangyApp(App[None]):
         self.kind = kind
         self.clock = clock
         self.mouse = True
-        """Whether the mouse is Tangy's; without it, text is selected and copied as usual."""
+        """Whether Tangy handles the mouse; otherwise the terminal selects and copies text as usual.
+        """
         self._first = first
         self._pictures = pictures
         self.leaving = False
-        """Whether the program ends: what stops then, stops for that."""
+        """Whether the program is ending, which is then why things stop."""
         self._reader = KeyReader(self)
         self.frames = HeldWrites(lambda: None if self.is_headless else self._driver)
         self._shown = ScreenDiff()
@@ -139,12 +133,12 @@ class TangyApp(App[None]):
         self._link = link
         self.set_keymap(keymap.overrides())
         self.round_trip: RoundTrip | None = None
-        """What asks the terminal whether a question was seen; None where there is none."""
+        """Asks the terminal whether it has drawn a question; None if it cannot."""
 
     async def on_event(self, event: events.Event) -> None:
-        """Stop where the word is typed or pasted among keys, and let the rest of it be no keys."""
+        """Handle a typed or pasted stop first, so that its letters are not taken as keys."""
         if isinstance(event, events.Resize):
-            if self._measured:  # the first one says only how large the terminal is
+            if self._measured:  # the first one only reports the size
                 self._shown.forget()
             self._measured = True
             if self.round_trip is not None:
@@ -153,17 +147,17 @@ class TangyApp(App[None]):
             await super().on_event(event)
 
     def get_default_screen(self) -> Screen[Any]:
-        """Begin with the screen that was asked for."""
+        """Return the first screen."""
         screen = self._first() if self._first is not None else super().get_default_screen()
-        self._load_screen_css(screen)  # Textual does this only for screens that are pushed
+        self._load_screen_css(screen)  # Textual only does this for pushed screens
         return screen
 
     def get_theme_variable_defaults(self) -> dict[str, str]:
-        """Colours of the inks for themes that are not Tangy's own."""
+        """Return the colours of the inks for themes that are not Tangy's own."""
         return INK_DEFAULTS
 
     def on_mount(self) -> None:
-        """End in good order when the terminal goes away or the system says so."""
+        """Exit in order on SIGHUP and SIGTERM."""
         loop = asyncio.get_running_loop()
         for number, code in ((signal.SIGHUP, HANGUP_CODE), (signal.SIGTERM, TERMINATED_CODE)):
             # Not on Windows, and not outside of the main thread.
@@ -174,7 +168,7 @@ class TangyApp(App[None]):
             self.call_after_refresh(self._meet_terminal)
 
     def _meet_terminal(self) -> None:
-        """Find out whether the terminal answers, and so proves that a question was seen."""
+        """Find out whether the terminal replies, which proves that it has drawn a question."""
         self.round_trip = RoundTrip(
             self._to_terminal,
             terminal_session,
@@ -186,7 +180,7 @@ class TangyApp(App[None]):
         self.round_trip.begin(self.size)
 
     def _to_terminal(self, sequence: str) -> None:
-        """Write behind everything that was drawn so far."""
+        """Write after everything drawn so far."""
         if self._driver is not None:
             self._driver.write(sequence)
             self._driver.flush()
@@ -199,17 +193,17 @@ class TangyApp(App[None]):
         return self.round_trip.slow
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
-        """Handle the terminal's reply: everything drawn before it has arrived."""
+        """Handle the terminal's reply: everything drawn before has arrived."""
         if self.round_trip is not None:
             self.round_trip.reported(event.x, event.y, event.time)
 
     def stop(self, reason: str) -> None:
-        """Say to every open screen, the topmost first, that the robot must stop."""
+        """Send `Stop` to every open screen, the topmost first."""
         for screen in reversed(self.screen_stack):
             screen.post_message(Stop(reason))
 
     def leave(self, code: int = 0, reason: str = "the program ends") -> None:
-        """Say stop, let every screen act on it, and end with this exit status."""
+        """Send `Stop`, wait until every screen has handled it, and exit with this status."""
         if self.leaving:
             return
         self.leaving = True
@@ -227,7 +221,7 @@ class TangyApp(App[None]):
                 heard()
 
     def action_stop(self) -> None:
-        """Stop the robot; where nothing could move, say so."""
+        """Stop the robot; if nothing could be moving, tell that."""
         from tangy_tui.ui.base import Dialog
 
         moving = [s for s in self.screen_stack if hasattr(s, "on_stop")]
@@ -236,7 +230,7 @@ class TangyApp(App[None]):
         self.stop("ctrl+x was pressed")
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
-        """Write only the cells that changed; where none did, nothing."""
+        """Write only the cells that changed, if any."""
         if (
             isinstance(renderable, LayoutUpdate | ChopsUpdate)
             and self._driver is not None
@@ -255,10 +249,11 @@ class TangyApp(App[None]):
         super()._display(screen, renderable)
 
     def _handle_exception(self, error: Exception) -> None:
-        """Let a screen that was still being laid out when the program ended go unfinished.
+        """Ignore errors of a screen that was still being laid out when the program ended.
 
-        Textual mounts nothing once a program exits, so that such a screen looks for its parts in
-        vain: no error for who has closed the window. Every other error is told.
+        Textual mounts nothing once an application exits, so that such a screen does not find its
+        widgets.
+        All other errors are reported.
         """
         if not (self._exit and isinstance(error, NoMatches)):
             super()._handle_exception(error)
@@ -268,7 +263,7 @@ class TangyApp(App[None]):
         self.leave()
 
     def action_help(self) -> None:
-        """Show the help for where the user is, or close it."""
+        """Show help for the focused widget and the screen, or close it."""
         from tangy_tui.ui.screens.help import HelpScreen, help_for
 
         if isinstance(self.screen, HelpScreen):
@@ -277,17 +272,17 @@ class TangyApp(App[None]):
             self.push_screen(HelpScreen(help_for(self.screen)))
 
     def action_command(self) -> None:
-        """Give the keys to the command bar, if the screen has one."""
+        """Focus the command bar, if the screen has one."""
         with suppress(NoMatches):
             self.screen.query_one("#command-input").focus()
 
     async def action_back(self) -> None:
-        """Go back to the screen before; the first one stays."""
+        """Return to the previous screen; the first one stays."""
         if len(self.screen_stack) > 1:
             self.pop_screen()
 
     def action_zoom(self) -> None:
-        """Let the panel that has the keys fill the screen, or give it its place back."""
+        """Maximise the focused panel, or restore it."""
         screen, panel = self.screen, self.screen.focused
         if screen.maximized is not None:
             screen.minimize()
@@ -295,7 +290,7 @@ class TangyApp(App[None]):
             screen.maximize(panel)
 
     def action_picture(self) -> None:
-        """Save the screen as an SVG picture and say where."""
+        """Save the screen as an SVG picture, and tell its path."""
         folder = self._pictures or Path.cwd()
         name = f"tangy-{datetime.now().astimezone():%Y-%m-%d-%H%M%S}.svg"
         try:
@@ -307,12 +302,12 @@ class TangyApp(App[None]):
             self.say(f"Saved {path}")
 
     def action_draw_again(self) -> None:
-        """Draw the whole screen: something else may have written on the terminal."""
+        """Redraw the whole screen, after other output on the terminal."""
         self._shown.forget()
         self.screen.refresh(layout=True)
 
     def action_mouse(self) -> None:
-        """Take the mouse, or leave it to the terminal so that text can be copied."""
+        """Handle the mouse, or leave it to the terminal for copying text."""
         self.use_mouse(not self.mouse)
         if self.mouse:
             self.say(text.MOUSE_ON)
@@ -320,7 +315,7 @@ class TangyApp(App[None]):
             self.say(text.MOUSE_OFF)
 
     def use_mouse(self, on: bool) -> None:
-        """Take the mouse, or leave it to the terminal."""
+        """Handle the mouse, or leave it to the terminal."""
         driver: Any = self._driver
         if driver is not None and hasattr(driver, "_enable_mouse_support"):
             if on:
@@ -332,7 +327,7 @@ class TangyApp(App[None]):
         self.mouse = on
 
     def say(self, sentence: str, *, bad: bool = False, seconds: float | None = None) -> None:
-        """Show a sentence for a few (or so many) s, unless the screen has a better place for it."""
+        """Show a sentence for some s, unless the screen has a better place for it."""
         sentence = with_keys(sentence, self.keymap)
         take = getattr(self.screen, "take_sentence", None)
         if take is not None and take(sentence):
@@ -341,19 +336,19 @@ class TangyApp(App[None]):
         self.notify(clean(sentence), severity=severity, timeout=seconds, markup=False)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """List what the command palette offers beside the keys."""
+        """List the commands of the palette that have no key."""
         for (name, like), theme in zip(text.COLOURS.items(), (DARK, LIGHT, ANSI), strict=True):
             yield SystemCommand(name, like, self._themed(theme.name))
 
     def action_command_palette(self) -> None:
-        """Show the command palette, unless it is there."""
+        """Show the command palette, unless it is open."""
         from tangy_tui.ui.palette import Palette
 
         if not isinstance(self.screen, Palette):
             self.push_screen(Palette([_actions_provider]))
 
     def action_filter(self) -> None:
-        """Filter the list that has the keys, or the first one of the screen."""
+        """Filter the focused list, or the first one of the screen."""
         lists = (self.screen.focused, *self.screen.query("*"))
         for panel in lists:
             begin = getattr(panel, "begin_filter", None)
@@ -369,7 +364,7 @@ class TangyApp(App[None]):
         return use
 
     def _use_theme(self, name: str) -> None:
-        """Choose the colours before the program runs, so that nothing is parsed twice."""
+        """Set the theme before the program runs, so that the styles are parsed once."""
         self.set_reactive(App.theme, name)
         self._refresh_truecolor_filter(self.ansi_theme)
         self.stylesheet.set_variables(self.get_css_variables())
@@ -388,9 +383,9 @@ def _actions_provider() -> type[Provider]:
 
 
 def run_app(app: TangyApp, *, mouse: bool = True) -> int:
-    """Run the program and return its exit status."""
+    """Run the application and return its exit status."""
     if SERVED not in os.environ:
-        for size in ("COLUMNS", "LINES"):  # exported, they hide the size of the window
+        for size in ("COLUMNS", "LINES"):  # exported, they hide the window's size
             os.environ.pop(size, None)
     app.mouse = mouse
     app.run(mouse=mouse)

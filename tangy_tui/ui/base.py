@@ -1,4 +1,4 @@
-"""What all screens and dialogs share: help of their own, and a cover when there is no room."""
+"""The base classes of screens and dialogs: help, and a cover if the window is too small."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from tangy_tui.ui.widgets.rows import draw
 from tangy_tui.ui.widgets.wrapping import wrap
 
 LOW_OR_TALL = [(0, "-low"), (22, "-tall")]
-"""The class that a dialog has from so many lines on."""
+"""The classes of a dialog from a number of lines on."""
 
 ResultT = TypeVar("ResultT")
 
 
 class Cover(Inked, can_focus=True):
-    """Covers a screen that has too little room with one sentence, and takes the keys meanwhile."""
+    """Covers a screen with one sentence if the window is too small for it, and swallows keys."""
 
     DEFAULT_CSS = """
     Cover { layer: cover; dock: top; width: 100%; height: 100%; background: $background; }
@@ -39,22 +39,22 @@ class Cover(Inked, can_focus=True):
         self._keep = keep
 
     def on_mount(self) -> None:
-        """Take the keys."""
+        """Take the focus."""
         self.focus()
 
     def say(self, sentence: str) -> None:
-        """Say something else."""
+        """Replace the sentence."""
         self._sentence = sentence
         self.refresh()
 
     def lift(self) -> None:
-        """Uncover the screen and give the keys back."""
+        """Uncover the screen and restore the focus."""
         keep = self._keep
         self.remove()
         self.screen.set_focus(keep if keep is not None and keep.is_attached else None)
 
     def on_key(self, event: events.Key) -> None:
-        """Let no key through: nobody should answer what they cannot see."""
+        """Swallow all keys: nobody should answer a hidden question."""
         event.stop()
 
     def render_line(self, y: int) -> Strip:
@@ -67,7 +67,7 @@ class Cover(Inked, can_focus=True):
 
 
 def cover_if_small(screen: Screen[Any]) -> None:
-    """Cover a screen while the window is too small for it, uncover it when it is large enough."""
+    """Cover a screen while the window is too small for it."""
     sentence = too_small(*screen.app.size)
     covers = list(screen.query_children(Cover))
     if sentence is None:
@@ -80,16 +80,16 @@ def cover_if_small(screen: Screen[Any]) -> None:
 
 
 async def on_top(screen: Screen[Any]) -> None:
-    """Wait until no dialog, help or other screen lies over a screen."""
-    while not screen.is_active:  # noqa: ASYNC110 - what lies over it may itself be covered
+    """Wait until a screen is on top."""
+    while not screen.is_active:  # noqa: ASYNC110 - several screens may be above it
         await asyncio.sleep(0.05)
 
 
 class TangyScreen(Screen[ResultT]):
-    """A screen of the program. `HELP` tells in a paragraph what it is for.
+    """The base class of screens. `HELP` describes the screen's purpose in a paragraph.
 
-    What has the keys keeps them while something lies over the screen; where nothing has them,
-    nothing takes them afterwards.
+    The focus is restored when the screen is on top again; without a focused widget, none gets the
+    focus then.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
@@ -100,38 +100,37 @@ class TangyScreen(Screen[ResultT]):
     ALLOW_IN_MAXIMIZED_VIEW = ".-textual-system,StatusLine,#keys,#command"
 
     def close(self, result: ResultT) -> None:
-        """Dismiss the screen with a result, unless it is covered or has been dismissed already."""
+        """Dismiss the screen with a result, unless it is covered or dismissed already."""
         if self.is_active:
             self.dismiss(result)
 
     def take_letter(self, event: events.Key | events.Paste) -> bool:
-        """Handle a key before the bindings see it; return False to leave it to them.
+        """Handle a key before the bindings do; return False to leave it to them.
 
-        A screen on which people type commands takes letters here, wherever the keys are, and
-        text that is pasted.
+        A screen with a command bar takes letters and pasted text here, whatever has the focus.
         """
         return False
 
     async def on_prune(self, event: Prune) -> None:
-        """End what goes on beside the screen before its panels go: it writes on them."""
+        """Cancel the screen's workers before its widgets are removed, because they use them."""
         self.workers.cancel_node(self)
 
     def on_screen_suspend(self, event: events.ScreenSuspend) -> None:
-        """Remember whether the keys were the screen's own, so that they are so again."""
+        """Remember whether the screen had a focused widget, so that the focus is restored."""
         auto = "" if self.focused is None else type(self).AUTO_FOCUS
         self.AUTO_FOCUS = auto  # type: ignore[misc]
 
     def on_resize(self, event: events.Resize) -> None:
-        """Cover the screen if it has too little room."""
+        """Cover the screen if the window is too small."""
         cover_if_small(self)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
-        """Cover the screen if it has too little room."""
+        """Cover the screen if the window is too small."""
         cover_if_small(self)
 
 
 class Dialog(ModalScreen[ResultT]):
-    """A question or a message over a screen. It is answered once; STOP answers it with `no`."""
+    """A modal question or message. Only the first answer counts; STOP answers it with `no`."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
@@ -156,7 +155,7 @@ class Dialog(ModalScreen[ResultT]):
     HELP: ClassVar[str] = ""
 
     def __init__(self, no: ResultT) -> None:
-        super().__init__()  # no id: the next dialog may come before this one is gone
+        super().__init__()  # no id: the next dialog may open before this one is removed
         self._no = no
         self._answered = False
 
@@ -167,17 +166,17 @@ class Dialog(ModalScreen[ResultT]):
             self.dismiss(result)
 
     def on_mount(self) -> None:
-        """Clear the toasts, which would lie over the dialog."""
+        """Clear the toasts, which would cover the dialog."""
         self.app.clear_notifications()
 
     def on_stop(self, message: Stop) -> None:
-        """Take STOP for a no."""
+        """Answer with `no` on STOP."""
         self.answer(self._no)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Cover the dialog if it has too little room."""
+        """Cover the dialog if the window is too small."""
         cover_if_small(self)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
-        """Cover the dialog if it has too little room."""
+        """Cover the dialog if the window is too small."""
         cover_if_small(self)

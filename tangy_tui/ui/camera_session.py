@@ -1,4 +1,4 @@
-"""The cameras of the robot as the program has them: made when they are needed, ended with it."""
+"""The robot's cameras in the application: opened when needed, closed at the end."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
 
 FIRST_SECONDS = 5.0
-"""For which a game waits at most for the first pictures of its cameras."""
+"""The longest wait of a game for the first pictures of its cameras."""
 
 
 class CameraSession:
-    """A robot's cameras, and whether they count in simulated games."""
+    """A robot's cameras, and whether their faults count in simulated games."""
 
     def __init__(
         self, workspace: Workspace, sensors: CameraHub | None = None, *, live: bool = False
     ) -> None:
-        """Prepare them.
+        """Prepare the cameras.
 
         Args:
-            workspace: whose robot it is.
-            sensors: its cameras (default: those of the robot's profile).
-            live: what is wrong with them is a fault in a simulated game.
+            workspace: the workspace with the robot.
+            sensors: the cameras (default: those of the robot's profile).
+            live: whether their faults count as faults in a simulated game.
         """
         self.live = live
         self._workspace = workspace
@@ -36,7 +36,7 @@ class CameraSession:
         """Return the cameras; the caller opens them.
 
         Raises:
-            TangyError: the robot's profile names a source that is none.
+            TangyError: the robot's profile names an invalid source.
         """
         if self._sensors is None:
             from tangy_hw.perception.camera_hub import sensors_of
@@ -49,7 +49,7 @@ class CameraSession:
 
     @asynccontextmanager
     async def watching(self) -> AsyncIterator[Callable[[], Health] | None]:
-        """Keep them open for a game; give what they report there, None where they do not count."""
+        """Keep the cameras open for a game; yield their readings, None if these do not count."""
         if not self.live:
             yield None
             return
@@ -58,6 +58,6 @@ class CameraSession:
             yield sensors.health
 
     async def close(self) -> None:
-        """Close all of them, also while they are in use."""
+        """Close all cameras, even while in use."""
         if self._sensors is not None:
             await self._sensors.close()

@@ -1,4 +1,4 @@
-"""Activities and fault rules that were looked over, as tables on the command line."""
+"""The results of checking activities and fault rules, as tables on the command line."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tangy_tui.text.rules import UNRULED, UNSEEN, UNTRIED, together_words
 
 
 def print_activities(activities: Iterable[tuple[str, Activity]]) -> None:
-    """Print the activities that ship, by the name that is given on the command line."""
+    """Print the shipped activities, by their names on the command line."""
     table = _table(
         "Activities", "name", "title", "stages", "situations", "behaviours", "strategies"
     )
@@ -39,7 +39,7 @@ def print_activities(activities: Iterable[tuple[str, Activity]]) -> None:
 
 
 def print_checked(checked: CheckedFile, activity: Activity | None) -> None:
-    """Print what there is to say of an activity's file."""
+    """Print the results of checking an activity's file."""
     console = Console(highlight=False, soft_wrap=True)
     if activity is not None and not checked.mistakes:
         words = ", ".join(
@@ -58,7 +58,7 @@ def print_checked(checked: CheckedFile, activity: Activity | None) -> None:
 
 
 def print_rules(rules: Rules) -> None:
-    """Print fault rules that have no mistake, and what none of them looks at."""
+    """Print fault rules without mistakes, and the facts that no rule uses."""
     if rules.mistakes:
         return
     console = Console(highlight=False)

@@ -1,8 +1,8 @@
-"""The last door before the terminal: nothing that a terminal would obey gets through as text.
+"""The filter in front of the terminal: no text can contain control sequences.
 
-Names, transcripts and files hold data, and data may hold escape sequences. `clean` makes such
-text visible where it is laid out; `CleanOutput` is the filter behind it that no widget can miss,
-and that draws in ASCII where the terminal has nothing else.
+Names, transcripts and files hold data, which may contain escape sequences. `clean` makes them
+visible at layout; `CleanOutput` filters the output of all widgets, and replaces other characters
+if the terminal only has ASCII.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OBEYED = re.compile(
     "\U000e0000-\U000e0fff"  # tags
     "]"
 )
-"""Characters that a terminal obeys, or that it draws as nothing."""
+"""Characters that a terminal interprets, or draws as nothing."""
 
 _SELECTORS = re.compile("[\ufe00-\ufe0f\U000e0100-\U000e01ef]")
 _SPACES = re.compile("[\t\n\r\v\f\x85\u2028\u2029]+")
@@ -58,14 +58,14 @@ ASCII_FOR: dict[str, str] = {
     "ł": "l",
     "Ł": "L",
 }
-"""What is drawn in ASCII for one character of one cell."""
+"""ASCII replacements of characters one cell wide."""
 
 
 def clean(text: str) -> str:
     """Return data as one line that is safe to lay out.
 
-    Line breaks and tabs become a space, what a terminal would obey becomes a visible mark, and
-    accents are composed, so that one character is what it looks like.
+    Line breaks and tabs become a space, control characters a visible mark. Accents are composed, so
+    that one character is one glyph.
     """
     text = _SELECTORS.sub("", _SPACES.sub(" ", text))
     return OBEYED.sub(REPLACEMENT, unicodedata.normalize("NFC", text))
@@ -73,7 +73,7 @@ def clean(text: str) -> str:
 
 @lru_cache(4096)
 def to_ascii(text: str) -> str:
-    """Return text in ASCII, in as many cells as it had."""
+    """Return text in ASCII, with the same width in cells."""
     drawn: list[str] = []
     for character in text:
         if character.isascii():
@@ -90,9 +90,9 @@ def to_ascii(text: str) -> str:
 
 @lru_cache(1024)
 def harmless(text: str, ascii: bool) -> str:
-    """Return text without control characters, as wide in cells as it was measured.
+    """Return text without control characters, with its measured width in cells.
 
-    What was measured as no cell at all is left out; a mark in its place would shift the line.
+    Characters of width 0 are removed, since a mark in their place would shift the line.
     """
     cells = cell_len(text)
     drawn = OBEYED.sub(lambda found: REPLACEMENT if cell_len(found[0]) else "", text)
@@ -102,14 +102,14 @@ def harmless(text: str, ascii: bool) -> str:
 
 
 class CleanOutput(LineFilter):
-    """Replaces what a terminal would obey in every line that is drawn, by whatever widget."""
+    """Replaces control characters in every drawn line, of any widget."""
 
     def __init__(self, *, ascii: bool = False) -> None:
         super().__init__()
         self.ascii = ascii
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments with harmless text, and without hyperlinks."""
+        """Return the segments with safe text, and without hyperlinks."""
         drawn: list[Segment] = []
         for text, style, _ in segments:
             if (self.ascii and not text.isascii()) or OBEYED.search(text):

@@ -1,4 +1,4 @@
-"""The demo in the program: a story of its own data folder, told on one screen."""
+"""The demo in the application: a story with its own data folder, on one screen."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SEED = 1
 
 
 async def tell_story_aside(program: Program) -> None:
-    """Tell the story in a data folder of its own, so that nothing of it stays."""
+    """Play the story in a temporary data folder."""
     own = program.workspace
     with TemporaryDirectory(prefix="tangy-demo-") as scratch:
         workspace = Workspace(Path(scratch), activity=own.profile, users=len(own.people))
@@ -26,7 +26,7 @@ async def tell_story_aside(program: Program) -> None:
 
 
 async def tell_story(program: Program, workspace: Workspace, seed: int) -> None:
-    """Tell the story in a workspace; return when nothing happens in it any more."""
+    """Play the story in a workspace; return when its screen has come to rest."""
     from tangy_tui.console.story import Story
     from tangy_tui.ui.screens.demo import DemoScreen
 

@@ -1,4 +1,4 @@
-"""Drills in the program: an interrupted one is asked about, and the screen is opened."""
+"""Drills in the application: resume an interrupted one if wanted, and open the screen."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ async def hold_drill(
     who: str = "",
     past: Sheet | None = None,
 ) -> None:
-    """Open a drill: faults to rehearse; of as many rounds as usual unless said otherwise.
+    """Open a drill for rehearsing faults, by default with the usual number of rounds.
 
-    It goes on with a `past` drill, or asks about one that was interrupted.
+    Resumes a `past` drill, or asks about an interrupted one.
     """
     from tangy_tui.app.drill_opening import open_drill
     from tangy_tui.monitoring.drill import ROUNDS

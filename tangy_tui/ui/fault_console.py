@@ -1,7 +1,7 @@
 """The fault console of the game screens: it polls devices, reports faults, and acts on them.
 
-The robot has stopped before anything of this is drawn; what is done here goes through the
-controller of the game, and is in the log before it is told.
+The robot stops before any of this is drawn. All actions go through the controller of the game, and
+are logged before they are shown.
 """
 
 from __future__ import annotations
@@ -54,22 +54,22 @@ from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.status_line import StatusLine
 
 LOOK_SECONDS = 0.025
-"""How often the devices are looked at between behaviours, also while the game stands still: so
-that, with the time that drawing takes, what is wrong is seen within 0.1 s."""
+"""The interval at which the devices are polled between behaviours, also while the game is paused:
+with the time for drawing, a fault is visible within 0.1 s."""
 
 Tell = Callable[[list[Event], bool], None]
-"""Shows events; the second is whether it is known already why a game was stopped."""
+"""Shows events; the second argument tells whether the user knows already why a game stopped."""
 
 Work = Callable[[], list[Event]]
 Beside = Callable[[Work], Awaitable[list[Event]]]
-"""Does something beside the screen, which lives meanwhile, and returns what it tells."""
+"""Runs work in the background while the screen stays responsive, and returns its events."""
 
 _TAKES_TIME = ("asked", "remedied")
-"""The moves of which it takes time to see what comes."""
+"""The moves whose outcome takes time to become visible."""
 
 
 class FaultConsole:
-    """Looks for faults all the time, shows them on panels, and puts the critical ones."""
+    """Polls for faults, shows them on panels, and opens a dialog for critical ones."""
 
     def __init__(
         self,
@@ -80,26 +80,26 @@ class FaultConsole:
         tell: Tell,
         failed: Callable[[str], None],
     ) -> None:
-        """Make the console.
+        """Create the console.
 
         Args:
-            screen: that it is on.
-            workspace: what it belongs to.
-            control: of the games.
+            screen: the screen with the panels.
+            workspace: the workspace of the game.
+            control: the controller of the games.
             tell: shows events on the screen.
-            failed: says that the log could not be written, and stands still.
+            failed: shows that the log could not be written, and pauses.
         """
         self.supervision = control.supervision
         self.ticks = 0
-        """How often the timer has looked."""
+        """The number of polls so far."""
         self.beside: Beside | None = None
-        """Does what takes its time: the world is there, and not worked out at once."""
+        """Runs commands that take time in a live world; None in a simulated one."""
         self._screen = screen
         self._workspace = workspace
         self._control = control
         self._tell = tell
         self._failed = failed
-        self._gave_up = False  # the log could not be written
+        self._gave_up = False  # writing the log failed
         self._free = asyncio.Event()
         self._free.set()
         self._dialog: CriticalDialog | None = None
@@ -110,16 +110,16 @@ class FaultConsole:
         self._game = 0
 
     def begin(self) -> None:
-        """Start polling; objects loaded so far are frozen out of garbage collection.
+        """Start polling; exempt all present objects from garbage collection.
 
-        Going through all of it took 0.1 to 0.3 s each time, in which nothing could be drawn.
+        Each full collection took 0.1 to 0.3 s, during which nothing could be drawn.
         """
         gc.collect()
         gc.freeze()
         self._screen.set_interval(LOOK_SECONDS, self.tick)
 
     def tick(self) -> None:
-        """Check the devices once, and report new faults."""
+        """Poll the devices once, and report new faults."""
         self.ticks += 1
         if self._gave_up or self.supervision.over:
             return
@@ -137,14 +137,14 @@ class FaultConsole:
             self._tell(events, False)
 
     def try_again(self) -> None:
-        """Look on, after the log could not be written."""
+        """Resume polling, after writing the log had failed."""
         self._gave_up = False
 
     # ---------------------------------------------------------------------------- showing
 
     @property
     def status(self) -> str:
-        """How the robot is, in words, with the cause."""
+        """The state of the robot in words, with its cause."""
         supervision, halted = self.supervision, self.supervision.halted
         word, cause = self._status = supervision.status
         if halted is not None and supervision.over:
@@ -159,18 +159,18 @@ class FaultConsole:
 
     @property
     def asked_about(self) -> Fault | None:
-        """The fault about which Tangy asks, if it is not the situation that nobody has shown."""
+        """The fault that Tangy asks about; None if it asks about an unknown situation."""
         question = self.supervision.question
         wanted = "" if question is None else question.fault
         return next((f for f in self.supervision.faults if f.id == wanted), None)
 
     def show(self) -> None:
-        """Show banner and list as they are now, and put what halts the robot."""
+        """Update banner and list, and open the dialog of a fault that halts the robot."""
         screen, supervision = self._screen, self.supervision
         if supervision.halted is not None and not supervision.over and self._free.is_set():
             self._free.clear()
             screen.run_worker(self._attend(), name="fault", group="fault")
-            return  # it hides the rest, which is drawn with the first key in it
+            return  # the dialog hides the rest, which is drawn with its first key
         banner, told = screen.query_one(FaultBanner), self.told
         if told:
             fault = told[0]
@@ -193,7 +193,7 @@ class FaultConsole:
 
     @property
     def told(self) -> list[Fault]:
-        """The faults of which the banner tells, the most urgent first, as they are shown."""
+        """The faults for the banner, the most urgent first, as they are shown."""
         supervision, during = self.supervision, self._during
         if supervision.halted is not None and supervision.over:
             return [supervision.halted]
@@ -204,13 +204,13 @@ class FaultConsole:
         return [fault for fault in shown if _told_so_far(fault) not in self._put_away]
 
     def _as_shown(self, fault: Fault) -> Fault:
-        """Return a fault as it was before what came of the last move, which is yet to be shown."""
+        """Return a fault without the outcome of its last move, if that is to be shown later."""
         if self._during is None or self._during[0] is not fault or self.supervision.halted:
             return fault
         return replace(fault, moves=fault.moves[: self._during[1]], status=OPEN)
 
     def parts(self, events: list[Event]) -> tuple[list[Event], list[Event]]:
-        """Split recovery events into those begun and their outcomes, which show later."""
+        """Split off the outcome of a recovery, which is shown later than its start."""
         for n, event in enumerate(events):
             if isinstance(event, Moved) and event.move.kind in _TAKES_TIME and events[n + 1 :]:
                 if self.supervision.halted is not None or self.supervision.question is not None:
@@ -221,20 +221,20 @@ class FaultConsole:
         return events, []
 
     def urgent(self, events: list[Event]) -> bool:
-        """Return whether a fault needs action before any time passes."""
+        """Return whether a fault needs action at once."""
         moved = {event.move.kind for event in events if isinstance(event, Moved)}
         found = any(isinstance(event, Diagnosed) for event in events)
         if self.supervision.halted is not None:
             return found or bool(moved)
-        due = found or "went on" in moved  # what people do ends no wait between two tries
+        due = found or "went on" in moved  # people's actions do not end the wait for a retry
         return due and bool(self.supervision.waiting) and moved.isdisjoint(_TAKES_TIME)
 
     def done(self) -> None:
-        """Say that what came of it may be shown."""
+        """Allow the outcome of the recovery to be shown."""
         self._during = None
 
     def dialog(self, id: str) -> FaultDialog | None:
-        """Return the dialog that tells of one fault in full; None: there is no such fault."""
+        """Return the dialog with all about a fault; None if there is no such fault."""
         fault = next((f for f in self.supervision.faults if f.id == id), None)
         if fault is None:
             return None
@@ -243,14 +243,14 @@ class FaultConsole:
     # ---------------------------------------------------------------------------- halting
 
     async def free(self) -> None:
-        """Wait until nothing halts the robot any more."""
+        """Wait until no fault halts the robot."""
         await self._free.wait()
 
     async def _attend(self) -> None:
-        """Put what halts the robot, one fault after the other, until all is cleared or given up."""
+        """Open the dialogs of the faults that halt the robot, until all are cleared or given up."""
         supervision, app = self.supervision, self._screen.app
         while (fault := supervision.halted) is not None and not supervision.over:
-            app.clear_notifications()  # they would lie over it
+            app.clear_notifications()  # toasts would cover the dialog
             dialog = self._dialog = CriticalDialog(self, fault, supervision.robot)
             dialog.show(self._screen.query_one(StatusLine).status)
             await app.push_screen_wait(dialog)
@@ -260,7 +260,7 @@ class FaultConsole:
         self._free.set()
 
     def see(self) -> bool:
-        """Take away what the banner tells, because it was seen; False: it tells of nothing."""
+        """Acknowledge the fault in the banner and hide it; False: there is none."""
         told = self.told
         if not told or self.supervision.over:
             return False
@@ -272,7 +272,7 @@ class FaultConsole:
         return True
 
     async def all_well(self) -> bool:
-        """Ask about what nobody cleared in the last game; False: no other one may begin."""
+        """Ask about an uncleared fault of the last game; False: no other game may begin."""
         await self._free.wait()
         fault = uncleared(self._workspace.store)
         if fault is None:
@@ -286,48 +286,48 @@ class FaultConsole:
         return await self._screen.app.push_screen_wait(dialog)
 
     def acknowledge(self, fault: Fault | None = None) -> None:
-        """Say that a fault (default: the one that halts the robot) was seen."""
+        """Acknowledge a fault (default: the one that halts the robot)."""
         self._apply(Acknowledge("" if fault is None else fault.id))
 
     def _apply(self, command: Acknowledge | CallExpert | Clear) -> None:
         self._tell(self._carried_out(command), False)
 
     def _carried_out(self, command: Acknowledge | CallExpert | Clear) -> list[Event]:
-        """Return what came of a command.
+        """Return the events of a command.
 
         Raises:
-            TangyError: it could not be logged, so it was not done.
+            TangyError: it could not be logged, so it was not carried out.
         """
         told = self._control.carry_out(command)
         return [one for one in told if not isinstance(one, StaffNote)]
 
     @property
     def takes_time(self) -> bool:
-        """Whether it takes its time to do something about the fault."""
+        """Whether commands about a fault take time."""
         return self.beside is not None
 
     @property
     def restarts(self) -> bool:
-        """Whether calling the expert starts the robot process again."""
+        """Whether calling the expert also restarts the robot process."""
         world = self.supervision.world
         link = world.link if isinstance(world, LiveWorld) else None
         return link is not None and bool(link.silent or link.state.failed)
 
     @property
     def simulated(self) -> bool:
-        """Whether the expert is simulated, as all else in the room."""
+        """Whether the expert is simulated, like the room."""
         return isinstance(self.supervision.world, FaultyWorld | BenchedWorld)
 
     async def call_expert(self) -> None:
-        """Note that the expert is needed for what halts the robot, and do what Tangy can."""
+        """Call the expert for the fault that halts the robot, and recover what Tangy can."""
         await self._do(CallExpert())
 
     def reached(self) -> None:
-        """Say that the expert was reached."""
+        """Log that staff reached the expert."""
         self._control.carry_out(Reached())
 
     async def clear(self) -> None:
-        """Let the robot go on, if the fault was seen and is gone."""
+        """Clear the fault, if it is acknowledged and gone, so that the robot continues."""
         await self._do(Clear())
 
     async def _do(self, command: CallExpert | Clear) -> None:
@@ -337,22 +337,22 @@ class FaultConsole:
             self._tell(await self.beside(lambda: self._carried_out(command)), False)
 
     def give_up(self) -> None:
-        """End the game that is halted."""
+        """End the halted game."""
         self._tell(self._control.give_up(), True)
 
     # ---------------------------------------------------------------- bringing faults about
 
     def refuses(self) -> str:
-        """Say why no fault can be brought about now; empty if one can."""
+        """Return why no fault can be injected now, "" if one can."""
         if not self.simulated:
             return injections.NOT_SIMULATED
         return injections.NO_GAME if self.supervision.over else ""
 
     async def inject(self) -> tuple[str, bool]:
-        """Choose a fault, and inject or remove it.
+        """Choose a fault, and inject or lift it.
 
         Returns:
-            What was done ("": nothing), and whether it is seen at once what came of it.
+            The result in words ("": nothing was done), and whether it is visible at once.
         """
         world = self.supervision.world
         if not isinstance(world, FaultyWorld | BenchedWorld):
@@ -387,5 +387,5 @@ class FaultConsole:
 
 
 def _told_so_far(fault: Fault) -> tuple[str, int]:
-    """Return what a fault is told by: each time that Tangy asks somebody it is told anew."""
+    """Return the id and the number of requests: each new request shows the fault again."""
     return fault.id, sum(bool(move.speech) for move in fault.moves)

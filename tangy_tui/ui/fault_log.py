@@ -1,4 +1,4 @@
-"""Faults in the log of a screen that shows games."""
+"""Log entries about faults, for screens that show games."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from tangy_tui.ui.widgets.room_view import RoomView
 
 
 def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
-    """Write a fault or a recovery event into the log, with Tangy's speech."""
+    """Write a fault or a recovery event to the log, with Tangy's speech."""
     fault, log = event.fault, screen.query_one(LogView)
     if isinstance(event, Moved) and event.move.speech:
         screen.query_one(RoomView).say(event.move.speech)
     if fault.asks_only:
-        return  # the question that Tangy asks says all of it
+        return  # Tangy's question tells all of it
     kind: Kind = "bad" if fault.critical else "warn"
     if isinstance(event, Diagnosed):
         log.write(f"Fault, {kind_words(fault)}: {fault.name}. {fault.console}", kind)

@@ -1,4 +1,4 @@
-"""The first start: who teaches is asked once, and a new teacher is shown around."""
+"""The first start: asks for the teacher's name once, and starts the tour for a new teacher."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ async def first_start(
     *,
     asks: bool,
 ) -> None:
-    """Ask who teaches, where nobody has said so yet, and do what comes first.
+    """Ask for the teacher's name if it is unknown, then start.
 
-    A new teacher is shown around; if nobody has taught the activity yet, in a guided game at once.
-    Otherwise home stays: staff may have come to run a game.
+    A new teacher gets the tour, within a guided game if nobody has taught the activity yet.
+    Otherwise
+    the home screen stays: staff may have come to run a game.
     """
     if asks and not read_profile(program.workspace.store.folder).name:
         program.new_teacher = await ask_name(program, unasked=True) is not None
@@ -61,13 +62,13 @@ async def ask_name(program: Program, *, unasked: bool = False) -> str | None:
 
 
 async def change_teacher(program: Program) -> None:
-    """Ask for another name; later demonstrations belong to it."""
+    """Ask for another teacher's name; later demonstrations belong to it."""
     if (name := await ask_name(program)) is not None:
         _tell(program, name)
 
 
 def rename_teacher(program: Program, name: str) -> None:
-    """Do so with a name that was given."""
+    """Store a given teacher's name; later demonstrations belong to it."""
     if _keep(program, name):
         _tell(program, read_profile(program.workspace.store.folder).name)
 
@@ -82,7 +83,7 @@ def _keep(program: Program, name: str) -> bool:
 
 
 def _tell(program: Program, name: str) -> None:
-    """Say who teaches, and hand over a game of which nothing was shown yet."""
+    """Show the new name, and use it for a game without steps so far."""
     from tangy_tui.ui.screens.teach import TeachScreen
 
     for screen in program.screen_stack:

@@ -1,4 +1,4 @@
-"""The picture of a game: what happened, put on the panels of the screen that shows it."""
+"""The view of a game: shows its events on the panels of a screen."""
 
 from __future__ import annotations
 
@@ -48,23 +48,23 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
 DRIVING_SHARE = 0.5
-"""The share of a step's time in which the picture of the robot drives."""
+"""The fraction of a step's duration in which the robot's drive is animated."""
 
 NOT_DONE = "not done: "
-"""What stands before a behaviour that could not be carried out."""
+"""The prefix of a behaviour that was not completed."""
 
 TAUGHT_SECONDS = 6.0
-"""How long the message stands that says what was learnt from an answer."""
+"""Duration of the message with the lesson of an answer, in s."""
 
 
 class GamePicture:
-    """Puts the events of games on room, steps, policy, posteriors and log of a screen."""
+    """Shows the events of games on room, steps, policy, posteriors and log of a screen."""
 
     def __init__(self, screen: Screen[Any], workspace: Workspace, supervision: Supervision) -> None:
         self.grounds: list[Ground] = []
-        """What each step of the present game rested on."""
+        """The ground of each step of the present game."""
         self.lesson = ""
-        """What was learnt from the last answer, until the next question has said it."""
+        """The lesson of the last answer, until the next question tells it."""
         self._stage = ""
         self._step: int | None = None
         self._game: int | None = None
@@ -75,7 +75,7 @@ class GamePicture:
 
     @property
     def said(self) -> str:
-        """What Tangy said with the last step of the present game, "" before that."""
+        """Tangy's speech in the last step of the present game, "" before that."""
         return self.grounds[-1].acted.speech if self.grounds else ""
 
     def begin(self) -> None:
@@ -84,7 +84,7 @@ class GamePicture:
         self._show_beliefs(None)
 
     def tell(self, events: Sequence[Event], pace: float) -> None:
-        """Show events; `pace` is in times life (0: at once)."""
+        """Show events; `pace` is in times life (0: without animation)."""
         taught = next((event for event in events if isinstance(event, Taught | DoneOnce)), None)
         log = self._screen.query_one(LogView)
         for event in events:
@@ -131,7 +131,7 @@ class GamePicture:
                     log.write(broken_off_words(steps, reason), "bad")
 
     def show_status(self, robot: str, note: str, mode: str) -> None:
-        """Update the status line: robot, stage and notes."""
+        """Update the status line: robot, stage and note."""
         self._screen.query_one(StatusLine).show(
             Status(
                 mode=with_activity(mode, self._workspace.activity),
@@ -145,20 +145,20 @@ class GamePicture:
         )
 
     def why(self, chosen: int | None) -> WhyDialog | None:
-        """Tell why: of the chosen step, what Tangy asks, or the last step; None: there is none."""
+        """Explain the chosen step, Tangy's question, or the last step; None: there is none."""
         question = self._supervision.question
         if chosen is None and question is not None:
             return why_asked(self._workspace, self._policy, question.state.situation)
         return self.why_step(len(self.grounds) if chosen is None else chosen)
 
     def why_step(self, number: int) -> WhyDialog | None:
-        """Tell why a step of this game was done; None: there is no such step."""
+        """Explain a step of this game; None: there is no such step."""
         if not 1 <= number <= len(self.grounds):
             return None
         return why_step(self._workspace, self.grounds[number - 1], number)
 
     def why_row(self, index: int) -> WhyDialog:
-        """Tell why, for a row of the policy."""
+        """Explain a row of the policy."""
         situation = self._workspace.activity.situations[index]
         return why_row(self._workspace, self._policy, situation)
 
@@ -186,7 +186,7 @@ class GamePicture:
         )
 
     def _show_lesson(self, taught: Taught) -> None:
-        """Say from whom it was learnt and what the replay showed, and show the new row."""
+        """Show the lesson and the changes in the replay, and the new row of the policy."""
         activity, lesson = self._workspace.activity, taught.lesson
         learnt = lesson_words(activity, lesson)
         log = self._screen.query_one(LogView)
@@ -208,7 +208,7 @@ class GamePicture:
         self._screen.query_one(PolicyTable).show(rows, highlight)
 
     def show_scene(self, seconds: float, *, drive: bool, pace: float) -> None:
-        """Show the room after a step of so many s, at a pace (0: at once)."""
+        """Show the room after a step of some s, at a pace in times life (0: at once)."""
         room = self._screen.query_one(RoomView)
         scene = self._supervision.world.scene()
         if drive and pace:

@@ -1,4 +1,4 @@
-"""What Tangy says in a game, spoken: heard to its end in life's pace, cut by the next in others."""
+"""Tangy's speech in a game; if faster than life, the next line interrupts the last."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tangy_tui.monitoring.supervision import Event
 from tangy_tui.ui.speaking import opening_lines, preference_of, speaker_of
 
 AS_IN_LIFE = 1.0
-"""The pace up to which a line is waited for, times life."""
+"""Up to this pace, in times life, the game waits for a line to end."""
 
 
 class GameVoice:
@@ -35,8 +35,8 @@ class GameVoice:
         """Speak the speech of these events.
 
         Args:
-            events: what has happened.
-            pace: times life; 0 if they come one by one or all at once, as keys want them.
+            events: the new events.
+            pace: times life; 0 if the user steps through the events, or all come at once.
         """
         if self._app is None:
             return
@@ -56,16 +56,16 @@ class GameVoice:
                 speaker.interject(speech, preference)
 
     def hush(self) -> None:
-        """Say no more."""
+        """Stop speaking."""
         self._line = None
         if self._app is not None:
             speaker_of(self._app).hush()
 
     async def heard(self, pace: float, nudge: asyncio.Event) -> bool:
-        """Wait until the last line was heard (speed in times life); a nudge ends that.
+        """Wait until the last line has been spoken (pace in times life); a nudge ends the wait.
 
         Returns:
-            Whether there is nothing to wait for (any more).
+            Whether there is nothing left to wait for.
         """
         line = self._line
         if line is None or line.done() or pace > AS_IN_LIFE:

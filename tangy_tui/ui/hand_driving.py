@@ -1,4 +1,4 @@
-"""The keys by which staff drive the robot, for every screen and dialog that takes them."""
+"""The keys with which staff drive the robot, for screens and dialogs."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.client import RobotLink
 
 FORWARD, BACK, TURN = 0.3, 0.1, 0.6
-"""m/s, m/s and rad/s: slower than it drives by itself, and slowest where it does not see."""
-TELL_SECONDS = 0.1  # between two looks at what the robot does about it
+"""m/s, m/s and rad/s: slower than autonomous driving, slowest backwards, where the robot is blind.
+"""
+TELL_SECONDS = 0.1  # between two checks of the robot's response
 
 DRIVE_KEYS: list[BindingType] = [
     Binding("up", "drive(1, 0)", "Forward"),
@@ -28,33 +29,33 @@ DRIVE_KEYS: list[BindingType] = [
 
 
 class HandDriving:
-    """The actions of `DRIVE_KEYS`. A screen says by `show_words` what the robot does about it."""
+    """The actions of `DRIVE_KEYS`. `show_words` shows why the robot does not obey."""
 
     def __init__(self, link: RobotLink) -> None:
-        """Take the link to the robot."""
+        """Drive the robot of a link."""
         self.link = link
 
     def show_words(self, words: str) -> None:
-        """Show why the robot does not drive as it is told; "" clears that."""
+        """Show why the robot does not drive as told; "" clears the words."""
         raise NotImplementedError
 
     def tell_held(self) -> None:
-        """Say why it does not drive as it is told; that stays there until the next key."""
+        """Show why the robot does not drive as told, until the next key."""
         why = self.link.silent or self.link.state.hazard
         words = stands_words(why) if why else HELD.get(self.link.state.held, "")
         if words:
             self.show_words(words)
 
     def drive(self, twist: Twist, *, overrides: bool = False) -> None:
-        """Drive for a moment; the robot stands when no further command comes."""
+        """Drive for a moment; the robot stops without further commands."""
         self.link.tell("drive", forward=twist.forward, turn=twist.turn, overrides=overrides)
 
     def action_drive(self, forward: int, turn: int) -> None:
-        """Drive for a moment, or stand still."""
+        """Drive for a moment, or stop."""
         self._command(Twist(forward * (FORWARD if forward > 0 else BACK), turn * TURN))
 
     def action_override(self, forward: int, turn: int) -> None:
-        """Crawl for a moment past what holds it up, as staff see that there is room."""
+        """Crawl for a moment past an obstacle that staff see to be clear."""
         self._command(Twist(forward * BACK, turn * TURN), overrides=True)
 
     def _command(self, twist: Twist, *, overrides: bool = False) -> None:

@@ -1,8 +1,7 @@
-"""What the program does with what it hears: commands go to a screen, answers to a question.
+"""Speech input of the application: routes commands to a screen, and answers to a question.
 
-The program has one pair of ears at most. Whichever screen takes commands at the moment is their
-listener; while a question is open, or something lies over that screen, only answers and what stops
-the robot are heard.
+There is at most one recogniser. The screen that takes commands is its listener; while a question
+is open, or another screen is on top, it only accepts answers and a stop.
 """
 
 from __future__ import annotations
@@ -33,35 +32,35 @@ if TYPE_CHECKING:
     from tangy_tui.ui.widgets.log_view import Kind
 
 WAITS = 0.05
-"""Seconds between two looks whether the next command of a recording is due."""
+"""The interval of checks whether the next command of a recording is due, in s."""
 
 STOP = "stop"
 ANSWERS = "yes, no or stop"
 
 COLOURS = {"warn": "$warning", "bad": "$error"}
-"""Of sentences in a question, by their kind; others stand in the usual one."""
+"""Colours of sentences in a question, by their kind; others have the default."""
 
 
 class Listener(Protocol):
-    """What takes spoken commands: a screen, or a part of one."""
+    """A screen, or a part of one, that takes spoken commands."""
 
     @property
     def listens(self) -> bool:
-        """Whether a command could be put to it now: it is seen, and no question is open."""
+        """Whether it can take a command now: it is on top, and no question is open."""
 
     @property
     def spoken(self) -> Phrasebook:
-        """What can be said to it."""
+        """The phrases that it understands."""
 
     def hear(self, said: Say) -> None:
         """Take a command."""
 
     def told(self, sentence: str, kind: Kind) -> None:
-        """Show a sentence about hearing."""
+        """Show a sentence about speech input."""
 
 
 class Hearing:
-    """The ears of the program, and who listens through them."""
+    """Speech input, and its listeners."""
 
     def __init__(
         self,
@@ -70,17 +69,17 @@ class Hearing:
         stop: Callable[[], None],
         hush: Callable[[], Awaitable[None]],
     ) -> None:
-        """Take the ears; `run` listens.
+        """Set up speech input; `run` listens.
 
         Args:
-            app: the program.
-            ears: the speech input.
+            app: the application.
+            ears: the recogniser.
             stop: stops the robot.
-            hush: lets Tangy fall silent, and returns when it is.
+            hush: silences Tangy, and returns when it is silent.
         """
         self.ears = ears
         self.on = True
-        """Whether commands are taken; what stops the robot is heard in any case."""
+        """Whether commands are accepted; a stop always is."""
         self._app = app
         self._stop = stop
         self._hush = hush
@@ -90,24 +89,24 @@ class Hearing:
         self._understood: Phrasebook | None = None
         self._failed = ""
         self._state = ""
-        self._about: VerifyingDialog | None = None  # the question when somebody began to speak
+        self._about: VerifyingDialog | None = None  # the open question when speech began
         self._steer: Callable[[str, float], None] | None = None
         ears.changed = self._changed
         ears.tell = lambda note: self.tell(hearing_words(note))
 
     @property
     def by_key(self) -> bool:
-        """Whether a key is pushed to talk."""
+        """Whether it is push-to-talk."""
         return self.ears.live and not self.ears.hands_free
 
     @property
     def talking(self) -> bool:
-        """Whether somebody is talking who has pushed the key for it."""
+        """Whether a person is talking with push-to-talk."""
         return self.by_key and self.ears.state in ("listening", "speaking")
 
     @property
     def expects(self) -> str:
-        """What alone is listened for; "" if that is commands."""
+        """What alone is accepted now; "": commands."""
         if self._free:
             return ""
         answers = self.ears.answers and self._question is not None
@@ -115,13 +114,13 @@ class Hearing:
 
     @property
     def aloud(self) -> str:
-        """How an answer to a question begins that is given by voice; "" if none can be."""
+        """The words that tell how to answer a question by voice; "" if that is not possible."""
         if not self.ears.answers:
             return ""
         return with_keys(OR_KEY_AND_SAY, keymap_of(self._app)) if self.by_key else OR_SAY
 
     def attend(self, listener: Listener) -> None:
-        """Route utterances to a listener from now on."""
+        """Route commands to a listener from now on."""
         self._listeners.append(listener)
         if self._failed:
             listener.told(self._failed, "bad")
@@ -129,7 +128,7 @@ class Hearing:
         self.look()
 
     def leave(self, listener: Listener) -> None:
-        """Give nothing more to a listener; the one before it takes commands again."""
+        """Remove a listener; the previous one takes commands again."""
         if listener in self._listeners:
             self._listeners.remove(listener)
             self._kept.clear()
@@ -137,24 +136,24 @@ class Hearing:
             self.look()
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Call this whenever there may be something else to show of the ears."""
+        """Add a callback for changes of the recogniser's state."""
         self._watching.append(changed)
 
     def watch_no_more(self, changed: Callable[[], None]) -> None:
-        """Call this no longer."""
+        """Remove the callback."""
         if changed in self._watching:
             self._watching.remove(changed)
 
     def understand(self) -> None:
-        """Match an utterance to the listener's current phrases."""
+        """Match speech to the current phrases of the listener."""
         if self._listeners and (spoken := self._listeners[-1].spoken) is not self._understood:
             self._understood = spoken
             self.ears.understand_by(spoken)
 
     def steer_by(self, steer: Callable[[str, float], None] | None) -> None:
-        """Give what steers a game, with how sure it is, to this while nobody takes commands.
+        """Route steering commands and their confidence to a callback while no screen listens.
 
-        None: to nobody any more.
+        None removes it.
         """
         from tangy_tui.language.steering import IN_GAMES
 
@@ -162,24 +161,24 @@ class Hearing:
         self.ears.steering = () if steer is None else IN_GAMES
 
     def pause(self, paused: bool) -> None:
-        """Take no commands by voice for a while, or take them again."""
+        """Pause or resume commands by voice."""
         self.on = not paused
         self._kept.clear()
         self.look()
 
     def look(self) -> None:
-        """Check whether the listener takes commands now, and deliver the queued ones."""
+        """Update whether the listener takes commands, and deliver the queued ones."""
         choices = () if self._question is None else self._question.choices
         if self.ears.live:
             self.ears.asking(not self._free, choices)
-        else:  # a recording says its next command when it is asked for it
+        else:  # a recording is read on demand
             self.ears.asking(self.ears.answers and self._question is not None, choices)
         while self._kept and self._free:
             self._listeners[-1].hear(self._kept.popleft())
         self._changed()
 
     async def talk(self) -> None:
-        """Push to talk: begin or end the utterance; Tangy is silent meanwhile."""
+        """Start or end an utterance (push-to-talk); Tangy is silent meanwhile."""
         if not self._watching:
             return
         if not self.ears.live:
@@ -192,7 +191,7 @@ class Hearing:
             self.ears.talk()
 
     def tell(self, sentence: str, kind: Kind = "dim") -> None:
-        """Show a sentence about hearing; where a question lies over the screen, in both."""
+        """Show a sentence about speech input, also in an open question."""
         if (question := self._question) is not None:
             question.tell(sentence, COLOURS.get(kind, "$foreground"))
         if self._listeners:
@@ -202,7 +201,7 @@ class Hearing:
 
     @contextmanager
     def deaf(self) -> Iterator[None]:
-        """Hear nothing for a while: Tangy speaks."""
+        """Close the microphone inside the context, because Tangy speaks."""
         self.ears.shut()
         try:
             yield
@@ -210,7 +209,7 @@ class Hearing:
             self.ears.open()
 
     async def run(self) -> None:
-        """Listen for as long as the program runs or the source lasts."""
+        """Listen while the program runs or the recording lasts."""
         try:
             while True:
                 await self._wanted()
@@ -235,14 +234,14 @@ class Hearing:
                 self._answer(heard)
             case Say(text, sure, commands=None) if self._steer is not None and not self._free:
                 self.tell(f"Heard: {text}.")
-                if self.on and self._question is None:  # it is talk about what is asked
+                if self.on and self._question is None:  # people are talking about the question
                     self._steer(text, sure)
             case Say() if self._listeners and self.on:
                 self._kept.append(heard)
                 self.look()
 
     def _answer(self, reply: Reply) -> None:
-        """Answer the open question as its key would, if it was there when somebody began."""
+        """Answer the open question like its key, if it was open when the person began to speak."""
         question = self._question
         if question is None or self._about not in (None, question):
             return
@@ -251,7 +250,7 @@ class Hearing:
         self.tell(f"{said} {wrong}".rstrip(), "warn" if wrong else "text")
 
     async def _wanted(self) -> None:
-        """Wait until an utterance is wanted: a recording is read on demand."""
+        """Wait until speech is wanted: a recording is read on demand."""
         while not self.ears.live and not self._free:
             question = self._question
             if self.ears.answers and question is not None and question.painted:
@@ -265,7 +264,7 @@ class Hearing:
 
     @property
     def _question(self) -> VerifyingDialog | None:
-        """The question that is open, if one lies over the screens."""
+        """The open question on top, if there is one."""
         from tangy_tui.ui.dialogs.question import VerifyingDialog
 
         screen = self._app.screen_stack[-1] if self._app.screen_stack else None
@@ -273,7 +272,7 @@ class Hearing:
 
     @property
     def _begins(self) -> tuple[str, ...]:
-        """The states in which somebody begins to say something new."""
+        """The states that begin a new utterance."""
         if not self.ears.live:
             return ("thinking",)
         return ("listening", "speaking") if self.by_key else ("speaking",)
@@ -291,28 +290,28 @@ class Hearing:
 
 
 def hearing_of(app: object) -> Hearing | None:
-    """Return the ears of Tangy's program, if it has any."""
+    """Return the speech input of Tangy's application, None if there is none."""
     hearing: Hearing | None = getattr(app, "hearing", None)
     return hearing
 
 
 class HearingLine(MicrophoneLine):
-    """The microphone of the program on one line, for as long as it is on a screen."""
+    """The microphone line of a screen."""
 
     def __init__(self, hearing: Hearing, steer: Callable[[str, float], None] | None = None) -> None:
-        """Make the line; `steer` takes what steers the screen while it takes no commands."""
+        """Create the line; `steer` takes steering commands while the screen takes no others."""
         super().__init__(hearing.ears, lambda: hearing.expects)
         self._hearing = hearing
         self._steer = steer
 
     def on_mount(self) -> None:
-        """Follow the ears, and what has the keys."""
+        """Follow the recogniser, and the focus."""
         self._hearing.watch(self.look)
         self._hearing.steer_by(self._steer)
         self.watch(self.screen, "focused", self.look, init=False)
 
     def on_unmount(self) -> None:
-        """Follow no longer."""
+        """Stop following."""
         self._hearing.watch_no_more(self.look)
         if self._steer is not None:
             self._hearing.steer_by(None)

@@ -1,4 +1,4 @@
-"""The question about a game that was interrupted, before another one begins."""
+"""The question about an interrupted game or drill, before another one begins."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class DrillToHold:
 
 
 async def ask_about_drill(program: Program, who: str) -> DrillToHold | None:
-    """Ask about a drill of a person that was interrupted; None: nothing is rehearsed now."""
+    """Ask about a person's interrupted drill; None: rehearse nothing now."""
     from tangy_tui.monitoring.drill_log import interrupted_sheet, keep_interrupted
     from tangy_tui.text.drills import GO_ON, NEW_DRILL, interrupted_words
     from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
@@ -117,7 +117,7 @@ async def ask_about_drill(program: Program, who: str) -> DrillToHold | None:
 
 
 async def _report(program: Program, workspace: Workspace, past: PastGame) -> None:
-    """Write the report of an ended game into the data folder, and say where it is."""
+    """Write the report of an ended game to the data folder, and show its path."""
     from tangy_tui.app.register import guest_ids
     from tangy_tui.monitoring.games import find_games, read_games
     from tangy_tui.monitoring.session import read_session

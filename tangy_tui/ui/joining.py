@@ -1,4 +1,4 @@
-"""Asking who joins the group, or what a person is called from now on."""
+"""Dialogs about a person who joins the group, or gets a new name."""
 
 from __future__ import annotations
 

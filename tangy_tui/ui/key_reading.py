@@ -1,4 +1,4 @@
-"""What becomes of keys before they are keys: a stop, letters for a line, text that was pasted."""
+"""Handles input before key bindings: a typed stop, letters for an input line, pasted text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class KeyReader:
         self._typed_stop = TypedStop()
 
     def takes(self, event: events.Event) -> bool:
-        """Take an event, unless it is for the widgets."""
+        """Handle an event, unless it is for the widgets; return whether it is handled."""
         if not isinstance(event, events.Key | events.Paste):
             return False
         focused = self._app.focused
@@ -37,7 +37,7 @@ class KeyReader:
         return self._begins_filter(event) or (bool(pasted_text(event)) and _is_text(event))
 
     def _begins_filter(self, event: events.Key) -> bool:
-        """Begin to filter before the next key is read: it may have come with this one."""
+        """Start to filter before the next key is read, which may arrive together with this one."""
         app: Any = self._app
         top = app.screen_stack[-1] if app.screen_stack else None
         filters = keymap_of(app).action(event.key) == "filter" and isinstance(top, TangyScreen)
@@ -46,13 +46,13 @@ class KeyReader:
         return filters
 
     def _is_typed(self, event: events.Key | events.Paste) -> bool:
-        """Let the screen take a letter as text, wherever the focus is."""
+        """Let the screen take a letter as text, whatever has the focus."""
         top = self._app.screen_stack[-1] if self._app.screen_stack else None
         return isinstance(top, TangyScreen) and top.take_letter(event)
 
     def _says_stop(self, event: events.Key | events.Paste) -> bool:
-        """Stop if the word is there now; say whether the event is no key, but belongs to it."""
-        from tangy_tui.language.stop_sentence import stops  # loaded behind the first screen
+        """Stop once the word is complete; return whether the event belongs to the word."""
+        from tangy_tui.language.stop_sentence import stops  # loaded after the first screen
 
         if text := event.text if isinstance(event, events.Paste) else pasted_text(event).strip():
             taken: Taken = "stop" if stops(text) else "key"
@@ -73,7 +73,7 @@ def _is_text(event: events.Key | events.Paste) -> bool:
 
 
 def prepare_stop() -> None:
-    """Load what judges sentences that stop the robot, once the first screen is drawn."""
+    """Load the classifier of stop sentences, after the first screen is drawn."""
     from tangy_tui.language.stop_sentence import prepare
 
     prepare()

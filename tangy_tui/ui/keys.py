@@ -1,4 +1,4 @@
-"""Bindings, and the line of keys at the foot, made from the keymap."""
+"""Key bindings, and the line of keys at the foot, from the keymap."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from tangy_tui.text.keys import NAMES
 DEFAULT = Keymap()
 
 Key = tuple[str, str]
-"""A key as it is shown, and a word on what it does."""
+"""A key as shown, and a word for its action."""
 
 
 def keymap_of(app: object) -> Keymap:
-    """Return the keys that count in Tangy's app; in any other app, those of the table."""
+    """Return the keymap of Tangy's application, or the default one for any other."""
     keymap: Keymap = getattr(app, "keymap", DEFAULT)
     return keymap
 
@@ -24,14 +24,14 @@ def bind(
 ) -> list[BindingType]:
     """Bind the keys of an action of the keymap to an action of a screen.
 
-    Keys that a line to type in would take are left to the line.
+    An input line takes precedence for the keys that it uses.
 
     Args:
         id: the action in the keymap.
-        action: what Textual runs (default: the action of the same name).
-        name: what it does here, where that can be said better.
+        action: the Textual action (default: the one with the same name).
+        name: a name that describes it better here.
         show: whether help and palette list it.
-        priority: it works in dialogs and lines, too.
+        priority: whether it also works in dialogs and input lines.
     """
     made: list[BindingType] = []
     for key in BY_ID[id].keys:
@@ -49,7 +49,7 @@ def bind(
 
 
 def foot(app: object, *ids: str | Key, typing: bool = False) -> list[Key]:
-    """Return the keys of actions with a word each; pairs are left as they are.
+    """Return the keys of actions with a word each; pairs are returned unchanged.
 
     "panel:next" gives the key of `panel` another word.
     """

@@ -1,4 +1,4 @@
-"""What can be done on a screen now: the actions of the keymap that help and palette list."""
+"""The actions available on a screen, as help and palette list them."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from tangy_tui.app.keymap import BY_ID
 from tangy_tui.ui.keys import keymap_of
 
 SILENT = frozenset({"number"})
-"""Actions whose word is the key itself."""
+"""Actions whose typed word is the key itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """An action: its name here, its key, the word to type for it, and where it is done."""
+    """An action: its name here, its key, its typed word, and the node that runs it."""
 
     name: str
     key: str
@@ -29,9 +29,9 @@ class Listed:
 
 
 def listed(screen: Screen[Any]) -> list[Listed]:
-    """List what can be done on a screen and in the widget that has the keys, each thing once.
+    """List the actions of a screen and of its focused widget, each once.
 
-    Keys that are letters are listed too while a line takes letters: the palette does them.
+    Letter keys are listed even while an input line takes letters: the palette runs them.
     """
     found: dict[tuple[str, str], Listed] = {}
     keymap, app = keymap_of(screen.app), screen.app
@@ -62,13 +62,13 @@ def listed(screen: Screen[Any]) -> list[Listed]:
 
 
 def _of_question(node: DOMNode, key: str) -> str:
-    """Give the key that says yes to a question, which may be a digit; "" for any other key."""
+    """Return the key for yes to a question, which may be a digit; "" for any other key."""
     yes: str = getattr(node, "yes_key", "")
     return yes if key == "y" else ""
 
 
 def _nodes(screen: Screen[Any]) -> Iterator[DOMNode]:
-    """Give the widget that has the keys, what it stands in, the screen, and the program."""
+    """Yield the focused widget, its ancestors, the screen, and the application."""
     focused = screen.focused
     if focused is not None:
         yield from (node for node in focused.ancestors_with_self if node is not screen.app)
@@ -79,7 +79,7 @@ def _nodes(screen: Screen[Any]) -> Iterator[DOMNode]:
 
 
 def works(screen: Screen[Any], action: str) -> bool:
-    """Say whether a key that is the program's own does anything on a screen."""
+    """Return whether a global key has an effect on a screen."""
     match action:
         case "command":
             return bool(screen.query("#command-input")) or hasattr(screen, "action_type")

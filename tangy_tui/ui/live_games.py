@@ -1,4 +1,4 @@
-"""Live games in the program: the robot is switched on, games are played, it is switched off."""
+"""Live games in the application: switch the robot on, play, switch it off."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from tangy_tui.ui.program import Program
 
 TYPED_AHEAD_SECONDS = 1.5 * ESCAPE_DELAY
-"""After which an Esc that was typed before there was a screen is known to be one."""
+"""After this time in s, an Esc typed before the screen was open has been recognised as a key."""
 
 
 async def play_from_home(program: Program, policy: Policy) -> None:
-    """Set up and play: with the robot, if its file names drivers, or on the bench."""
+    """Set up and play: with the robot, if its file names drivers, otherwise on the bench."""
     from tangy_tui.app.robot_opening import opening_of
 
     workspace = program.workspace
@@ -57,9 +57,9 @@ async def play_live(
 ) -> None:
     """Switch the robot on, play on the live screen, and switch it off again.
 
-    It is left off where somebody calls it off meanwhile. A past game, which was interrupted, is
-    taken up first. Where staff `set_up` the game first, the robot is switched on when they say.
-    The `pace` is in s from call to call.
+    It stays off if the user cancels. A past game, which was interrupted, is resumed first. With
+    `set_up`, staff set the game up first and decide when to switch the robot on. The `pace` is in s
+    from call to call.
     """
     from tangy_tui.app.set_up import SetUp
     from tangy_tui.app.switching_on import SwitchingOn
@@ -96,7 +96,7 @@ async def play_live(
 async def _set_up(
     program: Program, setup: SetUp, robot: SwitchingOn[LiveWorld]
 ) -> LiveWorld | None:
-    """Let staff set the game up; None where they leave."""
+    """Let staff set the game up; None if they leave."""
     from tangy_tui.ui.activity_choice import choose_activity
     from tangy_tui.ui.dialogs.confirm import ConfirmDialog
     from tangy_tui.ui.screens.set_up import SetUpScreen
@@ -118,9 +118,9 @@ async def _set_up(
 
 
 async def _switch_on(program: Program, robot: SwitchingOn[LiveWorld]) -> LiveWorld | None:
-    """Switch a robot on behind a dialog; None where it was called off, or could not be.
+    """Switch a robot on behind a dialog; None if that was cancelled, or failed.
 
-    It may have come on at the very moment at which it was called off: then it goes off again.
+    A robot that came on just as it was cancelled is switched off again.
     """
     from tangy_hw.cancellation import Cancelled
     from tangy_tui.ui.dialogs.message import MessageDialog
@@ -142,7 +142,7 @@ async def _switch_on(program: Program, robot: SwitchingOn[LiveWorld]) -> LiveWor
         return None
     except TangyError as error:
         said = str(error)
-    except asyncio.CancelledError:  # the program is being left
+    except asyncio.CancelledError:  # the program is ending
         robot.cancel()
         raise
     finally:
@@ -152,6 +152,6 @@ async def _switch_on(program: Program, robot: SwitchingOn[LiveWorld]) -> LiveWor
 
 
 def _heard(opening: asyncio.Future[LiveWorld]) -> None:
-    """Take note of how it went, where nobody waits for it any more."""
+    """Retrieve the exception of an opening that nobody may await any more."""
     if not opening.cancelled():
         opening.exception()

@@ -1,4 +1,4 @@
-"""The list of games on the command line."""
+"""The list of games, on the command line."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from tangy_tui.text.log import HOW_TO_GO_ON
 from tangy_tui.text.times import local_time
 
 SHORT = 6
-"""Characters of an id that are printed."""
+"""Printed characters of an id."""
 SHORT_WORLDS = {UNKNOWN: "?", SIMULATED: "sim", BENCH: "bench", LIVE: "live"}
 COLUMNS = ("", "id", "when", "activity", "policy", "steps", "faults", "end", "games")
 FOLDED = ("activity", "policy")
-"""What people name as they like; all else fits 80 columns, with numbers of five digits too."""
+"""Columns with users' own names; the others fit 80 columns, even with numbers of five digits."""
 
 
 def print_games(games: Sequence[Game]) -> None:
-    """Print the games of a log, the newest last, and below it why some stopped early."""
+    """Print the games of a log, the newest last, and below the reasons why some stopped early."""
     console = Console(highlight=False)
     if not games:
         console.print(NONE_YET)

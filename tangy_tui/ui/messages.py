@@ -1,4 +1,4 @@
-"""What the whole program tells its screens, and what they ask of it."""
+"""Messages between the application and its screens."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from textual.message import Message
 
 
 class Stop(Message, bubble=False):
-    """The robot must stop now. Posted to every open screen; `reason` says why, in a few words.
+    """The robot must stop now. Posted to every open screen; `reason` is a short text.
 
-    It comes from ctrl+x (which also works inside dialogs), and before the program ends.
+    Posted by ctrl+x (which also works inside dialogs), and before the program ends.
     """
 
     def __init__(self, reason: str) -> None:
@@ -17,10 +17,10 @@ class Stop(Message, bubble=False):
 
 
 class OpenStep(Message):
-    """Somebody wants to see a step of a demonstration, which the program opens."""
+    """A request to open a step of a demonstration."""
 
     def __init__(self, demonstration: str, number: int) -> None:
-        """Ask for step `number`, counted from 1, of the demonstration of this id."""
+        """Request step `number`, counted from 1, of the demonstration with this id."""
         super().__init__()
         self.demonstration = demonstration
         self.number = number

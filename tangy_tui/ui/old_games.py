@@ -1,4 +1,4 @@
-"""Old games of which the log does not tell where they were played are asked about, once."""
+"""Asks once where old games were played, if their log entries do not tell."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 async def ask_about_old_games(program: Program) -> None:
-    """Ask where they were played; without an answer it is asked again at the next start."""
+    """Ask where they were played; without an answer, ask again at the next start."""
     from tangy_tui.interaction.game_worlds import GameWorlds
     from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 

@@ -1,7 +1,7 @@
-"""The palette: everything that can be done here, found by name or by its typed word.
+"""The command palette: all available actions, found by name or by typed word.
 
-It lists one line for each action, with its key, and covers no more of the screen than it needs:
-over a slow link each cell that changes is time that a person waits.
+It has one line for each action, with its key, and covers as little of the screen as possible: over
+a slow link, every changed cell costs time.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.listing import listed
 
 EXACT = 1000.0
-"""The score of the action whose word was typed: it stands first."""
+"""The score of the action whose word was typed, which is listed first."""
 SELF = ("palette", "help")
 
 
 class PaletteEntry(NamedTuple):
-    """One line: its name, its key, the word to type for it, and what it does."""
+    """One line: an action's name, key, typed word, and callback."""
 
     name: str
     key: str
@@ -33,10 +33,10 @@ class PaletteEntry(NamedTuple):
 
 
 class ActionsProvider(Provider):
-    """Gives the palette the actions of the screen, and the program's commands without a key."""
+    """Provides the actions of the screen, and the application's commands without a key."""
 
     async def discover(self) -> Hits:
-        """Give all of them in the order of the keymap, the keys that only edit a line last."""
+        """Yield all actions in the order of the keymap, keys for editing a line last."""
         for entry in sorted(self._entries(), key=lambda entry: not entry.word):
             yield DiscoveryHit(_line(Content(entry.name), entry), entry.run, text=entry.name)
 
@@ -69,7 +69,7 @@ def _line(name: Content, entry: PaletteEntry) -> Content:
 
 
 class Palette(CommandPalette):
-    """The command palette, without a blinking cursor, over a screen that stays as it is."""
+    """The command palette, without a blinking cursor, above an undimmed screen."""
 
     DEFAULT_CSS = """
     Palette { background: transparent; }
@@ -80,6 +80,6 @@ class Palette(CommandPalette):
     """
 
     def on_mount(self) -> None:
-        """Keep the cursor still: each blink would be written to the terminal."""
+        """Stop the cursor's blinking: each blink would be sent to the terminal."""
         for line in self.query(Input):
             line.cursor_blink = False

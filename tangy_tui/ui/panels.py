@@ -1,4 +1,4 @@
-"""Panels: framed widgets, and from which width a screen shows them side by side."""
+"""Panels: framed widgets, and the widths from which a screen shows them side by side."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 WidgetT = TypeVar("WidgetT", bound=Widget)
 
 WIDE = [(0, "-narrow"), (118, "-wide")]
-"""Textual's horizontal breakpoints: the class a screen has from this many columns on."""
+"""Textual's horizontal breakpoints: the class of a screen from this many columns on."""
 
 LOW = [(0, "-low"), (22, "-tall")]
-"""The class a screen has below 22 lines, where every line counts."""
+"""The class of a screen below 22 lines, where every line counts."""
 
 
 ALWAYS_SHOWN = 2
-"""Keys at the end of a key line that stay where there is no room for all: esc and ?."""
+"""The keys at the end of a key line that always stay: esc and ?."""
 
 
 class KeyLine(Static):
-    """The keys of a screen on one line; the last ones before esc and ? go where room is short."""
+    """The keys of a screen on one line; if space is short, those before esc and ? are left out."""
 
     DEFAULT_CSS = """
     KeyLine { height: 1; padding: 0 1; }
@@ -40,16 +40,16 @@ class KeyLine(Static):
         self._typing = typing
 
     def show(self, *keys: str | Key, typing: bool = False) -> None:
-        """Show other keys: actions of the keymap, or pairs of a key and a word.
+        """Replace the keys: actions of the keymap, or pairs of a key and a word.
 
-        `typing` where letters go to a line: then others are shown, as far as there are any.
+        `typing`: an input line takes letters, so other keys are shown if there are any.
         """
         if (keys, typing) != (self._keys, self._typing):
             self._keys, self._typing = keys, typing
             self._write()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Show as many as there is room for."""
+        """Show as many as fit."""
         self._write()
 
     def _write(self) -> None:
@@ -67,12 +67,12 @@ class KeyLine(Static):
 
 
 def key_line(*keys: str | Key) -> KeyLine:
-    """Make the last line of a screen: its keys, each with a word on what it does."""
+    """Create the last line of a screen: its keys, each with a word for its action."""
     return KeyLine(*keys)
 
 
 def panel(widget: WidgetT, title: str = "") -> WidgetT:
-    """Give a widget the frame of a panel, and another title than its own."""
+    """Give a widget the frame of a panel, and another title if given."""
     widget.add_class("panel")
     if title:
         widget.border_title = title
@@ -80,7 +80,7 @@ def panel(widget: WidgetT, title: str = "") -> WidgetT:
 
 
 def room_panel(workspace: Workspace) -> RoomView:
-    """Make the panel of a workspace's room, with its people, its robot and its numbers."""
+    """Create the panel of a workspace's room, with its people, its robot and its numbers."""
     from tangy_tui.ui.widgets.room_view import RoomView
 
     return panel(

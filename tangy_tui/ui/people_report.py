@@ -1,4 +1,4 @@
-"""People on the command line: the list, one person in full, and the history game by game."""
+"""Records of people on the command line: the list, one person, and the history game by game."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from tangy_tui.text.times import on_day
 
 
 def print_people(records: Sequence[Record]) -> None:
-    """Print everybody with the strategies tried on them, and what works with whom in words."""
+    """Print everybody with their counts for each strategy, and a sentence about what works."""
     console = Console(highlight=False)
     strategies = tuple(records[0].beliefs)
     title = f"{COMPLIED}, in {records[0].world} games"
@@ -44,7 +44,7 @@ def print_people(records: Sequence[Record]) -> None:
 
 
 def print_person(record: Record) -> None:
-    """Print one person in full."""
+    """Print one person in detail."""
     console = Console(highlight=False)
     table = _table(
         f"{plain(record.person.name)} ({record.person.id}), in {record.world} games",
@@ -69,7 +69,7 @@ def print_person(record: Record) -> None:
 
 
 def print_history(record: Record) -> None:
-    """Print what a person was asked to do, game by game."""
+    """Print the requests to a person, game by game."""
     console = Console(highlight=False)
     table = _table(HISTORY, "no.", "when", "strategy", "what came of it")
     for game in record.games:
@@ -84,7 +84,7 @@ def print_history(record: Record) -> None:
 
 
 def _short(record: Record, strategy: str) -> Text:
-    """Write a strategy in one cell; the star stands where one alone is most probably the best."""
+    """Format a strategy in one cell; a star marks a unique highest P(best)."""
     belief = record.beliefs[strategy]
     star = " *" if strategy == record.leading and belief.trials else ""
     off = " off" if strategy in record.known.off else ""

@@ -1,4 +1,4 @@
-"""Doing what a key does because its word was typed, or was chosen in the palette."""
+"""Runs the action of a key whose word was typed, or that was chosen in the palette."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import Any
 from textual.screen import Screen
 
 ACTIONS = {"palette": "command_palette", "draw": "draw_again", "begin": "play"}
-"""What Textual calls an action of the keymap, where that is something else."""
+"""Textual's names of keymap actions, if they differ."""
 
 
 async def perform(screen: Screen[Any], id: str, on: bool | None = None) -> None:
-    """Do an action of the keymap on a screen; of a switch, only where it is not so already."""
+    """Run a keymap action on a screen; set a switch only if it is not already `on`."""
     app: Any = screen.app
     if id == "voice" and on is not None and app.speaker.on == on:
         return

@@ -1,4 +1,4 @@
-"""How a person's record is written on lines of a panel: people, strategies, history."""
+"""The lines of a person's record on a panel: people, strategies, history."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ STATE = 13
 
 
 def people_lines(records: Sequence[Record], width: int) -> list[ChoiceLine]:
-    """Write one sentence for each person, the name standing out."""
+    """Format one sentence for each person, with the name highlighted."""
     lines = []
     for record in records:
         guest = GUEST_NOTE if is_guest(record.person.id) else ""
@@ -47,9 +47,9 @@ def people_lines(records: Sequence[Record], width: int) -> list[ChoiceLine]:
 
 
 def strategy_lines(record: Record, width: int, height: int) -> list[ChoiceLine]:
-    """Write each strategy with curve, counts, mean, interval and P(best); then where it is from.
+    """Format each strategy with curve, counts, mean, interval and P(best), then the method.
 
-    Where the panel is high, so are the curves.
+    The curves are as high as the panel allows.
     """
     label = min(12, max(cell_len(clean(s)) for s in record.beliefs))
     points = max(6, min(LONGEST_CURVE, width - label - COUNTS - STATE - 22))
@@ -69,7 +69,7 @@ def strategy_lines(record: Record, width: int, height: int) -> list[ChoiceLine]:
 
 
 def curve_lines(belief: Beta, width: int, height: int) -> list[str]:
-    """Draw the density from 0 (left) to 1 (right) on so many lines, the top one first."""
+    """Draw the density from 0 (left) to 1 (right) on some lines, the top one first."""
     density = belief.density(width)
     peak = max(LOWEST_PEAK, *density)
     full = len(BLOCKS) - 1
@@ -105,7 +105,7 @@ def _strategy(record: Record, strategy: str, label: int, drawn: str) -> Row:
 
 
 def history_lines(record: Record, width: int) -> list[ChoiceLine]:
-    """Write the history, the newest game first, and within a game the newest response first."""
+    """Format the history, the newest game first, and in it the newest response first."""
     if not record.games:
         return [ChoiceLine(((NO_REQUESTS, "dim"),))]
     strategy = min(12, max(cell_len(clean(e.strategy)) for e in record.history))
@@ -133,6 +133,6 @@ def _entry(entry: FeedbackEntry, digits: int, strategy: int, width: int) -> Row:
 
 
 def strategy_hint(strategies: Mapping[str, str], chosen: object) -> str:
-    """Say what the chosen strategy does, in the words of the activity."""
+    """Describe the chosen strategy in the words of the activity."""
     words = strategies.get(str(chosen), "")
     return clean(f"{chosen}: {words}") if words else ""

@@ -1,4 +1,4 @@
-"""Comparing two policies that are chosen."""
+"""The comparison of two chosen policies."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 async def compare_policies(program: Program, first: str | None) -> None:
-    """Let two policies be chosen (`first` is one already), and open their comparison."""
+    """Let the user choose two policies (`first` is one already), and open their comparison."""
     from tangy_tui.learning.comparison import find_policy
     from tangy_tui.ui.screens.compare import CompareScreen, choose_two
 

@@ -1,4 +1,4 @@
-"""Opening a kept policy: what must be said of it is said before it is shown or used."""
+"""Opens a stored policy; notices about it come before it is shown or used."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 async def open_policy(program: Program, policy: Policy) -> None:
-    """Open the screen of a policy, and wait until it is left."""
+    """Open the screen of a policy, and wait until it is closed."""
     from tangy_tui.learning.library import effects_of
     from tangy_tui.ui.screens.policy import PolicyScreen
 

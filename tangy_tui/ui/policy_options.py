@@ -1,4 +1,4 @@
-"""What can be looked at and compared: every policy that was kept, and every teacher."""
+"""The policies and teachers to look at and compare."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from tangy_tui.text.numbers import counted
 from tangy_tui.ui.dialogs.choose import Option
 
 DIGEST_SHOWN = 8
-"""Characters of a digest that are shown: enough to tell policies apart."""
+"""The digits shown of a digest: enough to distinguish policies."""
 
 
 def policy_options(store: Store, activity: Activity) -> list[Option]:
-    """Return every kept policy once, the latest first."""
+    """Return every stored policy once, the latest first."""
     found: dict[str, Option] = {}
     for kept in reversed(stored_policies(store, activity.name)):
         digest = kept.digest
@@ -26,7 +26,7 @@ def policy_options(store: Store, activity: Activity) -> list[Option]:
 
 
 def comparison_options(store: Store, activity: Activity) -> list[Option]:
-    """Return what two policies can be compared of: kept ones, and what each teacher shows."""
+    """Return what can be compared: stored policies, and the demonstrations of each teacher."""
     options = [
         Option(f"policy:{option.id}", option.name, option.note)
         for option in policy_options(store, activity)

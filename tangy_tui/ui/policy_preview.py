@@ -1,4 +1,4 @@
-"""Why this, while Tangy is being taught: what it would do by what it has been shown up to now."""
+"""Explains during teaching what Tangy would do after the demonstrations so far."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tangy_tui.text.program import THINKING
 async def show_why(
     screen: Screen[Any], workspace: Workspace, present: Demonstration, situation: Situation
 ) -> None:
-    """Learn beside the screen from all there is, the present game too, and explain a situation."""
+    """Learn in the background from all demonstrations and the present game; explain a situation."""
     from tangy_tui.ui.dialogs.why import WhyDialog
 
     app: Any = screen.app
@@ -33,7 +33,7 @@ async def show_why(
         why = await worker.wait()
     except WorkerCancelled:
         app.clear_notifications()
-        return  # it is not wanted any more, or the screen is being left
+        return  # it is no longer wanted, or the screen is closing
     except WorkerFailed as failed:
         if not isinstance(failed.error, TangyError):
             raise
@@ -52,7 +52,7 @@ def grounds(workspace: Workspace, present: Demonstration, situation: Situation) 
 
     library = read_library(workspace.store, workspace.activity.name)
     there = {d.id: d for d in library.finished}
-    if present.id not in library.entries:  # not a step of its own yet, so nothing to open
+    if present.id not in library.entries:  # it has no logged step to open yet
         return explain(
             foresee(workspace.store, workspace.activity, None), list(there.values()), situation
         )

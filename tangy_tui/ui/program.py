@@ -1,4 +1,4 @@
-"""The program on a terminal: which screen follows which, and what each is given to work with."""
+"""The application on a terminal: the order of its screens, and what each of them works with."""
 
 from __future__ import annotations
 
@@ -38,17 +38,17 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-LONGEST_WORK = 600.0  # s for which a sentence about slow work may stand; it goes when that is done
+LONGEST_WORK = 600.0  # s until the notice of slow work expires, if the work has not ended
 
 PLAYING = 20.0
-"""Times life at which a game is watched unless Tangy speaks or another speed is asked for."""
+"""The pace of watched games in times life, unless Tangy speaks or the user asks for another."""
 
 Start = Callable[["Program"], Coroutine[Any, Any, None]]
-"""What the program does first, above its home screen."""
+"""What the application does first, above its home screen."""
 
 
 class Program(SoundingApp):
-    """Tangy's screens, put together around one workspace."""
+    """Tangy's screens around one workspace."""
 
     def __init__(
         self,
@@ -60,20 +60,20 @@ class Program(SoundingApp):
         asks_name: bool = False,
         **settings: Any,
     ) -> None:
-        """Make the program; without a start it waits at home. It may have ears, eyes and voice."""
+        """Create the application; without a `start` it waits on the home screen."""
         pictures = workspace.store.folder
         super().__init__(self._home, pictures=pictures, activity=workspace.activity, **settings)
         self.workspace = workspace
         self._start, self._asks_name = start, asks_name
         self.new_teacher = False
-        """Whether the one who teaches has given a name only now, and so is to be shown around."""
+        """Whether the teacher has just given a name, and so gets the tour."""
         self.eyes = CameraSession(workspace, sensors, live=live)
         self._busy = False
         self._opening = False
         self._told: set[str] = set()
 
     def on_mount(self) -> None:
-        """Do what comes first."""
+        """Report the log's problems, and start."""
         self._tell_of_log()
         self.run_worker(first_start(self, self._start, asks=self._asks_name))
 
@@ -93,7 +93,7 @@ class Program(SoundingApp):
             screen.remove_class("-behind")
 
     def _tell_of_log(self) -> None:
-        """Report once the problems of the log, and the events left out."""
+        """Report the problems of the log and the events left out, each once."""
         store = self.workspace.store
         aside = [store.aside[seq] for seq in sorted(store.aside)]
         if len(aside) > 1:
@@ -106,7 +106,7 @@ class Program(SoundingApp):
     # ---------------------------------------------------------------------------------- ways
 
     def on_home_screen_chosen(self, event: HomeScreen.Chosen) -> None:
-        """Open the choice, unless something is opening: a key may come twice."""
+        """Open the choice, unless one is being opened: a key may arrive twice."""
         if self._busy or self._opening or not isinstance(self.screen, HomeScreen):
             return
         if self.screen.has_class("-behind"):  # the key was typed before anything was seen
@@ -142,7 +142,7 @@ class Program(SoundingApp):
                 self._open(self.live())
 
     def _open(self, way: Coroutine[Any, Any, None]) -> None:
-        """Go a way that takes its time; nothing else is opened from home meanwhile."""
+        """Run a choice that takes time; no other choice is opened from home meanwhile."""
         self._opening = True
 
         async def go() -> None:
@@ -161,21 +161,21 @@ class Program(SoundingApp):
         self.push_screen(TeachScreen(self.workspace, teaching, tour=tour))
 
     def action_name(self) -> None:
-        """Change the name of the one who teaches."""
+        """Change the teacher's name."""
         self.run_worker(change_teacher(self))
 
     def rename_teacher(self, name: str) -> None:
-        """Let somebody teach who has said so."""
+        """Set the teacher's name that was given in a command."""
         rename_teacher(self, name)
 
     def on_open_step(self, event: OpenStep) -> None:
-        """Show a step where it was demonstrated."""
+        """Show a step in its demonstration."""
         from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 
         self.push_screen(DemonstrationScreen(self.workspace, event.demonstration, event.number))
 
     async def show_again(self, id: str, kept: int) -> None:
-        """Let a demonstration be shown again after its first `kept` steps."""
+        """Demonstrate a game again after its first `kept` steps."""
         await show_again(self, id, kept)
 
     def people(self) -> None:
@@ -185,7 +185,7 @@ class Program(SoundingApp):
         self.push_screen(PeopleScreen(self.workspace))
 
     async def sensors(self) -> None:
-        """Open the screen of devices and cameras, and wait until it is left."""
+        """Open the screen of devices and cameras, and wait until it is closed."""
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
         try:
@@ -196,7 +196,7 @@ class Program(SoundingApp):
         await self.push_screen_wait(screen)
 
     async def on_unmount(self) -> None:
-        """End the cameras with the program, whatever it was doing."""
+        """Close the cameras with the application."""
         await self.eyes.close()
 
     def action_library(self) -> None:
@@ -207,7 +207,7 @@ class Program(SoundingApp):
             self.push_screen(DemonstrationsScreen(self.workspace))
 
     def action_guided(self) -> None:
-        """Teach in a guided game, in the place of one that is being taught."""
+        """Teach in a guided game, which replaces one that is being taught."""
         from tangy_tui.ui.screens.teach import TeachScreen
 
         if self._busy or self._opening:
@@ -248,17 +248,17 @@ class Program(SoundingApp):
         injections: Sequence[str] = (),
         past: PastGame | None = None,
     ) -> None:
-        """Open the playing screen with a policy, the last one unless another is wanted.
+        """Open the playing screen with a policy.
 
         Args:
-            games: how many games.
-            speed: times life; usually as life where Tangy speaks or its cameras are real, and
-                faster where not.
-            seed: of the random generators.
+            games: the number of games.
+            speed: times life; by default 1 if Tangy speaks or its cameras are real, otherwise
+                faster.
+            seed: seeds the random generators.
             wanted: the policy: its name or digest, "" for the last.
-            teacher: who answers where Tangy asks.
-            injections: faults that are to come.
-            past: a game that was interrupted, and is taken up first; None: it is asked about.
+            teacher: who answers Tangy's questions.
+            injections: faults to inject.
+            past: an interrupted game to resume first; None: ask about one if there is any.
         """
         from tangy_tui.ui.screens.play import PlayScreen
 
@@ -282,7 +282,7 @@ class Program(SoundingApp):
                 await self.push_screen_wait(screen)
 
     async def action_play(self, wanted: str = "") -> None:
-        """Let Tangy run a game in the simulated room: from home, teaching, or what it learnt."""
+        """Let Tangy run a game in the simulated room, from home, teaching, or a policy."""
         from tangy_tui.ui.screens.policy import PolicyScreen
         from tangy_tui.ui.screens.teach import TeachScreen
 
@@ -290,30 +290,30 @@ class Program(SoundingApp):
             await self.play(wanted=wanted)
 
     async def live(self) -> None:
-        """Play a live game: on the robot if its drivers are named, else on the bench."""
+        """Play a live game: on the robot if its file names drivers, otherwise on the bench."""
         policy = await self.load_policy()
         if policy is not None:
             await play_from_home(self, policy)
 
     async def drill(self) -> None:
-        """Open a drill: faults to rehearse."""
+        """Open a drill for rehearsing faults."""
         await hold_drill(self)
 
     def action_compare(self) -> None:
-        """Compare two policies, or what two teachers show."""
+        """Compare two policies, or the demonstrations of two teachers."""
         self.run_worker(self.compare())
 
     async def compare(self, first: str | None = None) -> None:
-        """Open the comparison of two policies that are chosen; `first` is one of them already."""
+        """Open the comparison of two policies to choose; `first` is one of them already."""
         await compare_policies(self, first)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """List what the command palette offers beside the keys."""
+        """List the commands of the palette that have no key."""
         yield from super().get_system_commands(screen)
         yield SystemCommand(*text.COMPARE_POLICIES, self.action_compare)
 
     async def action_phrases(self) -> None:
-        """Open the phrasebook; while it says a word aloud, the microphone is shut."""
+        """Open the phrasebook; the microphone is closed while it speaks a word."""
         from tangy_tui.speech.aloud import hear
         from tangy_tui.ui.screens.phrases import PhrasesScreen
 
@@ -325,7 +325,7 @@ class Program(SoundingApp):
             await self.push_screen(PhrasesScreen(self.workspace, say))
 
     def action_other_policy(self) -> None:
-        """Look at another policy that was kept."""
+        """Open another stored policy."""
         self.run_worker(self._other_policy())
 
     async def _other_policy(self) -> None:
@@ -337,21 +337,21 @@ class Program(SoundingApp):
             await self.open_policy(policy)
 
     async def open_policy(self, policy: Policy) -> None:
-        """Open the screen of a policy, and wait until it is left."""
+        """Open the screen of a policy, and wait until it is closed."""
         await policy_opening.open_policy(self, policy)
 
     async def load_policy(self, wanted: str = "") -> Policy | None:
-        """Learn the kept policy again; what must be said of it is said before it is used."""
+        """Learn the stored policy again; notices about it come before it is used."""
         return await policy_opening.load_policy(self, wanted)
 
     async def tell(self, text: str, title: str) -> None:
-        """Say something in a dialog, and wait until it was read."""
+        """Show a message in a dialog, and wait until it is closed."""
         from tangy_tui.ui.dialogs.message import MessageDialog
 
         await self.push_screen_wait(MessageDialog(text, title=title))
 
     async def in_thread(self, what: str, work: Callable[[], T]) -> T | None:
-        """Do slow work beside the screen; None if it failed for a reason that was shown."""
+        """Run slow work in a thread; None if it failed, and the reason was shown."""
         if self._busy:
             return None
         self._busy = True
@@ -362,7 +362,7 @@ class Program(SoundingApp):
             )
             return await worker.wait()
         except WorkerCancelled:
-            return None  # the program is being left
+            return None  # the program is ending
         except WorkerFailed as failed:
             if not isinstance(failed.error, TangyError):
                 raise

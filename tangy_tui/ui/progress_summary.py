@@ -1,4 +1,4 @@
-"""How far things are: what stands beside the choices of the first screen."""
+"""The progress notes beside the choices of the home screen."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def how_far(workspace: Workspace) -> Mapping[str, str]:
-    """Say how far each choice of the first screen is, by its id."""
+    """Return the note of each choice of the home screen, by its id."""
     there = library.read_library(workspace.store, workspace.activity.name)
     shown = there.demonstrations
     finished = sum(1 for d in shown if d.finished)

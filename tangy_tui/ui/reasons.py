@@ -1,4 +1,4 @@
-"""Why this?, asked of a game or a policy: the dialogs for a step, a row and a question."""
+"""The dialogs that explain a step of a game, a row of a policy, and a question."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tangy_tui.ui.dialogs.why import WhyDialog
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """What a step rested on: the policy of that moment, what happened, and who answered."""
+    """The ground of a step: the policy at that moment, the event, and who answered."""
 
     policy: Policy
     acted: Acted
@@ -24,7 +24,7 @@ class Ground:
 
 
 def why_of(workspace: Workspace, policy: Policy, situation: Situation) -> Why:
-    """Find the grounds of a policy's decision, among hidden demonstrations as well."""
+    """Explain a policy's decision, also by hidden demonstrations."""
     entries = read_library(workspace.store, workspace.activity.name).entries.values()
     return explain(policy, [entry.demonstration for entry in entries], situation)
 

@@ -1,4 +1,4 @@
-"""Tables and progress bars of the command line: policy, tally of games, people."""
+"""Tables and progress bars of the command line: policies, games, people."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ T = TypeVar("T")
 
 
 def progress(items: Iterable[T], what: str, *, quiet: bool) -> Iterator[T]:
-    """Go through items with a progress bar on stderr, where somebody can see it."""
+    """Iterate with a progress bar on stderr, if stderr is a terminal."""
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
         yield from items
@@ -45,7 +45,7 @@ def progress(items: Iterable[T], what: str, *, quiet: bool) -> Iterator[T]:
 
 
 def print_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print a table without a title; nothing where there are no rows."""
+    """Print a table without a title; nothing if there are no rows."""
     if not rows:
         return
     table = Table(*columns, box=box.SIMPLE_HEAD, title_justify="left", show_edge=False)
@@ -58,7 +58,7 @@ def print_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
 
 
 def print_policy(activity: Activity, policy: Policy, effects: Effects, library: Library) -> None:
-    """Print the decision for every situation, the learnt effects, and what to mind."""
+    """Print the decision for every situation, the learnt effects, and warnings."""
     console = Console(highlight=False)
     exact = agreement_words(activity, policy)
     table = _table(
@@ -102,7 +102,7 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
 
 
 def print_policies(kept: Sequence[PolicyLearnt]) -> None:
-    """Print the policies that were learnt, the latest last."""
+    """Print the learnt policies, the latest last."""
     table = _table("Policies", "name", "learnt", "demonstrations", "digest")
     for one in kept:
         count = str(len(one.demonstrations))
@@ -111,7 +111,7 @@ def print_policies(kept: Sequence[PolicyLearnt]) -> None:
 
 
 def print_demonstrations(rows: Sequence[ListRow]) -> None:
-    """Print the demonstrations, one row each, with what to mind of them."""
+    """Print the demonstrations, one row each, with their notes."""
     console = Console(highlight=False)
     if not rows:
         console.print(NONE_YET)
@@ -150,7 +150,7 @@ def _does(activity: Activity, decision: Decision, also: Sequence[str] = ()) -> s
 
 
 def print_tally(workspace: Workspace, tally: Tally, beliefs: Mapping[str, Beliefs]) -> None:
-    """Print the rows of Table II for the games that were played, and the beliefs after them."""
+    """Print the rows of Table II for the played games, and the posteriors after them."""
     console = Console(highlight=False)
     table = _table(
         f"{counted(tally.games, 'game')}, {counted(tally.steps, 'behaviour')}",

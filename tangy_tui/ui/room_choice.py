@@ -1,4 +1,4 @@
-"""Asking in which room is played."""
+"""The dialog to choose a room."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 
 
 async def ask_room(app: App[object], rooms: Iterable[KnownRoom]) -> str | None:
-    """Return what loads the room that was chosen, None if none was."""
+    """Return the source of the chosen room, None if none was chosen."""
     options = [
         Option(one.source, one.source if one.room is None else one.room.title,
                one.problem if one.room is None else places_words(one.room))

@@ -1,10 +1,10 @@
 """Proof that a question has reached the terminal: the terminal replies to a query sent after it.
 
-After a question has been written the cursor is put on a place that is used only once, its position
-is asked for (`CSI 6n`), and it is put back. The answer names that place and can only come from a
-terminal that has drawn the question before it. Keys count from then on. What answers for the
-terminal (tmux, screen, mosh) proves nothing; there the yes of a question is a digit drawn anew for
-each question, which nobody knows without reading it.
+After writing a question, Tangy moves the cursor to a position that it uses only once, queries it
+(`CSI 6n`), and moves the cursor back. A reply with that position can only come from a terminal that
+has drawn the question. Keys count from then on. A reply on the terminal's behalf (by tmux, screen,
+mosh) proves nothing; there, the yes to each question is a new random digit, which nobody knows
+without reading it.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ from tangy_tui.ui.pasted_text import marked, pasted_in
 MOST_WAITING = 4
 
 SLOW_SECONDS = 0.3
-"""An answer that takes longer than this came over a slow link."""
+"""A longer reply time indicates a slow link."""
 
 READING_SECONDS = 0.1
-"""How long a person needs at the least to see a question that the terminal has drawn."""
+"""The shortest time in which a person can see a question that the terminal has drawn."""
 
 Seen = Callable[[float], None]
-"""Is told from when on keys count, in s on the scale of `time.monotonic`."""
+"""Called with the time from which keys count, in s on the scale of `time.monotonic`."""
 
 
 class RoundTrip:
-    """Asks the terminal whether it has drawn everything written before."""
+    """Asks the terminal whether it has drawn all earlier output."""
 
     def __init__(
         self,
@@ -52,15 +52,15 @@ class RoundTrip:
         setting: QuestionKey = "auto",
         rng: random.Random | None = None,
     ) -> None:
-        """Make it for a terminal.
+        """Query a terminal.
 
         Args:
-            write: puts control sequences behind what was drawn.
-            session: looks at who stands between; it may change while the program runs.
-            clock: s, on the scale of `time.monotonic`.
-            cursor: the column and the line, from 0, that the cursor is put back to.
-            setting: what the user wants.
-            rng: draws digits and the first place (default: from the system).
+            write: sends control sequences after the drawn output.
+            session: returns where the terminal is; it may change while the program runs.
+            clock: returns s, on the scale of `time.monotonic`.
+            cursor: returns the column and line, from 0, to move the cursor back to.
+            setting: the user's setting of the key for yes.
+            rng: draws digits and the first position (default: from the system).
         """
         self._write = write
         self._session = session
@@ -71,10 +71,10 @@ class RoundTrip:
         self._cursor = cursor
         self._place = self._random.randrange(1000)
         self._waiting: dict[tuple[int, int], tuple[Seen, float]] = {}
-        self._shortest = math.inf  # the quickest answer so far, in s
+        self._shortest = math.inf  # the shortest reply time so far, in s
         self._answers = False
-        self._took: deque[float] = deque(maxlen=3)  # how long the last answers took, in s
-        self._base = 0  # what the terminal takes from the positions that it reports
+        self._took: deque[float] = deque(maxlen=3)  # the last reply times, in s
+        self._base = 0  # 1 if the terminal reports positions from 0
         self._for_another = False
         self._digit = ""
 
@@ -88,10 +88,10 @@ class RoundTrip:
         self.ask(lambda time: None)
 
     def ask(self, seen: Seen) -> None:
-        """Report when the terminal has drawn everything written so far."""
+        """Call `seen` when the terminal has drawn all output so far."""
         columns, lines = self._size
-        # The first line is left out: there a report looks like Shift+F3. So is the second, which
-        # a terminal that counts from 0 reports as the first.
+        # Skip the first line: there a report looks like Shift+F3. Skip the second too, which a
+        # terminal that counts from 0 reports as the first.
         places = columns * max(1, lines - 2)
         self._place = (self._place + 1) % places
         line, column = divmod(self._place, columns)
@@ -100,23 +100,23 @@ class RoundTrip:
         self._write(f"\x1b[{line + 3};{column + 1}H\x1b[6n\x1b[{y + 1};{x + 1}H")
 
     def resized(self, size: tuple[int, int]) -> None:
-        """Ask again: what the terminal reports after a change of its size may be another place."""
+        """Query again: after a change of size, the terminal may report another position."""
         self._size = size
         waiting, self._waiting = dict.fromkeys(seen for seen, _ in self._waiting.values()), {}
         for seen in waiting:
             self.ask(seen)
 
     def ask_again(self, seen: Seen) -> None:
-        """Ask once more for an answer that may be lost; no more than a few wait at a time."""
+        """Query again after a reply that may be lost; only a few queries wait at a time."""
         if sum(1 for waits, _ in self._waiting.values() if waits == seen) < MOST_WAITING:
             self.ask(seen)
 
     # ------------------------------------------------------------------------------- answers
 
     def reported(self, x: int, y: int, time: float) -> None:
-        """Take the terminal's answer: a place (from 0), and when it came, in s."""
+        """Handle the terminal's reply: a position (from 0), and its time of arrival in s."""
         if y == 0:
-            return  # Shift+F3, which Textual takes for a report
+            return  # Shift+F3, which Textual parses as a report
         if not self._answers and (x + 1, y + 1) in self._waiting and (x, y) not in self._waiting:
             self._base = 1  # it counts from 0, as kmscon is said to
         found = self._waiting.pop((x + self._base, y + self._base), None)
@@ -127,20 +127,20 @@ class RoundTrip:
         self._shortest = min(self._shortest, time - asked)
         self._took.append(time - asked)
         self._waiting = {p: waits for p, waits in self._waiting.items() if waits[0] != seen}
-        # An answer that was held up on its way came later than the person saw the question. Keys
-        # cannot overtake it, so that the time to read may be as much shorter.
+        # A delayed reply arrived later than the person saw the question. Keys cannot overtake it,
+        # so the reading time may be shorter by the delay.
         held_up = time - asked - self._shortest
         seen(time + max(0.0, READING_SECONDS - held_up))
 
     def attributes(self, given: str) -> None:
-        """Take the terminal's device attributes ("84;0;0")."""
+        """Handle the terminal's device attributes ("84;0;0")."""
         self._for_another = answers_for_another(given)
 
     # ------------------------------------------------------------------------------ the rule
 
     @property
     def yes(self) -> str:
-        """The key that says yes to a question that begins now: "y", or a digit drawn for it."""
+        """The key for yes to a question that starts now: "y", or a digit drawn for it."""
         if not self.needs_digit:
             return "y"
         self._digit = self._random.choice([d for d in DIGITS if d != self._digit])
@@ -148,7 +148,7 @@ class RoundTrip:
 
     @property
     def needs_digit(self) -> bool:
-        """Whether no answer of the terminal would prove that the person has seen a question."""
+        """Whether no reply of the terminal would prove that the person has seen a question."""
         if self._setting != "auto":
             return self._setting == "digit"
         session = self._session()
@@ -157,30 +157,30 @@ class RoundTrip:
 
     @property
     def slow(self) -> bool:
-        """Whether the terminal's last answers were long on their way, or behind much else."""
+        """Whether one of the last replies took long."""
         return max(self._took, default=0.0) > SLOW_SECONDS
 
     @property
     def answers(self) -> bool:
-        """Whether the terminal has answered once."""
+        """Whether the terminal has replied at least once."""
         return self._answers
 
 
 class ReplyParser(XTermParser):
-    """Textual's reader of keys, which takes device attributes out of what it reads.
+    """Textual's input parser, which also parses device attributes.
 
-    Textual does not know these answers and would type them, letter by letter.
+    Textual does not know these replies, and would take them as typed letters.
     """
 
     heard: Callable[[str], None] | None = None
-    """Is told the attributes."""
+    """Called with the attributes."""
 
     _ANSWER = re.compile(r"\x1b\[[>?]([\d;]*)c")
     _BEGUN = re.compile(r"\x1b\[(?:[>?][\d;]*)?\Z")
     _rest = ""
 
     def feed(self, data: str) -> Iterable[Message]:
-        """Read what came from the terminal."""
+        """Parse input from the terminal."""
         if data:
             data = self._ANSWER.sub(self._take, self._rest + data)
             begun = self._BEGUN.search(data)
@@ -197,5 +197,5 @@ class ReplyParser(XTermParser):
 
 
 def read_replies() -> None:
-    """Let every program that is started from here on read with a `ReplyParser`."""
+    """Let every application started from now on read with a `ReplyParser`."""
     linux_driver.XTermParser = ReplyParser  # type: ignore[attr-defined]

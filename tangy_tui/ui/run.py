@@ -1,4 +1,4 @@
-"""Running the program on a terminal: what each verb of the command line opens first."""
+"""Runs the application on a terminal: what each command of the command line opens first."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 def run_program(workspace: Workspace, *, ascii_only: bool, voice: bool = False) -> int:
-    """Open the program at its first screen; return the exit status."""
+    """Open the application on its home screen; return the exit status."""
     return _run(workspace, None, ascii_only, voice=voice, asks_name=True)
 
 
@@ -49,10 +49,11 @@ def run_teaching(
     voice: bool = False,
     asks_name: bool = False,
 ) -> int:
-    """Open the teaching screen; return the exit status. Ears and voice stay the program's.
+    """Open the teaching screen; return the exit status.
 
-    The scripted teacher gives `games` demonstrations at `speed` steps a second, and the program
-    ends; a person goes home from here.
+    The scripted teacher gives `games` demonstrations at `speed` steps a second, then the
+    application
+    ends; a human teacher returns to the home screen.
     """
 
     async def start(program: Program) -> None:
@@ -94,9 +95,9 @@ def run_playing(
 ) -> int:
     """Open the playing screen (speed in times life); return the exit status.
 
-    Without a speed the game goes as in life where Tangy speaks, and faster where it does not.
-    Cameras that are given count as the robot's, and the game goes as in life.
-    Where Tangy asks, answers are heard through the ears, if there are any.
+    The default speed is 1 if Tangy speaks or if `sensors` are given, which then count as the
+    robot's
+    cameras; otherwise it is faster. Answers to Tangy's questions may be spoken if there are `ears`.
     """
     return _run(
         workspace,
@@ -127,18 +128,18 @@ def run_live(
     """Set up, play on the live screen with the robot on, and end; return the exit status.
 
     Args:
-        workspace: whose games.
-        opening: says, for a seed, how the robot is switched on.
-        policy: by which is played.
-        games: how many.
-        seed: of new games.
-        teacher: who answers where Tangy asks.
-        ascii_only: draw with plain characters.
-        world: in which is played.
-        ears: hear what stops the robot, and what answers Tangy.
-        past: a game that was interrupted, and is taken up first; None: it is asked about.
-        set_up: staff set a new game up first.
-        pace: s from one call to the next, unless they choose another.
+        workspace: the workspace of the games.
+        opening: returns, for a seed, what switches the robot on.
+        policy: the policy to play by.
+        games: the number of games.
+        seed: seeds new games.
+        teacher: who answers Tangy's questions.
+        ascii_only: draw with ASCII characters.
+        world: the world of the games.
+        ears: the recogniser for stops and answers.
+        past: an interrupted game to resume first; None: ask about one if there is any.
+        set_up: let staff set a new game up first.
+        pace: s from one call to the next, unless staff choose another.
     """
 
     async def start(program: Program) -> None:
@@ -172,15 +173,15 @@ def run_drill(
     ascii_only: bool,
     past: Sheet | None = None,
 ) -> int:
-    """Open the screen on which faults are rehearsed; return the exit status.
+    """Open the drill screen; return the exit status.
 
-    It goes on with a `past` drill, or asks about one that was interrupted.
+    Resumes a `past` drill, or asks about an interrupted one.
     """
     return _run(workspace, lambda program: hold_drill(program, rounds, seed, who, past), ascii_only)
 
 
 def run_sensors(workspace: Workspace, sensors: CameraHub, *, ascii_only: bool) -> int:
-    """Open the screen of devices and cameras, and end with it; return the exit status."""
+    """Open the screen of devices and cameras, and exit with it; return the exit status."""
 
     async def start(program: Program) -> None:
         await program.sensors()
@@ -190,7 +191,7 @@ def run_sensors(workspace: Workspace, sensors: CameraHub, *, ascii_only: bool) -
 
 
 def run_watching(folder: Path, *, who: str, note: str, ascii_only: bool) -> int:
-    """Open a second console on the games of a data folder; return the exit status."""
+    """Open a second console for the games of a data folder; return the exit status."""
     from tangy_tui.app.watching import Guest
     from tangy_tui.ui.app import TangyApp
     from tangy_tui.ui.screens.watch import WatchScreen
@@ -213,7 +214,7 @@ def run_watching(folder: Path, *, who: str, note: str, ascii_only: bool) -> int:
 def run_map_drive(
     workspace: Workspace, link: RobotLink, record: Path, *, ascii_only: bool
 ) -> tuple[bool, int]:
-    """Let staff drive to draw a map; return whether to draw it, and the exit status."""
+    """Let staff drive for a map; return whether to draw it, and the exit status."""
     from tangy_tui.ui.app import TangyApp
     from tangy_tui.ui.screens.map_drive import MapDriveScreen
 
@@ -232,7 +233,7 @@ def run_map_drive(
 
 
 def run_demo(workspace: Workspace, *, seed: int, ascii_only: bool, voice: bool = False) -> int:
-    """Tell the whole story in the program; return the exit status."""
+    """Play the whole demo; return the exit status."""
 
     async def start(program: Program) -> None:
         await tell_story(program, workspace, seed)

@@ -1,9 +1,9 @@
-"""Writing only the cells of a screen that changed.
+"""Writes only the changed cells of a screen.
 
 Textual paints whole widgets, some of them two or three times for one change, with the full
-colours of every segment: 20 kB for a question of two lines. Over a slow link that is the time
-that a person waits. `ScreenDiff` remembers what each cell shows, and turns an update into the
-shortest text that makes the difference.
+colours of every segment: 20 kB for a question of two lines. Over a slow link, the user waits for
+that. `ScreenDiff` remembers the content of each cell, and turns an update into the shortest output
+that makes the difference.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
 from textual.strip import Strip
 
 JOINED = 5
-"""Unchanged cells between changed ones that are written again: moving over them costs as much."""
+"""The most unchanged cells between changed ones that are rewritten: moving the cursor costs as
+much."""
 
 Cell = tuple[str, str]
-"""What a cell shows, and its SGR codes; the second half of a wide character shows ""."""
+"""A cell's text and SGR codes; the text of the second half of a wide character is ""."""
 
 UNKNOWN: Cell = ("", "unknown")
 
@@ -33,14 +34,14 @@ _COLOURS = {
 }
 
 _OFF = {"1": "22", "2": "22", "3": "23", "4": "24", "5": "25", "7": "27", "8": "28", "9": "29"}
-"""The SGR code that takes an attribute back."""
+"""The SGR codes that reset attributes."""
 
 _LINES_AND_SWAPS = frozenset({"4", "7", "9", "21", "53"})
-"""SGR codes that can be seen on a cell without a character."""
+"""SGR codes that are visible on an empty cell."""
 
 
 class Written(CompositorUpdate):
-    """An update that is text already."""
+    """An update that is already text."""
 
     def __init__(self, text: str) -> None:
         self._text = text
@@ -51,19 +52,19 @@ class Written(CompositorUpdate):
 
 
 class ScreenDiff:
-    """What the terminal shows, cell by cell."""
+    """The content of the terminal, cell by cell."""
 
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell]] = {}
 
     def forget(self) -> None:
-        """Take nothing for granted: the terminal may show something else."""
+        """Forget the content: other output may have changed it."""
         self._rows.clear()
 
     def difference(self, update: LayoutUpdate | ChopsUpdate, console: Console) -> str:
-        """Return what to write so that the terminal shows an update; "" if it does already.
+        """Return the output that makes the terminal show an update; "" if it does already.
 
-        It begins and ends with the terminal's own colours, and leaves the cursor anywhere.
+        The output begins and ends with the default colours, and may leave the cursor anywhere.
         """
         colours = _COLOURS.get(console.color_system or "", ColorSystem.TRUECOLOR)
         pen = _Pen()
@@ -75,7 +76,7 @@ class ScreenDiff:
         """Write the cells of row `y` from column `x` on that differ from the screen."""
         row = self._rows.setdefault(y, [])
         end = x + len(cells)
-        if row[x:end] == cells:  # so it is for most, and for none
+        if row[x:end] == cells:  # the most frequent case
             return
         if len(row) < end:
             row += [UNKNOWN] * (end - len(row))
@@ -87,12 +88,12 @@ class ScreenDiff:
         row[x:end] = cells
         for first, after in _runs(changed, row):
             while first > x and _is_second_half(row[first]):
-                first -= 1  # a wide character is written from its first half on
+                first -= 1  # write a wide character from its first half
             pen.write(y, first, row[first:after])
 
 
 class _Pen:
-    """Writes cells with the fewest moves and changes of colour."""
+    """Writes cells with the fewest cursor movements and changes of colour."""
 
     def __init__(self) -> None:
         self._parts: list[str] = []
@@ -102,7 +103,7 @@ class _Pen:
     def write(self, y: int, x: int, cells: Sequence[Cell]) -> None:
         """Write cells in row `y` from column `x` on."""
         for column, (shown, codes) in enumerate(cells, x):
-            if not shown:  # the second half of what was written
+            if not shown:  # the second half of a wide character
                 self._at = None
                 continue
             if self._at != (y, column):
@@ -111,7 +112,7 @@ class _Pen:
                 self._parts.append(_change(self._codes, codes))
                 self._codes = codes
             self._parts.append(shown)
-            # Terminals do not agree how wide a cluster is: go on from a known place.
+            # Terminals disagree on the width of clusters: position the cursor again afterwards.
             self._at = (y, column + 1) if len(shown) == 1 else None
 
     def _move(self, y: int, x: int) -> None:
@@ -121,12 +122,12 @@ class _Pen:
             self._parts.append(f"\x1b[{y + 1};{x + 1}H")
 
     def text(self) -> str:
-        """Return all that was written, with the terminal's own colours at its end."""
+        """Return the whole output, with the default colours at its end."""
         return "".join(self._parts) + ("\x1b[m" if self._codes else "")
 
 
 def _placed(update: LayoutUpdate | ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
-    """Give the row, the column and the content of everything in an update."""
+    """Yield row, column and content of each part of an update."""
     if isinstance(update, LayoutUpdate):
         for y, line in enumerate(update.strips, update.region.y):
             x = update.region.x
@@ -171,7 +172,7 @@ def _segment_cells(text: str, codes: str) -> tuple[Cell, ...]:
             while not cells[shown][0]:
                 shown -= 1
             cells[shown] = (cells[shown][0] + character, codes)
-    if len(cells) != width:  # characters that are drawn as one: written as one
+    if len(cells) != width:  # a cluster is written as a whole
         cells = [(text, codes)] + [("", codes)] * (width - 1)
     return tuple(cells[:width])
 
@@ -181,7 +182,7 @@ def _is_second_half(cell: Cell) -> bool:
 
 
 def _runs(changed: Sequence[int], row: Sequence[Cell]) -> Iterator[tuple[int, int]]:
-    """Give the first column and the one after the last of all that is written in one go."""
+    """Yield the first column and the one after the last of each run to write."""
     first = last = changed[0]
     for column in changed[1:]:
         between = row[last + 1 : column]
@@ -195,14 +196,14 @@ def _runs(changed: Sequence[int], row: Sequence[Cell]) -> Iterator[tuple[int, in
 
 @lru_cache(8192)
 def _blank(codes: str) -> str:
-    """Return the visible part of SGR codes on an empty cell: its background."""
+    """Return the SGR codes that are visible on an empty cell: its background."""
     attributes, _, paper = _parsed(codes)
     return codes if attributes & _LINES_AND_SWAPS else paper
 
 
 @lru_cache(8192)
 def _change(before: str, after: str) -> str:
-    """Return what turns one set of SGR codes into another, in the shortest way."""
+    """Return the shortest sequence from one set of SGR codes to another."""
     if not after:
         return "\x1b[m"
     whole = f"\x1b[0;{after}m" if before else f"\x1b[{after}m"
@@ -225,7 +226,7 @@ def _change(before: str, after: str) -> str:
 
 @lru_cache(8192)
 def _parsed(codes: str) -> tuple[frozenset[str], str, str]:
-    """Return the attributes, the colour of the characters, and the colour behind them."""
+    """Return the attributes, the foreground and the background of SGR codes."""
     attributes: set[str] = set()
     ink = paper = ""
     left = codes.split(";") if codes else []

@@ -1,4 +1,4 @@
-"""Showing a demonstration again from a step on."""
+"""Demonstrating a game again from a step."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 async def show_again(program: Program, id: str, kept: int) -> None:
-    """Let a demonstration be shown again after its first `kept` steps.
+    """Demonstrate a game again after its first `kept` steps.
 
-    A teaching session that is open takes it over: two of them would write one game.
+    An open teaching session continues with it: two of them would write to one game.
     """
     from tangy_tui.learning.teaching_events import Again
     from tangy_tui.ui.screens.teach import TeachScreen

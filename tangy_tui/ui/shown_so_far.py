@@ -1,4 +1,4 @@
-"""Coverage in a teaching session: situations shown by everybody before, and in this game."""
+"""Coverage in a teaching session: by all earlier demonstrations, and by this game."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tangy_tui.learning.teaching_session import TeachingSession
 
 
 class ShownSoFar:
-    """Counts the situations of a session; the library is read when a game begins, not per step."""
+    """Counts the situations of a session; reads the library once per game, not per step."""
 
     def __init__(self, workspace: Workspace, teaching: TeachingSession) -> None:
         self._workspace = workspace
@@ -34,5 +34,5 @@ class ShownSoFar:
         return coverage(self._workspace.activity, [self._teaching.demonstration])
 
     def first(self, situation: Situation) -> bool:
-        """Say whether the last step is the first one ever in its situation."""
+        """Return whether the last step was the first one ever in its situation."""
         return self.now().times.get(situation) == 1

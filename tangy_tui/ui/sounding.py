@@ -1,4 +1,4 @@
-"""The program with its ears and its voice: the keys for both, and that both end with it."""
+"""The application with speech input and output: their keys, start and end."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 class SoundingApp(TangyApp):
-    """Tangy on a terminal, with a voice that can be switched on, and with ears if it is given any.
+    """The application with a voice that can be switched on, and with speech input if given.
 
-    The microphone is shut while Tangy speaks; STOP lets it fall silent.
+    The microphone is closed while Tangy speaks; STOP silences Tangy.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -39,13 +39,13 @@ class SoundingApp(TangyApp):
         voice: bool = False,
         **settings: Any,
     ) -> None:
-        """Make the program.
+        """Create the application.
 
         Args:
-            first: makes the first screen.
-            activity: whose lines are spoken.
-            ears: where spoken commands come from, if they do.
-            voice: Tangy speaks from the beginning.
+            first: creates the first screen.
+            activity: the activity whose lines are spoken.
+            ears: the recogniser, if there is one.
+            voice: whether the voice is on from the start.
             settings: as for every `TangyApp`.
         """
         super().__init__(first, **settings)
@@ -57,7 +57,7 @@ class SoundingApp(TangyApp):
         self._speaks = voice
 
     def on_mount(self) -> None:
-        """Begin to listen, and to speak."""
+        """Start to listen, and to speak."""
         hearing = self.hearing
         if hearing is not None:
             self.screen_change_signal.subscribe(self, lambda _: hearing.look(), immediate=True)
@@ -67,21 +67,21 @@ class SoundingApp(TangyApp):
             self.speaker.switch(True)
 
     async def on_unmount(self) -> None:
-        """End what runs for the voice; the ears end with the program's workers."""
+        """Close the voice; the recogniser ends with the workers."""
         await self.speaker.close()
 
     def stop(self, reason: str) -> None:
-        """Say to every open screen that the robot must stop, and fall silent."""
+        """Send `Stop` to every open screen, and stop speaking."""
         self.speaker.hush()
         super().stop(reason)
 
     async def action_talk(self) -> None:
-        """Push to talk: begin or end the utterance."""
+        """Start or end an utterance (push-to-talk)."""
         if self.hearing is not None:
             await self.hearing.talk()
 
     def action_listen(self) -> None:
-        """Stop listening, or listen again."""
+        """Pause or resume listening."""
         if self.hearing is None:
             self.say(NO_MICROPHONE)
         else:
@@ -103,4 +103,4 @@ class SoundingApp(TangyApp):
         def tell() -> None:
             self.notify(clean(sentence), severity="warning", markup=False)
 
-        self.call_later(tell)  # at the very beginning there is no screen yet
+        self.call_later(tell)  # at the start there is no screen yet

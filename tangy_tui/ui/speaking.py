@@ -1,7 +1,7 @@
-"""Tangy's voice in the program: it can be switched at any time, and never blocks.
+"""Tangy's voice in the application: can be switched at any time, and never blocks.
 
-What is said stands on the screen in any case. The voice is made when it is first wanted; a
-synthesiser and a player, each a process of its own, do the work.
+All speech is also shown on the screen. The voice is created on first use; a synthesiser and a
+player do the work, each in its own process.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
     from tangy_tui.ui.hearing import Hearing
 
 GAP = 0.15
-"""Seconds for which a line waits that cuts another one: in fast games most are cut themselves."""
+"""Delay in s of a line that interrupts another: in fast games, most are interrupted themselves."""
 
 
 class CanSpeak(Protocol):
-    """The used part of a `SpeechVoice`."""
+    """The interface of a `SpeechVoice` used here."""
 
     @property
     def speaking(self) -> bool:
-        """Whether a line is being spoken, or waits to be."""
+        """Whether a line is being spoken or queued."""
 
     @property
     def silent(self) -> str:
-        """Why nothing is heard; "" if something is."""
+        """Why nothing is audible; "" if it is."""
 
     def say(
         self, text: str, preference: VoicePreference | None = None, *, interrupt: bool = False
@@ -40,29 +40,29 @@ class CanSpeak(Protocol):
         """Speak a line."""
 
     def hush(self) -> None:
-        """Cut everything."""
+        """Stop speaking, and clear the queue."""
 
     async def quiet(self) -> None:
-        """Wait until nothing is spoken any more."""
+        """Wait until nothing is spoken."""
 
     def prerender(
         self, texts: Iterable[str], preference: VoicePreference | None = None
     ) -> asyncio.Task[Rendered]:
-        """Make texts ready to be spoken."""
+        """Synthesise texts in advance."""
 
     async def close(self) -> None:
-        """End everything."""
+        """Stop all processes."""
 
 
 Tell = Callable[[str], None]
 MakeVoice = Callable[[Activity, Callable[[], None], Callable[[], None], Tell], CanSpeak]
-"""Makes a voice of an activity, what is called when sound begins and ends, and who is told."""
+"""Creates a voice for an activity, with callbacks for start and end of sound, and for messages."""
 
 
 def make_voice(
     activity: Activity, begin: Callable[[], None], end: Callable[[], None], tell: Tell
 ) -> SpeechVoice:
-    """Make a voice with what this machine has; where no sound can come out, that is told."""
+    """Create a voice with the programs of this machine; report if there is no audio output."""
     from tangy_hw.audio.player import PlayerError, SoundPlayer, open_player
     from tangy_hw.audio.synthesis import Synthesiser
     from tangy_hw.audio.voice import SpeechVoice
@@ -80,18 +80,18 @@ def make_voice(
 
 
 class Speaker:
-    """Speaks what Tangy says while it is `on`. All of it belongs to one event loop."""
+    """Speaks Tangy's lines while it is `on`. Used in one event loop only."""
 
     def __init__(self, activity: Activity | None, tell: Tell, make: MakeVoice = make_voice) -> None:
-        """Make a speaker that is off; `tell` shows a sentence about the voice."""
+        """Create a speaker that is off; `tell` shows a sentence about the voice."""
         self.on = False
         self.hearing: Hearing | None = None
-        """The ears that are shut while Tangy speaks."""
+        """The speech input, closed while Tangy speaks."""
         self._activity = activity
         self._tell = tell
         self.make_voice = make
         self._voice: CanSpeak | None = None
-        self._before: set[asyncio.Task[None]] = set()  # voices that are being ended
+        self._before: set[asyncio.Task[None]] = set()  # voices that are being closed
         self._known: tuple[str, ...] = ()
         self._later: asyncio.TimerHandle | None = None
 
@@ -101,7 +101,7 @@ class Speaker:
         return self._later is not None or (self._voice is not None and self._voice.speaking)
 
     def switch(self, on: bool) -> bool:
-        """Switch the voice on or off; say whether it is on now: it must be able to speak."""
+        """Switch the voice on or off; return whether it is on now, which needs audio output."""
         self.hush()
         self.on = on and self._can_speak()
         if self.on:
@@ -111,7 +111,7 @@ class Speaker:
     def say(self, text: str, preference: VoicePreference) -> asyncio.Future[bool] | None:
         """Queue a line; the returned future is done when it was spoken.
 
-        None: it is not spoken, because the voice is off, or somebody is talking to Tangy.
+        None: it is not spoken, because the voice is off, or a person is talking to Tangy.
         """
         voice = self._voice
         if not self.on or voice is None or not text or self._is_talked_to:
@@ -119,7 +119,7 @@ class Speaker:
         return voice.say(text, preference)
 
     def interject(self, text: str, preference: VoicePreference) -> None:
-        """Speak a line in the place of all others, unless another takes its place at once."""
+        """Speak a line instead of all others, unless another one replaces it at once."""
         waits = self.speaking
         self.hush()
         if waits:
@@ -143,20 +143,20 @@ class Speaker:
             await self._voice.quiet()
 
     def prepare(self, texts: Iterable[str]) -> None:
-        """Make lines ready that will be wanted: now if it speaks, or when it does."""
+        """Synthesise likely lines in advance: now if the voice is on, or when it is switched on."""
         self._known = tuple(texts)
         if self.on and self._voice is not None and self._known:
             self._voice.prerender(self._known)
 
     async def speak_of(self, activity: Activity) -> None:
-        """Speak the lines of another activity from now on, in a voice made for it."""
+        """Change to another activity, with a voice made for it."""
         on, self._activity = self.on, activity
         await self.close()
         self._voice, self._known = None, ()
         self.switch(on)
 
     async def close(self) -> None:
-        """End all that runs for the voice."""
+        """Close the voice."""
         self.on = False
         self.hush()
         if self._voice is not None:
@@ -169,7 +169,7 @@ class Speaker:
         self.say(text, preference)
 
     def _can_speak(self) -> bool:
-        """Make the voice, or make it anew if nothing could be heard of it; tell why it cannot."""
+        """Create the voice, again if it was not audible; report why it cannot speak."""
         if self._activity is None:
             return False
         voice = self._voice
@@ -203,9 +203,9 @@ class Speaker:
 
 
 def opening_lines(activity: Activity) -> tuple[str, ...]:
-    """Return the sentences to everybody that come in every game: above all the calls.
+    """Return the sentences to everybody that occur in every game: above all the calls.
 
-    A line that names somebody cannot be known beforehand.
+    Lines with a person's name are not known in advance.
     """
     lines: list[str] = []
     for behaviour in activity.behaviours.values():
@@ -218,12 +218,12 @@ def opening_lines(activity: Activity) -> tuple[str, ...]:
 
 
 def preference_of(workspace: Workspace, person: str | None) -> VoicePreference:
-    """Return how somebody likes to be spoken to; of everybody, as usual."""
+    """Return a person's preferred way of being spoken to; for everybody, the default."""
     found = (one.voice for one in workspace.people if one.id == person)
     return next(found, VoicePreference())
 
 
 def speaker_of(app: object) -> Speaker:
-    """Return the voice of Tangy's program; of any other app, one that says nothing."""
+    """Return the voice of Tangy's application; for any other, a silent one."""
     speaker: Speaker | None = getattr(app, "speaker", None)
     return speaker or Speaker(None, lambda sentence: None)

@@ -51,13 +51,13 @@ from tangy_tui.ui.widgets.sayable_list import SayableList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
-WRAPPING = 14  # characters of two lines that breaking them at spaces may cost
+WRAPPING = 14  # characters that wrapping may waste on two lines
 DRIVING_PACE = 4.0
-"""How many times faster than the robot the picture of it drives: nobody waits for a picture."""
+"""The speed-up of the robot's animation, so that nobody waits for it."""
 
 
 class TeachingPicture:
-    """Puts what happens in a session on the widgets of its screen."""
+    """Shows a session on the widgets of its screen."""
 
     def __init__(
         self,
@@ -66,16 +66,16 @@ class TeachingPicture:
         teaching: TeachingSession,
         keys: Callable[[], Sequence[str]] = tuple,
     ) -> None:
-        """Make it; `keys` are those of the foot when no tour is on."""
+        """Create the view; `keys` are those at the foot without a tour."""
         self._screen, self._keys = screen, keys
         self._workspace = workspace
         self._teaching = teaching
         self._shown = ShownSoFar(workspace, teaching)
         self.tour: Tour | None = None
-        """The tour, while a new teacher is shown around."""
+        """The tour, while a new teacher takes it."""
 
     def tell(self, event: TeachingEvent, *, asked: bool) -> None:
-        """Show what followed from a command; a remark that is `asked` about stands there alone."""
+        """Show the result of a command; an `asked` remark is shown in its dialog only."""
         match event:
             case Executed():
                 self.step(event)
@@ -99,7 +99,7 @@ class TeachingPicture:
                 self._log.write(text.complete_words(self._teaching), "good")
 
     def _rule(self, event: Ruled | RuleUndone) -> None:
-        """Show the last step as the rule that it is now, or as the step that it is again."""
+        """Show the last step as a rule, or again as a step."""
         rule = event if isinstance(event, Ruled) else event.rule
         activity, steps = self._teaching.activity, self._screen.query_one(Transcript)
         words = step_words(activity, rule.step, self._teaching.name)
@@ -107,7 +107,7 @@ class TeachingPicture:
         steps.append(text.ruled_step(words, rule.facts) if isinstance(event, Ruled) else words)
 
     def step(self, event: Executed) -> None:
-        """Show a step that was carried out."""
+        """Show a completed step."""
         activity, situation = self._teaching.activity, event.step.state.situation
         self._screen.query_one(Transcript).append(
             step_words(activity, event.step, self._teaching.name, event.outcome.numbers)
@@ -119,20 +119,20 @@ class TeachingPicture:
         self._scene(event.step.state.place)
 
     def remark(self, remark: Remark) -> None:
-        """Tell of a step that may have overlooked something."""
+        """Show a remark on a step that may have overlooked something."""
         teaching = self._teaching
         game = teaching.demonstration.id
         self._log.write(remark_words(remark, teaching.activity, teaching.name, game), "warn")
 
     def undone(self, undone: Sequence[StepUndone]) -> None:
-        """Tell of steps that were taken back, the last one first."""
+        """Show steps that were undone, the last one first."""
         words = text.undone_words(undone, self._teaching.activity)
         self._log.write(self._told(words), "warn")
         self._screen.query_one(RoomView).say("")
         self._scene(self._teaching.world.observe().place)
 
     def beginning(self, resumed: bool) -> None:
-        """Show a game that begins, or that goes on with the steps it has."""
+        """Show the start of a game, or a resumed one with its steps."""
         teaching = self._teaching
         shown = teaching.demonstration
         self._shown.begin()
@@ -186,7 +186,7 @@ class TeachingPicture:
             self._screen.query_one(KeyLine).show(*goes_on, *keys, typing=True)
 
     def tours(self, *, skip: bool) -> bool:
-        """Return whether a tour is on that can be skipped or advanced with Enter."""
+        """Return whether there is a tour that can be skipped, or continued with Enter."""
         if self.tour is None or self.tour.at is None:
             return False
         return skip or (
@@ -194,12 +194,12 @@ class TeachingPicture:
         )
 
     def go_on_tour(self, *, skip: bool = False) -> None:
-        """Go on to the tour's next stop, or end it."""
+        """Go to the next stop of the tour, or end it."""
         if self.tour is not None:
             if skip:
                 for bar in self._screen.query(CommandBar):
                     if bar.text or bar.lists:
-                        bar.drop()  # first of all Esc takes back what one has begun
+                        bar.drop()  # Esc first clears the line
                         return
                 self.tour.skip()
             else:
@@ -207,7 +207,7 @@ class TeachingPicture:
             self.state()
 
     def follow_tour(self, events: Sequence[TeachingEvent]) -> None:
-        """Go on with the tour as the teacher does what it shows."""
+        """Continue the tour if the teacher has done what it asks for."""
         if self.tour is not None and self.tour.follow(events):
             self.state()
 
@@ -218,7 +218,7 @@ class TeachingPicture:
         return self._told(words)
 
     def _told(self, words: str) -> str:
-        """Write the keys into words that name actions."""
+        """Insert the keys of actions into a sentence."""
         return with_keys(words, keymap_of(self._screen.app), typing=True)
 
     def _scene(self, came_from: str) -> None:

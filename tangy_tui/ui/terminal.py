@@ -1,4 +1,4 @@
-"""What the terminal at hand can show: decided once, before anything of Textual is imported."""
+"""The capabilities of the terminal, determined once before Textual is imported."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ MIN_WIDTH = 60
 MIN_HEIGHT = 18
 
 SERVED = "TEXTUAL_DRIVER"
-"""The variable by which a server that shows the program in a browser says so."""
+"""The environment variable that is set if a server shows the application in a browser."""
 
 FEW_COLOURS = ("linux", "xterm", "screen", "ansi", "vt", "cons", "rxvt")
-"""Terminals that Rich writes 16 colours to, unless their name or COLORTERM promises more."""
+"""Terminals to which Rich writes 16 colours, unless their name or COLORTERM promises more."""
 
 
 @dataclass(frozen=True, slots=True)
 class TerminalKind:
-    """How the program is to be shown.
+    """How to show the application.
 
-    `full_screen` is False where only lines make sense, and `reason` then says why. `ansi` asks
-    for the terminal's own 16 colours, `ascii` for characters 32 to 126 only.
+    `full_screen` is False if only plain lines make sense; `reason` tells why. `ansi` asks for the
+    terminal's own 16 colours, `ascii` for characters 32 to 126 only.
     """
 
     full_screen: bool = True
@@ -42,14 +42,14 @@ def terminal_kind(
     stderr: TextIO | None = None,
     ascii: bool | None = None,
 ) -> TerminalKind:
-    """Say how to show the program on this terminal.
+    """Determine how to show the application on this terminal.
 
     Args:
         environ: the environment (default: the process's own).
-        stdin: where keys come from.
-        stdout: where lines are written.
-        stderr: where the screen is drawn (default: the process's own, with its stdin and stdout).
-        ascii: what the user asked for with `--ascii`; None decides by TERM and locale.
+        stdin: the stream of keys.
+        stdout: the stream for plain lines.
+        stderr: the stream of the screen (default: the process's own, with its stdin and stdout).
+        ascii: whether `--ascii` was given; None decides by TERM and locale.
     """
     environ = os.environ if environ is None else environ
     if environ.get(SERVED):
@@ -69,7 +69,7 @@ def terminal_kind(
 
 
 def too_small(width: int, height: int) -> str | None:
-    """Return the sentence for a window that is too small, or None."""
+    """Return the sentence for a window that is too small, otherwise None."""
     if width >= MIN_WIDTH and height >= MIN_HEIGHT:
         return None
     return too_small_words(width, height, (MIN_WIDTH, MIN_HEIGHT))
@@ -83,7 +83,7 @@ def _is_tty(stream: TextIO | None) -> bool:
 
 
 def _speaks_utf8(environ: Mapping[str, str]) -> bool:
-    """Look at the locale as the C library does: LC_ALL, then LC_CTYPE, then LANG."""
+    """Check the locale like the C library: LC_ALL, then LC_CTYPE, then LANG."""
     for key in ("LC_ALL", "LC_CTYPE", "LANG"):
         if environ.get(key):
             name = environ[key].lower().replace("-", "")

@@ -1,7 +1,7 @@
-"""The colours: a calm dark theme, a light one, and one in the terminal's own sixteen colours.
+"""The themes: a calm dark one, a light one, and one in the terminal's own 16 colours.
 
-Widgets draw in inks, named after what is said and not after a colour. No ink tells anything by
-colour alone: beside it there is always a word or a mark.
+Widgets draw with inks, which are named after their meaning rather than a colour. Every ink comes
+with a word or a mark, so that nothing depends on colour alone.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ INKS = (
     "floor",
     "table",
     "curve",
-    "cursor",  # the row that a key would act on
-    "now",  # the row that is in use at this moment
+    "cursor",  # the row that a key acts on
+    "now",  # the row in use at this moment
 )
-"""What a widget can draw in; `.ink--*` in tangy.tcss gives each its colour."""
+"""The styles of widgets; `.ink--*` in tangy.tcss defines their colours."""
 
 INK_CLASSES = frozenset(f"ink--{name}" for name in INKS)
 
@@ -125,4 +125,4 @@ ANSI = Theme(
 THEMES = (DARK, LIGHT, ANSI)
 
 INK_DEFAULTS = DARK.variables
-"""What the inks are in a theme that does not name them (Textual's own, from the palette)."""
+"""The inks in a theme that does not define them (Textual's own, from the palette)."""

@@ -1,7 +1,7 @@
-"""The word stop, typed where letters are keys: it stops the robot, as it does in a line.
+"""The word stop, typed where letters are keys: it stops the robot, as it does in an input line.
 
-Who types "stop the robot" in a hurry does not look whether there is a line to type in. The rest of
-what is typed then, until there is a pause, is no key of anything.
+A person who types "stop the robot" in a hurry does not check for an input line. The rest of the
+sentence, until a pause, triggers no keys.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ from typing import Literal
 
 WORD = "stop"
 TOGETHER_SECONDS = 1.5
-"""From one letter to the next: longer apart they are keys that somebody means."""
+"""The longest time in s between two letters of the word; otherwise they are separate keys."""
 REST_SECONDS = 1.0
-"""After which the rest of a sentence is over."""
+"""The pause in s that ends the rest of the sentence."""
 
 Taken = Literal["key", "stop", "rest"]
-"""What a key that was pressed is: a key, the end of the word, or the rest of its sentence."""
+"""What a pressed key is: a key, the last letter of the word, or part of the sentence after it."""
 
 
 class TypedStop:
-    """Listens for the word among the keys. `take` each of them."""
+    """Detects the word among the keys. `take` each of them."""
 
     def __init__(self) -> None:
         self._letters = ""
@@ -27,7 +27,7 @@ class TypedStop:
         self._stopped = False
 
     def take(self, letter: str | None, now: float) -> Taken:
-        """Take a key that was pressed at a time in s; None: it is no letter, space or return."""
+        """Handle a key pressed at a time in s; None: it is no letter, space or return."""
         since, self._last = now - self._last, now
         if letter is None:
             self._letters, self._stopped = "", False

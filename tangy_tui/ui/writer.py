@@ -1,4 +1,4 @@
-"""Writing to a terminal that may go away while we write to it."""
+"""Output to a terminal that may disappear during a write."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from textual.drivers._writer_thread import WriterThread
 
 
 class OutlivingWriter(WriterThread):
-    """Textual's writer, except that it outlives its terminal.
+    """Textual's writer thread, except that it outlives its terminal.
 
-    When a window is closed, a write fails, Textual's writer ends, nobody empties its queue, and
-    the program waits for ever to say goodbye: with the data folder still locked. This one goes on
-    taking what is written, and drops it.
+    If a window is closed, a write fails and Textual's writer ends. Nobody empties its queue, and
+    the
+    program waits forever to exit, with the data folder still locked. This writer continues to empty
+    the queue and drops the output.
     """
 
     def run(self) -> None:
-        """Write until told to stop; once the terminal is gone, only take."""
+        """Write until told to stop; without a terminal, only empty the queue."""
         try:
             super().run()
         except OSError:
@@ -27,23 +28,23 @@ class OutlivingWriter(WriterThread):
 
 
 class HeldWrites:
-    """Keeps back what a driver writes, and writes it in one piece: it travels together then."""
+    """Holds back a driver's output and writes it at once, so that it arrives together."""
 
     def __init__(self, find: Callable[[], Driver | None]) -> None:
-        """Make it for the driver that is found when it is needed."""
+        """Hold back the output of the driver that `find` returns when needed."""
         self._find = find
         self._driver: Driver | None = None
         self._parts: list[str] = []
 
     def hold(self) -> None:
-        """Keep back what is written from now on."""
+        """Hold back output from now on."""
         driver = self._find()
         if self._driver is None and driver is not None:
             self._driver = driver
             vars(driver)["write"] = self._parts.append
 
     def release(self) -> None:
-        """Write what was kept back."""
+        """Write the held output."""
         driver, self._driver = self._driver, None
         if driver is not None:
             del vars(driver)["write"]
@@ -54,5 +55,5 @@ class HeldWrites:
 
 
 def outlive_terminal() -> None:
-    """Let every program that is started from here on write with an `OutlivingWriter`."""
+    """Let every application started from now on write with an `OutlivingWriter`."""
     linux_driver.WriterThread = OutlivingWriter  # type: ignore[attr-defined]
