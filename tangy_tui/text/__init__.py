@@ -1,1 +1,1 @@
-"""Values put into sentences for people, the same on screens, in lines and on pages."""
+"""Turns values into sentences for people, the same on screens, in the console and in reports."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def facts_words(state: ActivityState, name: Callable[[str], str]) -> list[str]:
-    """Say what is seen of a game of a declared activity, and whose turn it is."""
+    """Describe the facts seen in a game of a declared activity, and whose turn it is."""
     turn = dict(state.whom).get("whose turn")
     sentences = [f"It is the turn of {name(turn)}."] if turn is not None else []
     facts = seen_facts(state.situation)
@@ -30,7 +30,7 @@ def facts_words(state: ActivityState, name: Callable[[str], str]) -> list[str]:
 
 
 def activity_lines(activity: DeclaredActivity) -> Iterator[str]:
-    """Tell what there is in an activity: stages, facts, behaviours, a line each."""
+    """Describe the parts of an activity: stages, facts, behaviours, one per line."""
     declaration = activity.declaration
     yield f"{activity.title} ({activity.source})"
     yield f"  {activity_note(activity)}"
@@ -59,7 +59,7 @@ def activity_lines(activity: DeclaredActivity) -> Iterator[str]:
 
 
 def condition_words(condition: FactCondition) -> str:
-    """Write a condition as it stands in a file."""
+    """Format a condition as in an activity file."""
     quantifier = f"{condition.quantifier} " if condition.quantifier else ""
     return f"{quantifier}{condition.fact} {condition.comparison} {condition.value}"
 
@@ -91,7 +91,7 @@ SELECTORS: dict[str, str] = {
 
 
 def whom_words(activity: Activity, policy: Policy) -> list[str]:
-    """Say for whom Tangy does something, where it has learnt that from what was shown."""
+    """Tell the learnt target selectors: whom Tangy does something for."""
     return [
         f"{stage_words(activity, stage)} -> {activity.behaviour_words(behaviour)}: "
         f"for {_any_of(selectors)}."
@@ -100,7 +100,7 @@ def whom_words(activity: Activity, policy: Policy) -> list[str]:
 
 
 def stage_words(activity: Activity | None, stage: str) -> str:
-    """Say what is going on in a stage, where the file of its activity has words for it."""
+    """Return the words for a stage, or its name if the activity's file has none."""
     return activity.stage_words(stage) if isinstance(activity, DeclaredActivity) else stage
 
 
@@ -116,7 +116,7 @@ def _any_of(selectors: tuple[str, ...]) -> str:
 
 
 def without_words(activity: DeclaredActivity) -> list[str]:
-    """Say which stages of a file have no words for people."""
+    """Name the stages of a file that have no words for people."""
     stages = [stage.name for stage in activity.declaration.stages if not stage.words]
     if not stages:
         return []
@@ -131,7 +131,7 @@ TRIED = "The game has come to its end."
 
 
 def tried_lines(step: TriedStep) -> list[str]:
-    """Tell what Tangy does in a step of a game that was tried, in up to three lines."""
+    """Describe one step of a trial game, in up to three lines."""
     whom = f" ({step.whom})" if step.whom else ""
     lines = [f"{step.number}. {step.situation} -> {step.behaviour}{whom}"]
     lines += [f"   Tangy says: {step.said}"] if step.said else []
@@ -146,7 +146,7 @@ def people_did(doing: dict[str, str], silent: Sequence[str] = ()) -> str:
 
 
 def with_activity(mode: str, activity: Activity) -> str:
-    """Name the activity beside a part of the program, unless it is the usual one."""
+    """Name the activity beside a mode of the program, unless it is the default one."""
     return mode if activity.name == DEFAULT_ACTIVITY else f"{mode}: {activity.title}"
 
 
@@ -154,7 +154,7 @@ CHOOSE_ACTIVITY = "Which activity do you want to teach and play?"
 
 
 def activity_note(activity: Activity) -> str:
-    """Say for how many people an activity is, how long it takes, and what they need."""
+    """Tell for how many people an activity is, how long it takes, and what it needs."""
     if activity.summary or not isinstance(activity, DeclaredActivity):
         return activity.summary
     rounds = activity.declaration.items.rounds

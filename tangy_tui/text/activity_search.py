@@ -1,4 +1,4 @@
-"""In words: what a search of an activity's games found wrong, and how far it came."""
+"""Words for the search of an activity's games: its findings, and how far it came."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from tangy_tui.learning.coverage_proof import CoverageProof
 
 MOST_SHARES = 3
-"""So many of the facts that make the most states are named."""
+"""How many of the facts that multiply the states most are named."""
 MOST_SITUATIONS = 6
-"""So many situations from which no game ends are listed."""
+"""How many situations without a way to the end are listed."""
 BUILT_IN = {
     ITEMS: "the rounds",
     TURN: "the turns",
@@ -31,11 +31,11 @@ BUILT_IN = {
     "last to act": "'last to act'",
     "quietest": "'quietest'",
 }
-"""What makes states beside the facts of the file."""
+"""Parts of a state besides the facts of the file."""
 
 
 def finding_words(source: str, found: ActivityFlaw) -> str:
-    """Say what is wrong with an activity, in one line that names the place."""
+    """Describe a flaw of an activity, in one line that names the place."""
     name = repr(found.name)
     match found.flaw:
         case "stage never reached":
@@ -62,7 +62,7 @@ def finding_words(source: str, found: ActivityFlaw) -> str:
 
 
 def dead_end_lines(activity: DeclaredActivity, found: ActivityFlaw) -> Iterator[str]:
-    """Tell the shortest way to where a game cannot end or go on, and what can be done there."""
+    """Tell the shortest way to a dead end, and what can be done there."""
     end = found.dead_end
     if end is None:
         return
@@ -86,7 +86,7 @@ def dead_end_lines(activity: DeclaredActivity, found: ActivityFlaw) -> Iterator[
 
 
 def _event_words(event: Event) -> str:
-    """Say what happens after a behaviour: time in s, or acts of people."""
+    """Tell what happens after a behaviour: time in s, or acts of people."""
     if isinstance(event, float):
         return f"{event:.0f} s pass"
     return "; ".join(
@@ -95,12 +95,12 @@ def _event_words(event: Event) -> str:
 
 
 def _player(id: str) -> str:
-    """Name a player of a search: the people in it have no names, and teams have their own."""
+    """Name a player of a search: the people in it have no names, but teams do."""
     return {"one": "player 1", "other": "player 2"}.get(id, id)
 
 
 def shares_words(shares: Sequence[Share]) -> str:
-    """Say what makes the most states, and how an author can have fewer."""
+    """Tell which facts multiply the states most, and how an author can reduce them."""
     named = [
         f"{BUILT_IN.get(one.name, repr(one.name))} ({one.times:.1f} times as many)"
         for one in shares[:MOST_SHARES]
@@ -112,7 +112,7 @@ def shares_words(shares: Sequence[Share]) -> str:
 
 
 def proof_words(activity: Activity, found: CoverageProof) -> list[str]:
-    """Say for which groups a search of all games has proved that everything was shown."""
+    """Tell for which groups a search of all games has proved full coverage."""
     teams = bool(activity.teams)
     reached = counted(len(found.reached), "situation")
     lines = []
@@ -140,7 +140,7 @@ def proof_words(activity: Activity, found: CoverageProof) -> list[str]:
 
 
 def search_lines(found: Findings, *, teams: bool) -> list[str]:
-    """Say how far the games of an activity were searched, and what did not come up by then."""
+    """Tell how far the games of an activity were searched, and what did not occur by then."""
     tried = [one for one in found.searches if not one.as_expected]
     whole = tuple(one.players for one in tried if not one.cut)
     lines = [f"searched all games of {_sizes_words(whole, teams=teams)}."] if whole else []
@@ -166,7 +166,7 @@ def _cut_words(cut: Cut, states: int) -> str:
 
 
 def _sizes_words(sizes: Sequence[int], *, teams: bool) -> str:
-    """Name sizes of groups: "1, 2 and 3 players"."""
+    """Format group sizes: "1, 2 and 3 players"."""
     *first, last = map(str, sizes)
     both = f"{', '.join(first)} and {last}" if first else last
     noun = "team" if teams else "player"

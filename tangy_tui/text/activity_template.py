@@ -1,4 +1,4 @@
-"""The file of a new activity: what is asked of its author, and what is written."""
+"""The file of a new activity: questions to its author, and the template."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ HINT = "It is not {}."
 
 @dataclass(frozen=True, slots=True)
 class NewActivity:
-    """What an author says of a new activity: its title, what a round brings, whether in turns."""
+    """The author's answers: the title, what a round brings, whether people take turns."""
 
     title: str
     item: str
@@ -28,18 +28,18 @@ class NewActivity:
 
     @property
     def name(self) -> str:
-        """The name of the file: the title in small letters, its words joined by dashes."""
+        """The file name: the title in lower case, its words joined by dashes."""
         kept = "".join(c if c.isascii() and c.isalnum() else " " for c in self.title.lower())
         return "-".join(kept.split())
 
 
 def items_table(new: NewActivity) -> str:
-    """Return the CSV file of the items, with two rows to write over."""
+    """Return the CSV file of the items, with two sample rows to replace."""
     return f"text,more\nThe first {new.item},Something to add to it\nThe second {new.item},More\n"
 
 
 def activity_file(new: NewActivity) -> str:
-    """Return the activity's file: it can be played as it is, and says what can be changed."""
+    """Return the activity's file, which can be played as it is and tells what to change."""
     item = bool(new.item)
     whose = 'to = "whose turn"\n' if new.turns else ""
     name = "{name}, " if new.turns else ""
@@ -112,7 +112,7 @@ says = ["That was {new.title}. Goodbye!"]
 
 
 def written_lines(toml: str, table: str) -> list[str]:
-    """Say which files were written, and how to go on."""
+    """Tell which files were written, and what to do next."""
     also = f" and {table}" if table else ""
     return [
         f"Written: {toml}{also}. Change what you like, then:",

@@ -1,4 +1,4 @@
-"""A robot's body, drawn from above."""
+"""A drawing of a robot's body from above."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from math import ceil
 
 from tangy_profiles.body import BodyProfile, Mount
 
-FINEST, ROWS = 0.05, 16  # metres of a row at least, and rows of a body at most
+FINEST, ROWS = 0.05, 16  # smallest height of a row in m, and most rows of a body
 EDGE, INSIDE, WHEELS = "#", "·", "+"
 LASER, CAMERA = "L", "C"
-NEAR = 1e-9  # m^2 within which a point is on the edge
+NEAR = 1e-9  # tolerance of the edge in m^2
 
 
 def draw_body(body: BodyProfile) -> list[str]:
-    """Return the drawing of a body from above, front at the top, and its sizes in words."""
-    high = max(FINEST, 2 * body.radius / ROWS)  # metres of a row
-    wide = high / 2  # of a column: signs are twice as high as wide
-    half = ceil(body.radius / high)  # rows from the middle to the edge, or a little more
+    """Return the drawing of a body from above, front at the top, and its dimensions in words."""
+    high = max(FINEST, 2 * body.radius / ROWS)  # height of a row in m
+    wide = high / 2  # width of a column in m: characters are twice as high as wide
+    half = ceil(body.radius / high)  # rows from the centre to the edge, rounded up
     rows, columns = 2 * half + 1, 4 * half + 1
     picture = [
         [
@@ -60,7 +60,7 @@ def _within(body: BodyProfile, x: float, y: float) -> bool:
 
 
 def _words(body: BodyProfile) -> list[str]:
-    """Say how large the body is, and where its devices sit."""
+    """Tell the size of the body, and the positions of its devices."""
     if body.corners:
         xs, ys = zip(*body.corners, strict=True)
         size = f"{max(xs) - min(xs):.2f} m long and {max(ys) - min(ys):.2f} m wide"
@@ -78,7 +78,7 @@ def _words(body: BodyProfile) -> list[str]:
 
 
 def _place(mount: Mount) -> str:
-    """Say where a device sits, and which way it faces unless that is straight ahead."""
+    """Tell the position of a device, and its heading unless that is straight ahead."""
     aside = f"{abs(mount.y):.2f} m to the {'left' if mount.y > 0 else 'right'}, " * bool(mount.y)
     along = f"{abs(mount.x):.2f} m {'ahead' if mount.x > 0 else 'behind'}, " * bool(mount.x)
     turned = ""

@@ -1,4 +1,4 @@
-"""Whom to call about what halts a robot, and how a call to them stands."""
+"""Whom to call about a fault that halts a robot, and the state of such calls."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NOBODY_NAMED = "nobody is named in the robot's file"
 
 
 def whom_to_call(robot: Robot) -> str:
-    """Say whom staff call about what they cannot mend, or that nobody is named."""
+    """Tell whom staff call for what they cannot repair, or that nobody is named."""
     expert = robot.expert
     if expert is None:
         return "No expert is named for this robot: ask your facility who looks after it."
@@ -32,12 +32,12 @@ def _named(contact: Contact) -> str:
 
 
 def calling_words(contact: Contact) -> str:
-    """Say that somebody is being called, and how to call them where nobody answers."""
+    """Tell that a contact is being called, and their number in case nobody answers."""
     return plain(f"Tangy calls {_named(contact)} ...")
 
 
 def call_words(state: CallState) -> str:
-    """Say how a call stands: somebody is reached only when they have answered."""
+    """Tell the state of a call; a contact is reached only when they have answered."""
     contact = state.contact
     then = f"Nobody has answered yet: call {_named(contact)}."
     match state.stage:
@@ -60,7 +60,7 @@ def call_words(state: CallState) -> str:
 
 
 def logged_words(role: str, way: str, stage: str, said: str) -> str:
-    """Say what became of a call, as the log has it."""
+    """Describe the result of a call for the log."""
     if stage == "reached":
         return plain(f"The {role} was reached, by {said}.")
     stages = {
@@ -74,7 +74,7 @@ def logged_words(role: str, way: str, stage: str, said: str) -> str:
 
 
 def expert_words(game: Supervision) -> str:
-    """Say how the call to the expert stands, or whom staff have to call themselves."""
+    """Tell the state of the call to the expert, or whom staff have to call themselves."""
     state = None if game.calls is None else game.calls.state(EXPERT)
     if state is not None:
         return call_words(state)
@@ -84,18 +84,18 @@ def expert_words(game: Supervision) -> str:
 
 
 def staff_words(game: Supervision) -> str:
-    """Say how the call to staff stands, "" where none was made."""
+    """Tell the state of the call to staff, "" if there is none."""
     state = None if game.calls is None else game.calls.state(STAFF_ROLE)
     return "" if state is None else call_words(state)
 
 
 def expert_line(game: Supervision) -> str:
-    """Say who is called about what halts Tangy, or whom staff are to call."""
+    """Tell who is called about the fault that halts Tangy, or whom staff should call."""
     return SIMULATED if isinstance(game.world, FaultyWorld) else expert_words(game)
 
 
 def waits_line(game: Supervision, asked: str) -> str:
-    """Say how the calls stand, before what Tangy waits for."""
+    """Tell the state of the calls, then what Tangy waits for."""
     if game.calls is None:
         return asked
     states = (game.calls.state(EXPERT), game.calls.state(STAFF_ROLE))
@@ -103,7 +103,7 @@ def waits_line(game: Supervision, asked: str) -> str:
 
 
 def tried_words(contact: Contact, stage: str, said: str = "") -> str:
-    """Say what came of trying to call somebody, for a look over a robot."""
+    """Describe the result of a test call to a contact."""
     number = contact.telephone or "no telephone number is given"
     match stage:
         case "answered":

@@ -7,15 +7,15 @@ NO_SOURCE = "No camera has a source. Name one: `tangy sensors --camera camera=0`
 
 
 def rate_words(width: int, height: int, rate: float) -> str:
-    """Say how large a camera's pictures are (pixels), and how many come a second."""
+    """Tell the size of a camera's pictures (pixels), and their rate (pictures a second)."""
     return f"{width} x {height}, {rate:.1f} pictures a second."
 
 
 def pictures_in(folder: object) -> str:
-    """Say where pictures of cards were put."""
+    """Tell where pictures of cards were saved."""
     return f"The pictures are in {folder}. Label each one in the JSON file beside it."
 
 
 def no_picture(source: str) -> str:
-    """Say that a camera gave nothing."""
+    """Tell that no picture came from a camera."""
     return f"tangy: {source}: no picture came."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def card_title(name: str) -> str:
-    """Head the card of a person."""
+    """Return the title of a person's card."""
     return f"The card of {name}"
 
 

@@ -22,7 +22,7 @@ def changed_lines(event: GameChanged, activity: Activity, name: Name) -> list[st
 
 
 def changed_words(event: GameChanged | GameChange, activity: Activity | None, name: Name) -> str:
-    """Say in a sentence what changed, as it happens or as the log has it."""
+    """Describe a change in a sentence, for the game or for the log."""
     person = name(event.person) if event.person else ""
     match event.what:
         case "taken back":
@@ -72,12 +72,12 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
 
 
 def calls_first_words(calls: int) -> str:
-    """Say how many calls come before those who ask."""
+    """Tell how many calls come before the visits to people who asked."""
     return f"Tangy first calls {counted(calls, 'number')}, then goes to them."
 
 
 def pattern_words(activity: Activity | None, names: tuple[str, ...]) -> str:
-    """Name patterns as people call them, in their order."""
+    """Name patterns in order, by their labels."""
     labels = (
         list(names) if activity is None else [activity.rules.pattern(name).label for name in names]
     )
@@ -85,7 +85,7 @@ def pattern_words(activity: Activity | None, names: tuple[str, ...]) -> str:
 
 
 def patterns_line(world: World) -> str:
-    """Say which pattern is played for, which follow, and which can be chosen."""
+    """Name the pattern to play for, those that follow, and those to choose from."""
     names = ", ".join(pattern.name for pattern in world.activity.rules.patterns)
     if not isinstance(world, PlannedGame) or not names:
         return "There is nothing to choose in this activity."

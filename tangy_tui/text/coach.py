@@ -1,4 +1,4 @@
-"""The coach: what is going on while one teaches, what a host might do now, what lacks still."""
+"""The coach's words while teaching: what is happening, what to do next, what is still missing."""
 
 from __future__ import annotations
 
@@ -26,25 +26,25 @@ GUIDED = (
 
 
 ASKED = "What should Tangy do?"
-"""The coach's question where an activity's file says what is going on, and not what to do."""
+"""The coach's question if an activity's file describes the situation but gives no advice."""
 
 SAYABLE = "You can say now"
 
 
 def sayable_now(commands: Sequence[str]) -> str:
-    """List what can be said now."""
+    """List the commands that can be given now."""
     return " · ".join(commands)
 
 
 def coach_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
-    """Say in one sentence what is going on and what a host might do, then what is to be known."""
+    """Describe the situation, suggest what a host might do, and add the relevant facts."""
     asked = [ASKED] if isinstance(activity, DeclaredActivity) else []
     facts = _facts(activity, state, scene, name)
     return " ".join([host_sentence(activity, state, name), *facts, *asked])
 
 
 def host_sentence(activity: Activity, state: ActivityState, name: Name) -> str:
-    """Say what is going on and what a host might do, in the words of the activity."""
+    """Describe the situation and suggest what a host might do, in the words of the activity."""
     who = name(state.attended) if state.attended else "Somebody"
     if isinstance(activity, DeclaredActivity):
         return f"{moment_words(activity, state, name)}."
@@ -55,7 +55,7 @@ def host_sentence(activity: Activity, state: ActivityState, name: Name) -> str:
 
 
 def _by_rule(activity: Activity, rule: StageRule, situation: Situation, who: str) -> str:
-    """Say the same where the activity has no words for it."""
+    """Return a default sentence if the activity has none."""
     match rule.condition:
         case "before":
             return f"It is time to {activity.behaviour_words(rule.behaviour)}."
@@ -87,7 +87,7 @@ def _facts(activity: Activity, state: ActivityState, scene: Scene, name: Name) -
 
 
 def arranged_words(activity: Activity, arranged: Arranged | ArrangedSituation, name: Name) -> str:
-    """Announce what a guided game is about to bring about, and why."""
+    """Announce what a guided game is about to arrange, and why."""
     if isinstance(arranged, ArrangedSituation):
         situation = activity.in_words(arranged.situation)
         if arranged.goes_back:
@@ -100,12 +100,12 @@ def arranged_words(activity: Activity, arranged: Arranged | ArrangedSituation, n
 
 
 def unseen_words(activity: Activity, missing: Sequence[Situation], room: int) -> str:
-    """Name what nobody has shown yet, in so many characters at most.
+    """Name the missing situations, in limited space.
 
     Args:
-        activity: what is taught.
-        missing: the situations that nobody has shown.
-        room: characters; what does not fit is counted.
+        activity: the activity taught.
+        missing: the situations not demonstrated yet.
+        room: the most characters; situations that do not fit are counted.
     """
     if not missing:
         return f"✓ {ALL_SHOWN}"
@@ -120,7 +120,7 @@ def unseen_words(activity: Activity, missing: Sequence[Situation], room: int) ->
 
 
 def _joined(count: int, names: Sequence[str], room: int) -> str:
-    """Name as many as there is room for; count the others."""
+    """Name as many as fit; count the others."""
     said = f"Still to show ({count}): "
     for number, label in enumerate(names):
         joint = " · " if number else ""
@@ -133,7 +133,7 @@ def _joined(count: int, names: Sequence[str], room: int) -> str:
 
 
 def _short(activity: Activity, situation: Situation) -> str:
-    """Name a situation by what tells it apart: how a card is, or what the stage is called."""
+    """Name a situation by what distinguishes it: the state of the card, or the stage."""
     if activity.reads(situation.stage):
         return activity.state_label(situation.user_state)
     return activity.in_words(situation)

@@ -1,4 +1,4 @@
-"""What commands say when they are done: where something is, and which command comes next."""
+"""Closing words of commands: where a result is, and which command comes next."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PRINTING = "Print them at full size (100%), and cut along the marks."
 
 
 def no_screens(why: str) -> str:
-    """Say that screens cannot be drawn here, and what can be done instead."""
+    """Tell why screens cannot be drawn here, and what to use instead."""
     return f"No screens here ({why}). Try `tangy teach --plain`.\n"
 
 
@@ -24,7 +24,7 @@ def report_in(place: object) -> str:
 
 
 def cut_off(file: object, seconds: float) -> str:
-    """Say that a recording ends too early, by so many seconds."""
+    """Tell that a recording ends some s early."""
     return f"{file}: ends {seconds:.1f} s early; what is there was heard."
 
 
@@ -35,14 +35,14 @@ def recordings_deleted(count: int) -> str:
 
 
 def counts_as(game: int, world: str) -> str:
-    """Say in which world a game was played, from now on."""
+    """Tell in which world a game counts as played."""
     if world == "unknown":
         return f"It is not known where game {game} was played."
     return f"Game {game} counts as a {world} game."
 
 
 def log_hints(variable: str) -> tuple[str, ...]:
-    """Say how to read the logs of the processes, and which variable has them write more."""
+    """Tell how to read the logs of the processes, and which variable changes their level."""
     return (
         "Each line shows the id of its command in brackets. Search all files for it with grep.",
         f"Set {variable}=debug to log more, {variable}=error to log less.",
@@ -50,13 +50,13 @@ def log_hints(variable: str) -> tuple[str, ...]:
 
 
 def more_left_out(count: int) -> str:
-    """Say that more rows of the log were left out than were told."""
+    """Tell that the log left out more rows than were named."""
     entries = counted(count, "more entry is", "more entries are")
     return f"{entries} left out. `tangy store check` names them."
 
 
 def experiment_stopped(pieces: int) -> str:
-    """Say which results of a stopped experiment are stored."""
+    """Tell how much of a stopped experiment is stored."""
     return (
         f"tangy: Stopped. {pieces} finished pieces of work are kept. "
         "Run the same command again to go on from there."
@@ -64,5 +64,5 @@ def experiment_stopped(pieces: int) -> str:
 
 
 def throats(variants: list[str]) -> str:
-    """Say which variants a voice can have."""
+    """List the variants of a voice."""
     return f"\nAdd one of these to change a voice, as in en-gb+f3: {', '.join(variants)}."

@@ -1,7 +1,7 @@
 """The paper's figures beside ours, with the reasons for differences.
 
-The words follow the numbers, and a reason is given only for what differs. Only what was predicted
-can agree: a figure that was chosen or fitted to come out so tests nothing, and says that instead.
+Words depend on the numbers, and only differences get a reason. Only a predicted figure can agree:
+one that was chosen or fitted tests nothing, and its words tell that.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import Any, Literal
 from tangy_tui.text.numbers import counted, number, percent
 
 SURE = 2.0
-"""Standard errors beyond which a difference is not put down to chance."""
+"""Differences of more standard errors than this are not attributed to chance."""
 
 TO_ITS_END = "to its end"
-"""How a game ended that was not stopped."""
+"""The end of a game that was not stopped."""
 
 ENOUGH = 20
-"""From so many on a share is also written as a percentage."""
+"""From this n on, a share is also written as a percentage."""
 
 Document = Mapping[str, Any]
 
@@ -34,14 +34,14 @@ SOURCES: Mapping[Source, str] = MappingProxyType(
         "measured": "a time, measured where the program ran",
     }
 )
-"""Where a figure can come from, and what it is worth."""
+"""Where a figure comes from, and how much it proves."""
 
 
 @dataclass(frozen=True)
 class ComparisonRow:
-    """One line: the quantity, the paper's figure, ours, and a remark.
+    """One row: the quantity, the paper's figure, ours, and a remark.
 
-    `source` says where our figure comes from (see `SOURCES`).
+    `source` is the origin of our figure (see `SOURCES`).
     """
 
     what: str
@@ -60,7 +60,7 @@ def compare(document: Document) -> list[ComparisonRow]:
 
 
 def of_all(share: float | None, n: int) -> str:
-    """Write how many of n a share is, and the percentage where there are enough for one."""
+    """Format a share as k of n, with the percentage if n is large enough."""
     if share is None:
         return "\N{EN DASH}"
     return f"{round(share * n)} of {n}" + (f" ({percent(share)})" if n >= ENOUGH else "")
@@ -74,14 +74,14 @@ def _mean(summary: Mapping[str, Any]) -> str:
 
 
 def _set_by(here: float, paper: float, error: float, why: str) -> str:
-    """Say whether a mean to which something was fitted is where it was set to be."""
+    """Compare a fitted mean with the value it was fitted to."""
     if abs(here - paper) <= SURE * error:
         return f"Within two standard errors. {why}"
     return f"{'Higher' if here > paper else 'Lower'} by {abs(here - paper):.2g}. {why}"
 
 
 def _one_run(here: float | None, paper: float, runs: Mapping[str, Any]) -> str:
-    """Say whether one run of the paper's may have come out as it did where ours is the mean."""
+    """Tell whether the paper's single run could come from the distribution of our runs."""
     if here is None:
         return "Nobody converged here, so there is nothing to compare."
     chance = f"a mean of four users {_varies(runs['sd'], runs['n'])}"
@@ -91,7 +91,7 @@ def _one_run(here: float | None, paper: float, runs: Mapping[str, Any]) -> str:
 
 
 def _chosen(document: Document) -> str:
-    """Say what of Scenario 2 was chosen, and how far other choices move its figure."""
+    """Tell which settings of Scenario 2 were chosen, and how far other choices move its figure."""
     used = (
         "Neither how often its users complied nor what counted as convergence is in the paper. "
         f"The {number(document['preferred'])} for the preferred strategy, "
@@ -117,7 +117,7 @@ def _varies(deviation: float, runs: int) -> str:
 
 
 def _rising(users: Sequence[Mapping[str, Any]]) -> str:
-    """Say for whom the share of optimal strategies rises from its first quarter to its last."""
+    """Tell for whom the share of optimal strategies rises from the first quarter to the last."""
     level = []
     for user in users:
         shares = user["optimal_share"]
@@ -310,7 +310,7 @@ def _recovery(document: Document) -> list[ComparisonRow]:
 
 
 def _recovered(row: Mapping[str, Any], asked: float) -> str:
-    """Say how many were induced, and how instances and these differ."""
+    """Count the induced faults, and explain how instances differ from them."""
     words = [f"{counted(row['induced'], 'fault')} induced, a number that was chosen"]
     if row["again"]:
         words.append(f"{row['again']} of them diagnosed once more")

@@ -14,7 +14,7 @@ ALL_ARE_RIGHT = "All of them are right"
 ANOTHER_IS_RIGHT = "Something else is right"
 OPEN_OR_GO_ON = "Open the step, or go on at the end"
 LEAVE_OPEN = "Leave it open"
-"""What the keys do, in help and palette."""
+"""The actions of the keys, in help and palette."""
 ASKED = (
     "Which is right? Press its number, 0 if all of them are, {another} for something else. Esc "
     "leaves it open: Tangy will not act there in a game, but ask."
@@ -31,7 +31,7 @@ def left_open_words(situation: str) -> str:
 
 
 def situation_words(situation: str) -> str:
-    """Say where demonstrations disagree."""
+    """Name the situation in which demonstrations disagree."""
     return f"Different answers were shown in this situation: {situation}."
 
 
@@ -50,5 +50,5 @@ def done_words(settled: int, left: int) -> str:
 
 
 def keys_words(then: str) -> str:
-    """Say which keys lead on when all conflicts have been looked at."""
+    """Tell which keys continue after the last conflict."""
     return f"Press enter to {then}, esc to go back, {{undo}} to take the last answer back."

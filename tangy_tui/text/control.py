@@ -1,4 +1,4 @@
-"""What staff are told of what they do in a game."""
+"""Replies to what staff do in a game."""
 
 from __future__ import annotations
 
@@ -18,34 +18,34 @@ HELD = {
         "Tangy moves at a crawl and stops for nothing. Watch it, and release the key in time."
     ),
 }
-"""What is said where the robot does not drive as it is told."""
+"""Why the robot does not drive as told."""
 
 COURTESIES = {
     "walking": "I let you pass.",
     "standing": "May I pass, please?",
 }
-"""What the robot says to people for whom it waits on its way."""
+"""The robot's words to people for whom it waits on its way."""
 
 NOT_ACCEPTABLE = "Tangy is asking nothing that you could call all right."
 
 ACCEPT = "Is all well, and shall Tangy go on?"
 MOVE_AGAIN = ("Let the robot move again?", "It goes on with the game at once.")
 TAKE_CALL_BACK = "Take the last call back"
-"""What undo does in a live game."""
+"""The name of undo in a live game."""
 
 
 WAITS = {
     "walking": "It lets somebody pass.",
     "standing": "It waits: somebody is in the way.",
 }
-"""Why the robot stands on its way."""
+"""Why the robot waits on its way."""
 
 WAITS_SHORT = {"walking": "lets somebody pass", "standing": "somebody is in the way"}
-"""The same in a line with other things."""
+"""The same, shorter, for a line with other facts."""
 
 
 def autonomy_words(level: Autonomy) -> str:
-    """Say what Tangy does of itself."""
+    """Describe a level of autonomy."""
     match level:
         case "alone":
             return "does everything by itself"
@@ -58,7 +58,7 @@ def autonomy_words(level: Autonomy) -> str:
 
 
 def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
-    """Say where the robot is driving to, and for whom it waits; "" where it drives nowhere."""
+    """Tell the robot's destination, and for whom it waits; "" if it is not driving."""
     if not going:
         return ""
     waits = f" {words}" if (words := WAITS.get(lets)) else ""
@@ -88,7 +88,7 @@ REFUSALS: tuple[NoteKind, ...] = (
     "not acceptable",
     "cannot",
 )
-"""What says that a command was not carried out, and why."""
+"""Notes that tell that a command was refused, and why."""
 
 BY_KEYS: dict[NoteKind, str] = {
     "paused": "Paused: {pause} goes on.",
@@ -96,11 +96,11 @@ BY_KEYS: dict[NoteKind, str] = {
     "stopped first": "Not now: Tangy was stopped. Press {pause} to go on first.",
     "asks first": "Tangy is asking: answer first ({command} to type); esc gives the game up.",
 }
-"""What is said otherwise where staff have keys, and type only to answer."""
+"""Other words for staff who have keys, and type only to answer."""
 
 
 def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool = False) -> str:
-    """Say in a sentence what came of a command."""
+    """Describe the result of a command in a sentence."""
     about = noted.about
     if by_keys and (words := BY_KEYS.get(noted.kind)):
         return words
@@ -223,7 +223,7 @@ DRIVE_HELP = (
 
 
 def stands_words(why: str) -> str:
-    """Say why the robot does not drive."""
+    """Tell why the robot does not drive."""
     return f"Tangy stands still: {why}."
 
 
@@ -235,13 +235,13 @@ BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
 
 def waits_words(card: int = 0) -> str:
-    """Say that a command waits until Tangy has finished; a claim names its card."""
+    """Tell that a command waits until Tangy has finished; a claim names its card."""
     then = f"checks card {card}" if card else "does what you said"
     return f"One moment: Tangy finishes this, then {then}."
 
 
 def void_call_words(label: str) -> str:
-    """Ask before a call is taken back."""
+    """Ask before taking a call back."""
     return f"Take {label} back?"
 
 

@@ -1,4 +1,4 @@
-"""Decisions in words: why Tangy does one thing and no other, and which steps that rests on."""
+"""Words that explain decisions: why Tangy does this, and which demonstrated steps support it."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
-    """Put the grounds of a decision into sentences, the most important first.
+    """Explain a decision in sentences, the most important first.
 
     Args:
-        activity: what is played.
-        why: the grounds.
-        votes: with a sentence on the votes; without it, they are drawn beside the sentences.
+        activity: the activity played.
+        why: the explanation.
+        votes: add a sentence on the votes, unless they are drawn beside the sentences.
     """
     decision = why.decision
     done = activity.behaviour_words(decision.behaviour)
@@ -66,7 +66,7 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
 
 
 def because_words(decision: Decision) -> str:
-    """Say why in a few words: a rule, a teacher's answer, demonstrations, or the trees' guess."""
+    """Give the reason in a few words: a rule, a teacher's answer, demonstrations, or votes."""
     if decision.whatever and not decision.seen:
         return f"by a rule: whatever {listed(decision.whatever, 'or')}"
     if decision.behaviour in decision.right:
@@ -77,7 +77,7 @@ def because_words(decision: Decision) -> str:
 def addressed_words(
     policy: Policy, action: Action, state: ActivityState, name: Callable[[str], str]
 ) -> str:
-    """Say whom an action is for, and why: " (Rosa, who asked first)".
+    """Name the target of an action, and why: " (Rosa, who asked first)".
 
     Args:
         policy: the policy that decided.
@@ -101,26 +101,26 @@ def shown_words(activity: Activity, shown: Shown, name: Callable[[str], str]) ->
     """Name a demonstrated step: behaviour, place in the demonstration, teacher.
 
     Args:
-        activity: what was shown.
-        shown: a demonstrated step, and of which demonstration.
-        name: what to call a demonstration, by its id.
+        activity: the activity of the demonstration.
+        shown: the step, with its demonstration.
+        name: returns a demonstration's name for an id.
     """
     where = f"step {shown.number} of {name(shown.demonstration)}"
     return f"{activity.behaviour_words(shown.step.behaviour)}: {where}, by {shown.teacher}"
 
 
 WHY_HEADINGS = ("Based on", "Shown here as well", "Shown nearby")
-"""Heads of the steps that say so, that say otherwise, and of those nearby."""
+"""Headings of the supporting, contradicting and similar steps."""
 VOTES = "Votes of the trees"
 
 
 def strategy_title(name: str, strategy: str) -> str:
-    """Head how a strategy was chosen for a person."""
+    """Return the heading of how a strategy was chosen for a person."""
     return f"How to say it to {name}: {strategy}"
 
 
 def chosen_words(method: str) -> str:
-    """Say how a strategy is chosen from the numbers."""
+    """Tell how a strategy is chosen from the numbers."""
     return f"Chosen by {method}: the highest number is used."
 
 
@@ -128,15 +128,15 @@ WHY_ASKED = "Why does Tangy ask?"
 
 
 def why_step_title(number: int) -> str:
-    """Head the grounds of a step."""
+    """Return the title of the explanation of a step."""
     return f"Step {number}: why this?"
 
 
 def why_row_title(policy: str) -> str:
-    """Head the grounds of a row of a policy."""
+    """Return the title of the explanation of a row of a policy."""
     return f"{policy}: why this?"
 
 
 def answered_words(teacher: str, behaviour: str) -> str:
-    """Say who answered Tangy, and what."""
+    """Tell who answered Tangy's question, and what."""
     return f"Tangy asked, and {teacher} answered: {behaviour}."

@@ -32,7 +32,7 @@ STEPS, LEARNT, WHY, GAME, BELIEVES = (
     "The game",
     "What works with whom",
 )
-"""Titles of the panel beside the room."""
+"""Titles of the panels beside the room."""
 
 TYPES = f"{TEACHER} types"
 ANSWERS_YES = "yes"
@@ -75,7 +75,7 @@ YOUR_TURN_LINES = (
 
 
 def learnt_caption(steps: int, shown: int, situations: int) -> str:
-    """Say how many steps Tangy has learnt from, and how many situations it knows."""
+    """Tell from how many steps Tangy has learnt, and how many situations it knows."""
     return (
         f"From {counted(steps, 'step')} Tangy has learnt what to do in {shown} of "
         f"{situations} situations. The percentage shows how sure it is."
@@ -83,13 +83,13 @@ def learnt_caption(steps: int, shown: int, situations: int) -> str:
 
 
 def why_caption(times: int) -> str:
-    """Say what a decision rests on."""
+    """Tell what a decision is based on."""
     steps = counted(times, "step")
     return f"Ask why, and Tangy names its reason: {steps} that {TEACHER} showed."
 
 
 def belief_lines(beliefs: Mapping[str, Beliefs], name: Callable[[str], str]) -> list[str]:
-    """Say for each person which ways of asking Tangy tried, and how often they worked."""
+    """Tell for each person which strategies were tried, and how often they worked."""
     lines = []
     for person, profile in beliefs.items():
         tried = [
@@ -108,7 +108,7 @@ def _worked(complied: int, trials: int) -> str:
 
 
 def addressed(phrase: str, name: str) -> str:
-    """Write a command for a person: "go to user", "User 1" -> "go to user 1"."""
+    """Insert a person into a command: "go to user", "User 1" -> "go to user 1"."""
     *words, last = phrase.split()
     if name.casefold().startswith(last.casefold()):
         return " ".join((*words, name.lower()))
@@ -126,7 +126,7 @@ def learnt_lines(activity: Activity, policy: Policy) -> list[str]:
 
 
 def why_lines(activity: Activity, why: Why) -> list[str]:
-    """Say why Tangy does something, and which steps support it."""
+    """Explain a decision, with the steps that support it."""
     steps = [shown_words(activity, shown, lambda id: "this game") for shown in why.rests_on]
     return [*why_words(activity, why), *steps]
 
@@ -134,7 +134,7 @@ def why_lines(activity: Activity, why: Why) -> list[str]:
 def response_caption(
     response: Response, before: Sequence[Response], name: Callable[[str], str]
 ) -> str:
-    """Say what a person did after a request, and what Tangy concludes."""
+    """Describe a person's response to a request, and Tangy's conclusion."""
     who = name(response.person)
     if not response.complied:
         return (LATE if response.followed else REFUSED).format(who)
@@ -148,12 +148,12 @@ def scene_words(number: int) -> str:
 
 
 def typed_words(typed: str) -> str:
-    """Say in a line what the teacher types."""
+    """Format the teacher's command."""
     return f"{TYPES}: {typed}"
 
 
 def asked_words(question: str) -> str:
-    """Say in a line what Tangy asks, and the answer."""
+    """Format Tangy's question, and the answer."""
     return f"{DID_YOU_SAY}{question}? {TEACHER}: {ANSWERS_YES}."
 
 
@@ -162,12 +162,12 @@ ASKS = f"{DID_YOU_SAY}{{}}?"
 YES_KEYS = (("Y", "yes, do it"), ("N", "no, let me change it"))
 """The keys of the question."""
 HOLD, EARLIER, LATER = "pause", "back", "forward"
-"""What keys do."""
+"""The actions of the keys."""
 HELD, ENDED = "paused", "the end"
 
 
 def scene_note(number: int) -> str:
-    """Say which scene is shown, from 1."""
+    """Tell which scene is shown, counted from 1."""
     return f"scene {number} of {len(SCENES)}"
 
 

@@ -1,4 +1,4 @@
-"""Demonstrations in words: the list of them, and what changing one means."""
+"""Words for demonstrations: their list, and the effects of changes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ CHOOSE_FIRST = "Choose the step to begin with: tab goes to the steps."
 
 
 def again_words(name: str, step: int) -> str:
-    """Ask before a demonstration is shown again from a step on."""
+    """Ask before a demonstration is repeated from a step."""
     return f"Show {name} again from step {step}?"
 
 
@@ -64,12 +64,12 @@ def refused_words(row: ListRow) -> str:
 
 
 def changed_words(change: str, before: str = "") -> str:
-    """Say what a change did, after what it was, or how it is taken back."""
+    """Describe the effect of a change, after its name, or with how to undo it."""
     return f"{before}: {change}" if before else f"{change} {{undo}} takes it back."
 
 
 def steps_title(number: int) -> str:
-    """Head the steps of a demonstration."""
+    """Return the heading of a demonstration's steps."""
     return f"Steps of demonstration {number}"
 
 

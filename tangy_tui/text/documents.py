@@ -1,4 +1,4 @@
-"""The JSON documents that the command line prints: names in them are a contract."""
+"""The JSON documents that the command line prints; their keys are a stable interface."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
-    """Describe one demonstration: who, in which game, and its trajectory."""
+    """Describe one demonstration: teacher, game, and trajectory."""
     return {
         "id": demonstration.id,
         "teacher": demonstration.teacher,
@@ -49,7 +49,7 @@ def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
 
 
 def _searched(activity: Activity, policy: Policy) -> dict[str, Any]:
-    """Describe whom behaviours are for, and what a search of all games has found."""
+    """Describe the targets of behaviours, and the results of a search of all games."""
     found = prove_coverage(activity, policy)
     if found is None:
         return {}
@@ -107,7 +107,7 @@ def policy_document(workspace: Workspace, policy: Policy) -> dict[str, Any]:
 
 
 def library_document(workspace: Workspace) -> dict[str, Any]:
-    """Describe what the finished demonstrations cover, and what they disagree about."""
+    """Describe the coverage of the finished demonstrations, and their conflicts."""
     activity = workspace.activity
     library = read_library(workspace.store, activity.name)
     found = coverage(activity, library.finished)
@@ -137,7 +137,7 @@ def conflict_document(workspace: Workspace, conflict: Conflict) -> dict[str, Any
 
 
 def shown_document(shown: Shown) -> dict[str, Any]:
-    """Describe where a demonstrated step stands."""
+    """Describe the place of a demonstrated step."""
     return {
         "demonstration": shown.demonstration,
         "teacher": shown.teacher,
@@ -161,7 +161,7 @@ def decision_document(decision: Decision) -> dict[str, Any]:
 
 
 def why_document(workspace: Workspace, why: Why) -> dict[str, Any]:
-    """Describe the grounds of a decision."""
+    """Describe the explanation of a decision."""
     return {
         "situation": list(why.situation),
         **decision_document(why.decision),
@@ -191,7 +191,7 @@ def lesson_document(workspace: Workspace, lesson: Lesson) -> dict[str, Any]:
 def comparison_document(
     workspace: Workspace, a: Policy, b: Policy, rows: list[SituationComparison]
 ) -> dict[str, Any]:
-    """Describe where two policies differ."""
+    """Describe the differences of two policies."""
     return {
         "a": {"name": a.name, "digest": a.digest, "demonstrations": list(a.demonstrations)},
         "b": {"name": b.name, "digest": b.digest, "demonstrations": list(b.demonstrations)},
@@ -252,7 +252,7 @@ def person_document(record: Record) -> dict[str, Any]:
 
 
 def entry_document(entry: FeedbackEntry) -> dict[str, Any]:
-    """Describe one line of a person's history; its number is what `people void` takes."""
+    """Describe one line of a person's history; `people void` takes its number."""
     return {
         "number": entry.number,
         "at": entry.at.isoformat(),

@@ -1,4 +1,4 @@
-"""Words for drills, on the screen and by lines: rounds, corrections, and score sheets."""
+"""Words for drills, on the screen and in the console: rounds, corrections, and score sheets."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.drill_rounds import Round, Tabletop
 
 Told = tuple[str, str]
-"""How a line is written (by an ink of the screens: text, dim, strong, ...), and the line."""
+"""A line and its ink (an ink of the screens: text, dim, strong, ...)."""
 
 CLASS_WORDS: Mapping[str, str] = MappingProxyType(
     {
@@ -32,7 +32,7 @@ CLASS_WORDS: Mapping[str, str] = MappingProxyType(
         "none": "nothing wrong",
     }
 )
-"""The classes of faults, as the sheet has them."""
+"""The classes of faults on the score sheet."""
 
 RELEASE = "The expert was here and says: try it now. Seen: {seen}."
 WELCOME = (
@@ -53,7 +53,7 @@ _QUIET = {
 
 
 def note_words(note: DrillNote) -> str:
-    """Say why a drill does not go by what Tangy has learnt, and by what it goes instead."""
+    """Tell why a drill does not use the learnt policy, and what it uses instead."""
     return f"{_instead(note)}: for this drill a scripted teacher has shown the game."
 
 
@@ -72,7 +72,7 @@ def _instead(note: DrillNote) -> str:
 
 
 def action_words(action: StaffDoes) -> str:
-    """Say what staff do, as they would say it."""
+    """Name an action of staff."""
     match action:
         case "continue":
             return "Let Tangy go on by itself"
@@ -87,7 +87,7 @@ def action_words(action: StaffDoes) -> str:
 
 
 def option_words(question: Question, option: DrillOption) -> str:
-    """Say what an answer to a question stands for."""
+    """Name an answer to a question."""
     if question.kind == "what":
         return option.name if option.value else "Nothing is wrong"
     if question.kind == "do":
@@ -109,7 +109,7 @@ def asked_words(kind: DrillAsks) -> str:
 
 
 def round_parts(table: Tabletop, shown: Round) -> list[tuple[str, str]]:
-    """Say what staff can see in a round: pairs of a label and a sentence."""
+    """Describe what staff see in a round: pairs of a label and a sentence."""
     activity, acted = table.activity, shown.acted
     just = "The game has only begun."
     if acted is not None:
@@ -126,7 +126,7 @@ def round_parts(table: Tabletop, shown: Round) -> list[tuple[str, str]]:
 
 
 def device_words(devices: Sequence[tuple[str, str]]) -> str:
-    """Say of all devices how they are, the ill ones by name."""
+    """Summarise the state of all devices; faulty ones are named."""
     by_state: dict[str, list[str]] = {}
     for label, state in devices:
         by_state.setdefault(state, []).append(label)
@@ -145,14 +145,14 @@ def device_words(devices: Sequence[tuple[str, str]]) -> str:
 
 
 def question_words(question: Question, shown: Round) -> str:
-    """Return the question; one about clearing comes with the observations of that moment."""
+    """Return the question; one about clearing includes the observations at that moment."""
     if question.kind == "clear" and shown.release is not None:
         return f"{RELEASE.format(seen=shown.release.seen)} {asked_words(question.kind)}"
     return asked_words(question.kind)
 
 
 def told_lines(table: Tabletop, shown: Round, answered: AnsweredRound) -> list[Told]:
-    """Tell the right answers of a round, the reasons, and what to do."""
+    """Tell the right answers of a round, the reasons, and the advice."""
     fault = shown.fault
     what = "nothing was wrong" if fault is None else fault.name
     lines = [_verdict(answered.named_right, what, _named(table, answered.named))]
@@ -197,9 +197,9 @@ def _done(recovery: str) -> str:
 
 
 def sheet_lines(sheet: Sheet, width: int = 80, before: Sheet | None = None) -> list[Told]:
-    """Write a score sheet for so many columns: a table, totals, and what to rehearse again.
+    """Format a score sheet for a width in characters: table, totals, and what to rehearse again.
 
-    `before` is what the same person had the last time.
+    `before` is the person's previous sheet.
     """
     state = "" if sheet.finished else f", left after {len(sheet.answered)} of {sheet.rounds}"
     took = "" if sheet.median is None else f" Median time {sheet.median:.0f} s."
@@ -236,7 +236,7 @@ def _cut(text: str, width: int) -> str:
 
 
 def sheets_lines(sheets: Sequence[Sheet], when: Callable[[str], str], who: str = "") -> list[str]:
-    """List earlier sheets (of one person), the oldest first; `when` writes a time of the log."""
+    """List earlier sheets (of one person), the oldest first; `when` formats a time of the log."""
     if not sheets:
         return ["No drill yet: tangy drill begins one."]
     if who:
@@ -259,7 +259,7 @@ def sheets_lines(sheets: Sequence[Sheet], when: Callable[[str], str], who: str =
 
 
 def left_words(drill: Drill) -> str:
-    """Say which answers of an unfinished drill are stored."""
+    """Tell which answers of an unfinished drill are stored."""
     return KEPT if drill.sheet.answered else NOTHING_KEPT
 
 
@@ -271,18 +271,18 @@ NO_INTERRUPTED_DRILL = (
 
 
 def interrupted_words(sheet: Sheet) -> str:
-    """Say that a drill was interrupted, and how far it had come."""
+    """Tell that a drill was interrupted, and after which round."""
     when = day_and_time(datetime.fromisoformat(sheet.at))
     return f"A drill was interrupted after {len(sheet.answered)} of {sheet.rounds} rounds ({when})."
 
 
 def begins_anew(sheet: Sheet) -> str:
-    """Say that a new drill begins beside an interrupted one, which is kept unfinished."""
+    """Tell that a new drill begins, and that the interrupted one is stored unfinished."""
     return f"{interrupted_words(sheet)} It is kept as an unfinished drill, and a new drill begins."
 
 
 def goes_on(sheet: Sheet) -> str:
-    """Say that an interrupted drill goes on."""
+    """Tell that an interrupted drill resumes."""
     return f"{interrupted_words(sheet)} It goes on now. `tangy drill --discard` begins a new one."
 
 
@@ -296,5 +296,5 @@ SHEET_KEPT = "The sheet is kept."
 
 
 def so_far_words(sheet: Sheet) -> str:
-    """Say how many points a drill has brought up to here."""
+    """Tell the points of a drill so far."""
     return f"{sheet.points} of {sheet.most} so far."

@@ -1,4 +1,4 @@
-"""What the reports of the experiments say beside their figures and tables."""
+"""Captions and remarks in the reports of the experiments."""
 
 from __future__ import annotations
 
@@ -41,19 +41,19 @@ EXACT = (
 
 
 def subtitle(document: Document) -> str:
-    """Say which scenario it is, where it ran, and by which version."""
+    """Name the scenario, where it ran, and the version."""
     where = "in simulation" if document.get("simulated", True) else "on a bench of devices"
     version = document["versions"]["tangy"]
     return f"Scenario {document['experiment']} of the paper, run again {where} by Tangy {version}."
 
 
 def demonstrations_caption(seeds: int) -> str:
-    """Say what the figure of demonstrations shows."""
+    """Caption the figure of demonstrations."""
     return f"{counted(seeds, 'sequence')} of games; the bars of uncertainty are 95% intervals."
 
 
 def flagged_words(flags: Document) -> str:
-    """Say how many right and wrong decisions were flagged after each demonstration."""
+    """Tell how many right and wrong decisions were flagged after each demonstration."""
     return (
         f"After each demonstration by chance, {flags['wrong']} decisions were wrong, of which "
         f"{percent(flags['wrong_flagged'])} were flagged (Tangy would ask instead of acting); "
@@ -62,7 +62,7 @@ def flagged_words(flags: Document) -> str:
 
 
 def teachers_words(teachers: Document) -> str:
-    """Say who the simulated teachers were, and how long they went on."""
+    """Describe the simulated teachers, and how long they continued."""
     return (
         f"{counted(teachers['groups'], 'group')} of {teachers['count']} simulated teachers, each "
         "with games of their own. They go on after the third while a situation was not shown yet, "
@@ -71,7 +71,7 @@ def teachers_words(teachers: Document) -> str:
 
 
 def mistakes_caption(sequences: int) -> str:
-    """Say what the figure of wrong answers shows."""
+    """Caption the figure of wrong answers."""
     return (
         f"{counted(sequences, 'sequence')} for each point. Where both are the same, the dashes "
         "lie on the broad line."
@@ -79,7 +79,7 @@ def mistakes_caption(sequences: int) -> str:
 
 
 def mistakes_words(rows: Sequence[Document]) -> str:
-    """Say what wrong answers do, and how often Tangy asks in vain."""
+    """Tell the effect of wrong answers, and how often Tangy asks in vain."""
     return (
         "A share of the answers is made wrong: anywhere, in the commonest situation, or in the "
         "rarest ones, where each keeps one right answer. What was only ever answered wrongly "
@@ -90,7 +90,7 @@ def mistakes_words(rows: Sequence[Document]) -> str:
 
 
 def _asked_in_vain(rows: Sequence[Document]) -> str:
-    """Say which share of the right decisions is flagged, before conflicts are settled and after."""
+    """Tell which share of right decisions is flagged, before and after conflicts are settled."""
 
     def share(when: str) -> float | None:
         flags = [row[when] for row in rows if row["rate"] and row[when]["right"]]
@@ -104,7 +104,7 @@ def _asked_in_vain(rows: Sequence[Document]) -> str:
 
 
 def typing_words(typed: Document) -> tuple[str, str]:
-    """Say how long teaching took, and how long it would take somebody who types slowly."""
+    """Tell how long teaching took, and how long it would take a slow typist."""
     pace, slow = typed["pace"], typed["ordinary"]
     return (
         f"{typed['steps']:.0f} behaviours were taught by {typed['keys']:.0f} keys in "
@@ -144,7 +144,7 @@ REGRET_CAPTION = (
 
 
 def optimal_caption(groups: int) -> str:
-    """Say what the figure of optimal strategies shows."""
+    """Caption the figure of optimal strategies."""
     return (
         f"For each user, the share of {counted(groups, 'run')} in which the "
         "interaction's strategy was the user's best (line), and one run's percentage so far "
@@ -153,7 +153,7 @@ def optimal_caption(groups: int) -> str:
 
 
 def convergence_caption(before: Document) -> str:
-    """Say who converged."""
+    """Tell how many converged."""
     return (
         f"{counted(before['n'], 'person', 'people')} who converged, which is who had "
         f"{before['converged_means_in_a_row']} optimal strategies in a row."
@@ -161,14 +161,14 @@ def convergence_caption(before: Document) -> str:
 
 
 def crowd_words(name: str, crowd: Document, n: int) -> str:
-    """Say which simulated people a table of regret is of."""
+    """Name the simulated people of a table of regret."""
     means = crowd["means"]
     rates = f" (means {', '.join(f'{mean:g}' for mean in means)})" if means else ""
     return f"{name.capitalize()}: {crowd['words']}{rates}; n = {n}."
 
 
 def prior_words(methods: Document) -> str:
-    """Say of each method by its name what it gains by beginning from earlier people."""
+    """Tell for each method how much it gains from a prior of earlier people."""
     gains = []
     for name in ("thompson", "bayes_ucb"):
         alone, lent = (methods[n]["regret"]["60"] for n in (name, f"{name}_prior"))
@@ -205,7 +205,7 @@ LIMITS = (
 
 
 def by_game_caption(drawn: int, games: int) -> str:
-    """Say what the figure of faults shows, of the games that are drawn."""
+    """Caption the figure of faults, with the number of games drawn."""
     words = f"the first {drawn} of " if drawn < games else ""
     return (
         f"A line for each game ({words}{counted(games, 'game')}), as long as it had "
@@ -214,7 +214,7 @@ def by_game_caption(drawn: int, games: int) -> str:
 
 
 def instances_words(false_alarms: int) -> str:
-    """Say what an instance of a fault is, and how many diagnoses were false."""
+    """Define an instance of a fault, and count the false alarms."""
     return (
         "An instance is a diagnosis of something that was induced; it is recovered from if the "
         "right class of recovery was chosen for it, and it was over in the end, or borne where "
@@ -224,18 +224,18 @@ def instances_words(false_alarms: int) -> str:
 
 
 def limits_words(document: Document) -> str:
-    """Say what the figures of recovery prove, and what they do not."""
+    """Tell what the figures of recovery prove, and what they do not."""
     where = SIMULATED if document["simulated"] else BENCHED
     return where + LIMITS.format(help=document["settings"]["P(people at the table help)"])
 
 
 def left_words(kinds: Sequence[str]) -> str:
-    """Say which faults were planned and did not come about."""
+    """Name the planned faults that did not occur."""
     return f"Planned, but did not come about before its games ended: {', '.join(kinds)}."
 
 
 def stopped_words(reason: str, games: int) -> str:
-    """Say how many games were stopped before their end, and why."""
+    """Tell how many games were stopped early, and why."""
     return f"Stopped before the end, {counted(games, 'game')}: {reason}"
 
 

@@ -27,12 +27,12 @@ def enrolled_lines(
     """Count the pictures of a person, and name the doubtful ones.
 
     Args:
-        person: whose face it is.
-        new: they are a guest, known from now on.
-        taken: how many pictures are kept.
-        advised: with how many Tangy is surer.
-        several: the pictures may show more than one person.
-        like: who else they look like, by name and id; "" for nobody.
+        person: the person with the face.
+        new: whether they were added as a guest just now.
+        taken: the number of pictures used.
+        advised: the recommended number of pictures.
+        several: whether the pictures may show more than one person.
+        like: a known person they resemble, by name and id; "" for nobody.
     """
     lines = []
     if new:
@@ -50,7 +50,7 @@ def enrolled_lines(
 
 
 def face_forgotten(name: str, kept: bool) -> str:
-    """Say that a face is forgotten, or that there was none."""
+    """Tell that a face was forgotten, or that there was none."""
     if kept:
         return f"{name}'s face is forgotten."
     return f"Tangy did not know {name}'s face."

@@ -1,4 +1,4 @@
-"""What stands over and between the faults of a game, where they are listed or told of."""
+"""Headings and help of the views of faults."""
 
 from __future__ import annotations
 
@@ -15,4 +15,4 @@ HOW_KNOWN = "How Tangy knows"
 WHAT_TO_DO = "What should I do?"
 
 WAITS = "waits for the "
-"""What comes before the device whose late data the robot waits for."""
+"""The words before the device whose late data the robot waits for."""

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision
 
 Name = Callable[[str], str]
-"""Gives a person's name for an id."""
+"""Returns a person's name for an id."""
 
 CRITICAL_MARK, MARK = "!!", "! "
-"""What stands before a critical fault, and before another one."""
+"""The marks of critical and other faults."""
 
 DOING_REMEDIES = {
     "spin": "turning to find its place",
@@ -44,7 +44,7 @@ DOING_REMEDIES = {
     "set aside": "leaving it at that",
     "leave to staff": "leaving it to you",
 }
-"""What Tangy does by itself, in words."""
+"""Words for Tangy's own recovery actions in progress."""
 
 DONE_REMEDIES = {
     "spin": "Tangy turned on the spot to find its place",
@@ -55,7 +55,7 @@ DONE_REMEDIES = {
     "set aside": "Tangy left it at that",
     "leave to staff": "Tangy left it to you",
 }
-"""What Tangy has done by itself, in words."""
+"""Words for Tangy's own recovery actions when done."""
 
 MOVES: Mapping[MoveKind, str] = {
     "kept": "kept for later: another fault comes first",
@@ -77,7 +77,7 @@ MOVES: Mapping[MoveKind, str] = {
     "given up": "the game was given up",
     "left open": "was left open at the end of the game",
 }
-"""What can be done about a fault, in words."""
+"""Words for the recovery moves."""
 
 RECOVERY_WORDS = {
     "expert": "halt, and ask an expert",
@@ -85,12 +85,12 @@ RECOVERY_WORDS = {
     "teacher": "ask a teacher",
     "continue": "go on",
 }
-"""The recoveries in words."""
+"""Words for the kinds of recovery."""
 
 _DOING = {
     "teacher asked": "asking the teacher",
     "halted": "Tangy stands still",
-    "acknowledged": "",  # what came before that is still so
+    "acknowledged": "",  # shows the move before it
     "kept": "another fault comes first",
     "expert called": "staff were shown whom to call",
     "still there": "it is still there",
@@ -100,7 +100,7 @@ _DOING = {
 
 
 def status_words(status: tuple[str, str]) -> str:
-    """Write how the robot is and of what that comes; nothing heard is not an error."""
+    """Format the state of the robot and its cause; silence is not an error."""
     word, cause = status
     if not cause:
         return word
@@ -124,7 +124,7 @@ def kind_words(fault: Fault) -> str:
 
 
 def doing_words(fault: Fault, book: FaultBook) -> str:
-    """Say what Tangy does about a fault at present."""
+    """Tell what Tangy does about a fault at present."""
     move = _last(fault)
     if move is None:
         return f"next: {RECOVERY_WORDS[fault.recovery]}"
@@ -141,7 +141,7 @@ def doing_words(fault: Fault, book: FaultBook) -> str:
 
 
 def said_words(fault: Fault) -> str:
-    """Return what Tangy says about a fault at present: what it asks somebody for."""
+    """Return Tangy's present speech about a fault: its request for help."""
     move = _last(fault)
     return "" if move is None else move.speech
 
@@ -158,7 +158,7 @@ def _tries(fault: Fault, move: RecoveryEvent, book: FaultBook) -> str:
 
 
 def banner_words(fault: Fault, doing: str) -> tuple[str, ...]:
-    """Write the banner of a fault in forms that take less and less room: mark, name, doing."""
+    """Format the banner of a fault, from the longest form to the shortest: mark, name, recovery."""
     mark, name = mark_of(fault).strip(), fault.name
     return (
         f"{mark} FAULT {kind_words(fault)}: {name} -> {doing}",
@@ -168,22 +168,22 @@ def banner_words(fault: Fault, doing: str) -> tuple[str, ...]:
 
 
 def state_words(fault: Fault) -> str:
-    """Say in a word whether a fault is open, borne or over."""
+    """Name the status of a fault: open, borne or over."""
     return {OPEN: "open", BORNE: "going on without", OVER: "over"}[fault.status]
 
 
 def short_state(fault: Fault) -> str:
-    """Say the same where there is little room, beside what happened last."""
+    """Name the status in one word, for little room."""
     return {OPEN: "open", BORNE: "without", OVER: "over"}[fault.status]
 
 
 def last_words(fault: Fault) -> str:
-    """Say what happened last to a fault."""
+    """Describe the last move of a fault."""
     return move_words(fault.moves[-1]) if fault.moves else "nothing yet"
 
 
 def searched(fault: Fault, name: Name) -> str:
-    """Return everything by which a fault can be found."""
+    """Return the text in which the filter searches."""
     person = name(fault.person) if fault.person is not None else ""
     return " ".join(
         (fault.name, fault.code, kind_words(fault), state_words(fault), fault.status, person)
@@ -191,9 +191,9 @@ def searched(fault: Fault, name: Name) -> str:
 
 
 def told_in_banner(supervision: Supervision) -> list[Fault]:
-    """Return the faults that the banner is about, the most urgent that are there first.
+    """Return the faults for the banner, the most urgent first.
 
-    One that Tangy goes on without is told of until somebody has seen it.
+    A fault that Tangy continues without stays in the banner until acknowledged.
     """
     there = [f for f in supervision.waiting if not f.asks_only]
     there += [f for f in supervision.faults if f.status == BORNE and not f.acknowledged]
@@ -209,7 +209,7 @@ class EvidenceLine(NamedTuple):
 
 
 def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[EvidenceLine]:
-    """Put observations beside their expectations."""
+    """Pair observations with their expectations."""
     rule = book.rule(fault.code)
     pieces: list[EvidenceLine] = []
     for key, value in fault.evidence.items():
@@ -240,7 +240,7 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[EvidenceLin
 
 
 def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list[EvidenceLine]:
-    """Say how old the newest data of a fault's device is if it is too old, unless that is said."""
+    """Tell the age of a fault's device data if it is too old and not part of the evidence."""
     device = robot.devices.get(book.rule(fault.code).device)
     if device is None or f"{device.name}.age" in fault.evidence:
         return []
@@ -251,7 +251,7 @@ def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list
 def known_now(fault: Fault, supervision: Supervision) -> Fault:
     """Return a fault in the words of a more specific rule that has matched since, if any.
 
-    A robot whose own program stood still looks at first like one to which the link is lost.
+    A robot whose own process froze looks at first as if the link were lost.
     """
     evidence = supervision.devices
     for rule in supervision.book.rules:
@@ -261,7 +261,7 @@ def known_now(fault: Fault, supervision: Supervision) -> Fault:
 
 
 def still_there_words(fault: Fault, supervision: Supervision) -> str:
-    """Say whether a fault is still there; empty where the devices cannot tell."""
+    """Tell whether a fault is still present; "" if the devices cannot tell."""
     book, evidence = supervision.book, supervision.devices
     rule = book.rule(fault.code)
     if rule.fallback or not rule.device:
@@ -287,7 +287,7 @@ def _age(device: DeviceProfile, age: Fact) -> list[EvidenceLine]:
 
 
 def _expected(key: str, value: Fact, rule: FaultRule, book: FaultBook) -> str:
-    """Turn the condition by which a fault was recognised round; empty: it only narrows it down."""
+    """Return the expectation that an observation violates; "" if it only narrows the fault down."""
     if key.endswith(".state"):
         return "OK" if value != "OK" else ""
     for conditions in rule.when:
@@ -333,7 +333,7 @@ def move_words(move: RecoveryEvent) -> str:
 
 
 def recovery_words(rule: FaultRule) -> str:
-    """Say how a fault is recovered from, rung by rung."""
+    """Describe the recoveries of a rule, step by step."""
     tries = f" (up to {rule.tries} times)" if rule.tries > 1 else ""
     first, *rest = (RECOVERY_WORDS[word] for word in rule.recovery)
     return "; else ".join([first + tries, *rest])
@@ -346,7 +346,7 @@ def fault_lines(event: FaultEvent) -> list[str]:
     """Format a fault or a recovery event as lines."""
     fault = event.fault
     if fault.asks_only:
-        return []  # the question that Tangy asks says all of it
+        return []  # Tangy's question tells all of it
     if isinstance(event, Diagnosed):
         kind = "CRITICAL" if fault.critical else "non-critical"
         return [f"!  Fault, {kind}: {fault.name}. {fault.console}", f"   Why: {fault.why}."]
@@ -356,7 +356,7 @@ def fault_lines(event: FaultEvent) -> list[str]:
 
 
 def advice_lines(game: Supervision) -> list[str]:
-    """Say what staff should do about what Tangy asks, or about what halts it."""
+    """Return the advice about Tangy's question, or about the fault that halts it."""
     question = game.question
     about = "" if question is None else question.fault
     fault = game.halted or next((one for one in game.faults if one.id == about), None)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def what_goes(person: Person, folder: Path) -> str:
-    """Say before a person is forgotten which data is deleted, and which stays."""
+    """Tell before a person is forgotten which data is deleted, and which stays."""
     called = person.name if person.name == person.id else f"{person.name} ({person.id})"
     return (
         f"This deletes who {called} is: the name, how it is said, their voice and their face. "
@@ -24,12 +24,12 @@ def what_goes(person: Person, folder: Path) -> str:
 
 
 def not_forgotten(person: Person) -> str:
-    """Say that a person is known as before."""
+    """Tell that nothing was forgotten."""
     return f"Nothing was forgotten. Tangy knows {person.name} as before."
 
 
 def forgotten_lines(person: Person, forgotten: Forgotten) -> list[str]:
-    """Say what went, and where the name still stands."""
+    """Tell what was deleted, and where the name remains."""
     lines = [f"{person.id}: the name, how it is said, the voice and the face are forgotten."]
     changed = []
     if forgotten.events:

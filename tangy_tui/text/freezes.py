@@ -1,4 +1,4 @@
-"""Words for a game that was paused because the program stood still."""
+"""Words for a game that was paused because the program was frozen."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ GO_ON, STAY = "go on", "stay paused"
 
 
 def question(seconds: float) -> str:
-    """Say how many seconds the program stood still, and ask whether the game goes on."""
+    """Tell how many s the program was frozen, and ask whether to continue."""
     return f"Tangy stood still for {length(seconds)}. Go on?"
 
 
 def told_words(seconds: float) -> str:
-    """Say in a line how many seconds it stood still, and how to go on."""
+    """Tell in a line how many s it was frozen, and how to continue."""
     return f"Tangy stood still for {length(seconds)}. The game is paused. Type: go on."

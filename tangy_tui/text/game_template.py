@@ -4,7 +4,7 @@ from __future__ import annotations
 
 ASK_POINTS = "Do their moves win points, as in a game? (y/n) "
 
-# What would make lines of the template too long: a table within a line cannot go on in the next.
+# Parts that would make lines of the template too long: an inline table cannot be wrapped.
 MOVED = '["moving is yes", "move is not none"]'
 OPEN = '["moving is yes"]'
 WON = '["any score >= 3"]'
@@ -15,11 +15,11 @@ ABLE = '["moving is yes", "move is none", "turn is yes"]'
 
 
 def game_file(name: str, title: str) -> str:
-    """Return the game's file: it can be played as it is, and says what can be changed.
+    """Return the game's file, which can be played as it is and tells what to change.
 
     Args:
-        name: of the file and the activity.
-        title: what people call it.
+        name: the name of the file and the activity.
+        title: the title of the activity.
     """
     return f"""# {title}. Try it with: tangy activity try {name}.toml
 name = "{name}"

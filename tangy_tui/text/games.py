@@ -42,11 +42,11 @@ SHOWS = {
     "faults": "Show the faults of this game",
 }
 SENSORS = "Show the sensors, and what cameras see"
-"""What the numbers show."""
+"""The names of the number keys' actions."""
 
 
 def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str = "") -> list[str]:
-    """Put one event of a game into lines; `teacher` is who answered, where Tangy had asked."""
+    """Describe one event of a game in lines; `teacher` is who answered Tangy's question."""
     activity = supervision.world.activity
     match event:
         case GameBegun(_, number, _):
@@ -93,14 +93,14 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
 
 
 def ended_words(ended: GameEnded) -> str:
-    """Say how a game ended, and why where it was before its end."""
+    """Tell how a game ended, and why if it stopped early."""
     if ended.stopped is None:
         return f"The game is over after {ended.steps} steps."
     return f"The game stopped after {ended.steps} steps. {ended.stopped}"
 
 
 def paused_lines(count: int, seconds: float) -> list[str]:
-    """Say how often the robot waited for late data, and for how many s, where it did."""
+    """Tell how often the robot waited for late data, and for how many s, if it did."""
     times = "once" if count == 1 else f"{count} times"
     return [f"It waited for late data {times}, for {seconds:.1f} s in all."] if count else []
 
@@ -124,10 +124,7 @@ def belief_lines(supervision: Supervision, name: Name) -> list[str]:
 
 
 def why_lines(supervision: Supervision, demonstrations: Demonstrations | None) -> list[str]:
-    """Say on what grounds Tangy asks, or else does what it does now.
-
-    Without the demonstrations it is said at least by which votes.
-    """
+    """Explain why Tangy asks, or its present decision; without demonstrations, only the votes."""
     question, world = supervision.question, supervision.world
     situation = world.observe().situation if question is None else question.state.situation
     if demonstrations is not None:
@@ -154,17 +151,17 @@ NO_UNSEEN_FAULT = "No fault that nobody has seen."
 
 
 def halted_words(reason: str) -> str:
-    """Say why a game stands still, and how to try again."""
+    """Tell why a game is paused, and how to retry."""
     return f"{reason} {{pause}} tries again."
 
 
 def stopped_words(reason: str, then: str) -> str:
-    """Say why a game stopped, and what can be done then."""
+    """Tell why a game stopped, and what can be done then."""
     return f"{reason}\n{then}"
 
 
 def response_words(response: Response, belief: Beta, name: Name) -> str:
-    """Say what a person did, and how often the strategy has worked."""
+    """Tell a person's response, and how often the strategy has worked."""
     what = "complied" if response.complied else "followed, but late"
     worked = f"{response.strategy} has worked {belief.complied} of {belief.trials} times."
     return f"{name(response.person)} {what}: {worked}"
@@ -176,12 +173,12 @@ def begun_words(number: int) -> str:
 
 
 def resumed_words(number: int, steps: int) -> str:
-    """Say that an interrupted game goes on, and how."""
+    """Tell that an interrupted game is resumed, and that it is paused."""
     return f"Game {number} is back where it was after {counted(steps, 'step')}. It is paused."
 
 
 def over_words(steps: int) -> str:
-    """Say that a game is over, and which key plays another."""
+    """Tell that a game is over, and which key starts another."""
     return f"The game is over after {counted(steps, 'step')}. {{next}} plays another."
 
 

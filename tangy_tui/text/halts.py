@@ -1,4 +1,4 @@
-"""What staff read of a fault for which Tangy stands still, and what their keys did about it."""
+"""Words for a fault that halts Tangy, and for the results of staff's keys."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def title(fault: Fault) -> str:
 
 
 def halted_words(fault: Fault) -> str:
-    """Say what kind of fault halts the robot since which step, and for how long."""
+    """Tell the kind of the fault, and after which step it halted the robot."""
     where = f"{kind_words(fault).capitalize()}, after step {fault.step}."
     return f"{where} Tangy has stopped, and nothing moves before this is cleared."
 
@@ -51,12 +51,12 @@ def last_move_words(move: RecoveryEvent) -> str:
 
 
 def wait_words(doing: str) -> str:
-    """Say that the current behaviour ends first."""
+    """Tell that a command about the fault is still running."""
     return f"Wait. {doing}"
 
 
 def failed_words(error: Exception) -> str:
-    """Say why a key did nothing."""
+    """Tell why a key had no effect."""
     return f"{error} Nothing was changed: try again."
 
 
@@ -69,7 +69,7 @@ def to_be_reached(game: Supervision) -> bool:
 
 
 def called_words(game: Supervision, *, restarted: bool) -> str:
-    """Say who was called and has answered, or whom to call, and how recovery stands."""
+    """Tell who was called or has answered, or whom to call, and the state of the recovery."""
     begun = f"{RESTARTED} " if restarted else ""
     waits = f"{REACHED_TOO} " if to_be_reached(game) else ""
     return f"{begun}{expert_words(game)} {waits}{WHEN_WELL}"
@@ -79,7 +79,7 @@ ALL_WELL = "Is all well now?"
 
 
 def uncleared_words(name: str) -> str:
-    """Say which fault of the last game nobody cleared, and what a new game does."""
+    """Name the fault that nobody cleared in the last game, and tell what a new game does."""
     return (
         f"The last game ended with: {name}, which nobody cleared. Tangy moves as soon "
         "as a game begins."

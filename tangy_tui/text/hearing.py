@@ -1,4 +1,4 @@
-"""Words about hearing while Tangy listens: what it misses, and what it records."""
+"""Words about speech input: what it cannot hear, and what it records."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ AGAIN_SOON = "Push again in a moment."
 
 
 def hearing_words(note: HearingNote) -> str:
-    """Say in a sentence what has to be said about hearing."""
+    """Describe a note about speech input in a sentence."""
     from tangy_tui.speech.evidence import LONGEST
 
     about = note.about
@@ -61,11 +61,11 @@ def _only_typed(about: str, why: str) -> str:
 
 
 def consent_question(folder: Path, options: str = "") -> str:
-    """Return what a teacher is asked before anything is recorded.
+    """Return the question to a teacher before anything is recorded.
 
     Args:
-        folder: where recordings are kept.
-        options: which the command that deletes them needs, with a space before them.
+        folder: where recordings are stored.
+        options: options of the command that deletes them, with a space before them.
     """
     return (
         "May Tangy keep recordings of the commands that you say and confirm while you teach, to "

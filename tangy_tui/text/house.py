@@ -1,4 +1,4 @@
-"""Words of the reports on a person over time and on a house over months."""
+"""Words of the reports on a person over time and on a care home over months."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ EACH_WORLD = "This report covers only these games. For others, add --world {othe
 
 
 def house_title(logs: Sequence[RobotLog]) -> str:
-    """Name the report of a house."""
+    """Return the title of a house's report."""
     return "The house" if len(logs) == 1 else f"The house, with {counted(len(logs), 'robot')}"
 
 
 def scope(world: GameWorld, games: int) -> str:
-    """Say which games a report covers."""
+    """Tell which games a report covers."""
     return f"{counted(games, 'game')}, {WORLD_WORDS[world]}"
 
 
@@ -127,7 +127,7 @@ def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
 
 
 def strategy_rows(person: PersonOverTime) -> Iterator[tuple[str, ...]]:
-    """Write one row for each way of asking: how often it was used, and how often it worked."""
+    """Write one row for each strategy: how often it was used, and how often it worked."""
     used: Counter[str] = Counter()
     did: Counter[str] = Counter()
     for answer in person.answers:
@@ -159,7 +159,7 @@ def robot_rows(logs: Sequence[RobotLog], world: GameWorld) -> Iterator[tuple[str
 
 
 def nobody_called(name: str, there: Sequence[str]) -> str:
-    """Say that nobody of a name took part in these games, and who did."""
+    """Tell that nobody with a name took part in these games, and who did."""
     who = f" {listed(there)} did." if there else ""
     return f"Nobody called {name!r} took part in these games.{who}"
 

@@ -10,12 +10,12 @@ NO_GAME = "No game is going on: press {next} to play one first."
 
 
 def not_of_this_robot(kind: str, robot: str) -> str:
-    """Say that a fault is one of a device that a robot has not."""
+    """Tell that a fault belongs to a device that a robot does not have."""
     return f"--inject {kind}: {robot} has no device that this could happen to."
 
 
 def comes_later_words(kind: str) -> str:
-    """Say that a fault shows itself later."""
+    """Tell that a fault will become visible later."""
     return f"{kind} comes as soon as it can show."
 
 
@@ -25,5 +25,5 @@ def lifted_words(kind: str) -> str:
 
 
 def injected_words(kind: str) -> str:
-    """Say that a fault was brought about."""
+    """Tell that a fault was injected."""
     return f"Brought about: {kind}."

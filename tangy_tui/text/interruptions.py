@@ -1,4 +1,4 @@
-"""A game that was interrupted, in words: what it was, and how it can go on or end."""
+"""Words for an interrupted game: how far it had come, and how to resume or end it."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ RESUME = ("resume", "go on with it", "paused at first")
 END = ("end", "end it", "with a report of it")
 DISCARD = ("discard", "discard it", "and play a new game")
 ENDED = "It was interrupted, and ended afterwards."
-"""Why such a game ended, as the log has it."""
+"""The logged reason for the end of such a game."""
 NONE = "No game was interrupted: there is nothing to go on with. Leave --resume out."
 BOTH = "Use either --resume or --discard."
 
 
 def interrupted_words(past: PastGame, calls: int) -> str:
-    """Say when a game was interrupted, and how far it had come."""
+    """Tell when a game was interrupted, and how far it had come."""
     return f"A game was interrupted after {_far(past, calls)} ({day_and_time(past.at)})."
 
 
 def still_open_words(past: PastGame, calls: int) -> str:
-    """Say beside a choice that a game was interrupted there, and that it can go on."""
+    """Tell beside a choice that a game was interrupted, and can be resumed."""
     return f"interrupted after {_far(past, calls)}: Enter asks whether to go on"
 
 
@@ -37,7 +37,7 @@ def _far(past: PastGame, calls: int) -> str:
 
 
 def begins_anew(verb: str) -> str:
-    """Say that a new game begins beside an interrupted one, and how to go on with that."""
+    """Tell that a new game begins beside an interrupted one, and how to resume that one."""
     return (
         f"A new game begins. `tangy {verb} --resume` would go on with the interrupted one, "
         "until another game is played."

@@ -1,4 +1,4 @@
-"""What the actions of the keymap are called: in the palette and in help, and at the foot."""
+"""The names of the keymap's actions, in palette and help, and at the foot."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ NAMES: Mapping[str, Named] = MappingProxyType(
 
 HELP_KEYS = "up down more   esc closes"
 DIGIT_SHOWN = "the digit it shows for yes"
-"""Stands for the yes key while each question has a key of its own."""
+"""Placeholder for the key for yes if each question has its own."""
 
 _PLACE = re.compile(r"\{(\^?)([a-z_]+)\}")
 
@@ -107,7 +107,8 @@ _PLACE = re.compile(r"\{(\^?)([a-z_]+)\}")
 def with_keys(text: str, keymap: Keymap, *, typing: bool = False) -> str:
     """Replace names of actions in a text with their keys: "{undo} takes it back".
 
-    "{^talk}" is the key that works while letters go to a line; `typing` chooses it for all.
+    "{^talk}" is the key that works while an input line takes letters; `typing` chooses such keys
+    for all actions.
     """
 
     def key(found: re.Match[str]) -> str:

@@ -51,7 +51,7 @@ EFFECTS: Mapping[tuple[str, str], str] = {
 """Words for the effects of a behaviour, by variable and value."""
 
 NOT_SHOWN = "Not shown to Tangy yet:"
-"""Stands before what `missing_words` gives: it is about what was shown, not about the room."""
+"""The words before the result of `missing_words`, which is about demonstrations, not the room."""
 
 
 def effects_words(variables: Mapping[str, Iterable[str]]) -> str:
@@ -63,7 +63,7 @@ def effects_words(variables: Mapping[str, Iterable[str]]) -> str:
 
 
 def replay_words(activity: Activity, replay: PolicyReplay) -> str:
-    """Say what came out when all steps were gone through with the new policy."""
+    """Describe the changes when the new policy is replayed on all earlier steps."""
     if not replay.steps:
         first = "There were no earlier steps to compare with."
     elif replay.changed:
@@ -82,7 +82,7 @@ def replay_words(activity: Activity, replay: PolicyReplay) -> str:
 
 
 def only_unfinished(steps: int) -> str:
-    """Say that there is nothing finished to learn from."""
+    """Tell that there is no finished demonstration to learn from."""
     return (
         f"No demonstration is finished yet. {counted(steps, 'step is', 'steps are')} kept. Go on "
         "with `tangy teach`, or learn from unfinished ones with --unfinished."
@@ -95,11 +95,11 @@ def learnt_lines(
     """Name the demonstrations of a policy, and the situations in which it asks.
 
     Args:
-        activity: what it was learnt for.
-        policy: what was learnt.
-        steps: that were shown.
-        left_out: unfinished demonstrations that were not learnt from.
-        not_shown: the heading of the situations that nobody has shown.
+        activity: the activity of the policy.
+        policy: the learnt policy.
+        steps: the number of demonstrated steps.
+        left_out: the number of unfinished demonstrations not used.
+        not_shown: the heading of the situations not demonstrated.
     """
     unseen = [s for s in activity.situations if not policy.decide(s).seen]
     contested = [s for s in activity.situations if policy.decide(s).contested]
@@ -133,7 +133,7 @@ def learnt_lines(
 
 
 def changed_lines(activity: Activity, before: str, changed: Sequence[Change]) -> list[str]:
-    """Say what a policy does otherwise than the one before it, which has a name."""
+    """Describe how a policy differs from the previous one, given by name."""
     if not changed:
         return [f"It does the same as {before!r}, the policy before it, in every situation."]
     lines = [f"Changes from {before!r}, the policy before it:"]
@@ -145,5 +145,5 @@ def changed_lines(activity: Activity, before: str, changed: Sequence[Change]) ->
 
 
 def grounds(why: Why) -> tuple[tuple[str, Sequence[Shown]], ...]:
-    """Return the steps that a decision rests on, and the others, each under its heading."""
+    """Return the steps that support a decision, and the others, each group with its heading."""
     return ("Based on", why.rests_on), ("Against it", why.against), ("Nearby", why.near)

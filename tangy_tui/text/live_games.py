@@ -1,4 +1,4 @@
-"""Live games in words: switching a robot on, and how it comes to be where it is."""
+"""Words for live games: switching a robot on, localising it, and releasing it."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ MAY_MOVE = "Tangy may move again."
 
 
 def part_words(part: str, robot: Robot) -> str:
-    """Name what is being started of a robot: a device, or another part."""
+    """Name the part of a robot that is being started: a device, or another part."""
     device = robot.devices.get(part)
     return PARTS.get(part) or (part if device is None else device.label)
 
 
 def parts_lines(parts: Sequence[str], done: tuple[int, int] | None, robot: Robot) -> list[str]:
-    """Say what was started, and what is being started: the last part, of which so much is done."""
+    """Tell the parts that were started, and the part in progress with its fraction."""
     if not parts:
         return []
     *before, now = (part_words(part, robot) for part in dict.fromkeys(parts))
@@ -38,7 +38,7 @@ def parts_lines(parts: Sequence[str], done: tuple[int, int] | None, robot: Robot
 
 
 def frozen_words(seconds: float) -> str:
-    """Say for how many `seconds` (s) the program in the robot was frozen, and what came of it."""
+    """Tell for how many `seconds` (s) the program in the robot was frozen, and the consequence."""
     return (
         f"The program in the robot was frozen for {seconds:.0f} s. Tangy has stopped what it "
         "was doing, and stands still until you let it go on."

@@ -1,4 +1,4 @@
-"""A live game told line by line: behaviours, owners of cards, and seats."""
+"""A live game in lines: behaviours, owners of cards, and seats."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ MANY = {2: "two", 3: "three", 4: "four"}
 
 
 def live_lines(events: Sequence[Event], news: Iterable[News], name: Name) -> list[str]:
-    """Tell the events and news of a live game line by line."""
+    """Describe the events and news of a live game in lines."""
     told = (event_words(event, name) for event in events)
     return [*filter(None, told), *news_lines(news, name)]
 
 
 def news_lines(news: Iterable[News], name: Name) -> Iterator[str]:
-    """Tell news about cards and seats, except what staff have told Tangy."""
+    """Describe news about cards and seats, except what staff reported themselves."""
     for one in news:
         words = seated_words(one, name) if isinstance(one, Seated) else note_words(one, name)
         if words:
@@ -35,7 +35,7 @@ def news_lines(news: Iterable[News], name: Name) -> Iterator[str]:
 
 
 def event_words(event: Event, name: Name) -> str:
-    """Say in one line what happened; "" of what needs no line."""
+    """Describe an event in one line; "" if it needs none."""
     match event:
         case Acted(number=number, action=action, outcome=outcome, speech=speech):
             whom = "" if action.target is None else f" ({name(action.target)})"
@@ -55,7 +55,7 @@ def seated_words(seated: Seated, name: Name) -> str:
 
 
 def note_words(note: CardNote, name: Name) -> str:
-    """Say to staff what there is to tell of cards; "" where they know it themselves."""
+    """Describe a note about cards for staff; "" if they know it already."""
     match note.news:
         case CardLearnt():
             return learnt_words(note.news, name)
@@ -70,7 +70,7 @@ def learnt_words(learnt: CardLearnt, name: Callable[[str], str]) -> str:
 
 
 def doubt_words(doubt: CardDoubt, name: Callable[[str], str]) -> str:
-    """Say to staff why a card is not judged, and what they can do."""
+    """Tell staff why Tangy does not judge a card, and what they can do."""
     whom, count = name(doubt.person), len(doubt.cards)
     many = MANY.get(count, str(count))
     *first, last = map(str, doubt.cards)

@@ -1,4 +1,4 @@
-"""Games of the log by lines: one step by step, and a session in short."""
+"""Games of the log in lines: one step by step, and a summary of a session."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from tangy_tui.text.situations import Name
 
 MOST_TOLD = 30
-"""Games that a report tells one by one; of more, only those in which something was the matter."""
+"""A report describes up to this many games one by one; of more, only those with problems."""
 
 
 def game_words(game: Game, activity: Activity | None = None) -> str:
-    """Name a game: its number, id, activity (by its title, if it is this one), world, and so on."""
+    """Name a game: number, id, activity (by its title, if given), world, policy, and so on."""
     known = activity is not None and activity.name == game.activity
     played = activity.title if activity is not None and known else game.activity
     return (
@@ -40,7 +40,7 @@ def game_words(game: Game, activity: Activity | None = None) -> str:
 
 
 def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> Iterator[str]:
-    """Tell a game step by step; each line begins with the time in the game and on the clock."""
+    """Describe a game step by step; each line begins with time in the game and local time."""
     game = replay.game
     yield game_words(game, activity)
     yield f"With {', '.join(map(name, game.people)) or 'nobody that the log names'}."
@@ -54,7 +54,7 @@ def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> I
 def moment_lines(
     moment: Moment, timed: bool, activity: Activity | None, name: Name
 ) -> Iterator[str]:
-    """Tell one moment of a game, with the time in the game, if it is `timed`, and on the clock."""
+    """Describe one moment of a game, with the time in the game if `timed`, and local time."""
     when = _when(moment, timed)
     first, *more = _moment_lines(moment, activity, name)
     yield f"{when}  {first}"
@@ -115,7 +115,7 @@ def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
 
 
 def answer_words(answer: AnsweredRequest) -> str:
-    """Say what a person did about a request."""
+    """Tell a person's response to a request."""
     if answer.complied is None:
         return "was asked; what they did was not known yet"
     if answer.complied:
@@ -124,7 +124,7 @@ def answer_words(answer: AnsweredRequest) -> str:
 
 
 def session_lines(session: Session) -> Iterator[str]:
-    """Tell a session in short: which games, faults, people, and what to look after."""
+    """Summarise a session: games, faults, people, and what needs attention."""
     yield from _games_lines(session.games, session.activity)
     if session.timed:
         yield f"Time in the room: {length(session.seconds)}."
@@ -163,7 +163,7 @@ def session_lines(session: Session) -> Iterator[str]:
 
 
 def limits_lines(games: Sequence[Game]) -> Iterator[str]:
-    """Say how often people could be asked in vain, and how often a robot waited for late data."""
+    """Tell the limits of requests in vain, and how often a robot waited for late data."""
     limits = dict.fromkeys(game.asks for game in games if game.asks != (0, 0))
     for visit, most in limits:
         yield (
@@ -178,7 +178,7 @@ def limits_lines(games: Sequence[Game]) -> Iterator[str]:
 
 
 def _games_lines(games: Sequence[Game], activity: Activity | None) -> Iterator[str]:
-    """Tell each game; of many only those in which something was the matter, and of all the sum."""
+    """Describe each game, of many only those with problems, and the totals."""
     told = games
     if len(games) > MOST_TOLD:
         told = [game for game in games if game.critical or game.other or not game.smooth]

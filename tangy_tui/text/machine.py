@@ -1,4 +1,4 @@
-"""Words for the parts of this machine: which ones work, and how to mend the others."""
+"""Words for the parts of this machine: which ones work, and how to fix the others."""
 
 from __future__ import annotations
 
@@ -9,45 +9,45 @@ PIPED = "output goes to a pipe or file: Tangy speaks in lines."
 
 
 def no_activity(package: str, name: str) -> str:
-    """Say that a package does not hold the activity that it names."""
+    """Tell that a package does not contain the activity that it names."""
     return f"{package} has no {name}.toml."
 
 
 def usable(package: str) -> str:
-    """Say that what a package adds can be used."""
+    """Tell that an extension package can be used."""
     return f"of {package} can be used."
 
 
 def camera_forbidden(device: str, title: str) -> str:
-    """Say what to do about a camera that this user may not use."""
+    """Tell what to do about a camera without permission."""
     return f"this user may not use {device} ({title}); join the group video."
 
 
 def speaks_with(program: str) -> str:
-    """Say with which program Tangy speaks."""
+    """Name the program that synthesises Tangy's speech."""
     return f"Tangy can speak, with {program}."
 
 
 def plays_with(player: str) -> str:
-    """Say which program plays what Tangy says."""
+    """Name the program that plays Tangy's speech."""
     return f"{player} plays what Tangy says."
 
 
 def shown_as_text(why: str) -> str:
-    """Say why there is no sound, and what replaces it."""
+    """Tell why there is no sound, and what replaces it."""
     return f"{why}; what Tangy says is shown as text."
 
 
 def dumb_terminal(term: str) -> str:
-    """Say that a terminal, by its name, shows no screens."""
+    """Tell that a terminal, by its name, cannot show screens."""
     return f"TERM={term or 'unset'}: Tangy speaks in lines."
 
 
 def more_problems(count: int) -> str:
-    """Say that the log has more problems than the one that was told."""
+    """Tell how many more problems the log has."""
     return f" And {count} more: `tangy store check` names them."
 
 
 def no_place(folder: object, why: str) -> str:
-    """Say why nothing can be kept in a folder."""
+    """Tell why nothing can be stored in a folder."""
     return f"{folder}: {why}; choose another folder with --data."

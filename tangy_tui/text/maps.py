@@ -37,7 +37,7 @@ NOTHING_RECORDED = "Nothing was recorded, so there is no map."
 
 
 def drive_is_there(record: str, yaml: str) -> str:
-    """Say that an earlier drive stands where this one would be recorded."""
+    """Tell that the file of an earlier drive exists already."""
     return (
         f"{record} is there already. Draw its map with: tangy map {record} --match --yaml {yaml}. "
         "For a new drive, choose another name or delete that file."
@@ -45,12 +45,12 @@ def drive_is_there(record: str, yaml: str) -> str:
 
 
 def recorded_words(scans: int, metres: float) -> str:
-    """Say how much of a drive (in metres) is recorded."""
+    """Tell how much of a drive (in metres) is recorded."""
     return f"{scans} scans recorded, {metres:.1f} m driven"
 
 
 def kept_words(log: str) -> str:
-    """Say that the scans of a drive are kept."""
+    """Tell where the scans of a drive are stored."""
     return plain(f"The scans are kept in {log}.")
 
 
@@ -61,13 +61,13 @@ BETTER = (
 
 
 def refusal(path: str, why: str, picture: str) -> str:
-    """Say why a matched map is not taken, what to do, and which picture shows it, if any."""
+    """Tell why a matched map is rejected, what to do, and which picture shows it, if any."""
     shown = f" {picture} shows it." if picture else ""
     return plain(f"{path}: {why} {BETTER}{shown}")
 
 
 def unknown_words() -> str:
-    """Say that nobody can tell whether a map closes."""
+    """Tell that it is unknown whether a map closes."""
     return (
         "nobody can tell whether the map closes. The robot came back to places, and no scan fits "
         "what it saw there before."
@@ -75,7 +75,7 @@ def unknown_words() -> str:
 
 
 def apart_words(metres: float, torn: int, closed: int) -> str:
-    """Say how far apart the copies of a place are (metres), and how many scans say so or not."""
+    """Tell how far apart the copies of a place are (metres), with the scans for and against."""
     return (
         f"the map does not close. Where the robot came back to a place, its poses are {metres:.1f} "
         f"m apart ({torn} scans; {closed} agree), so walls stand in the map twice."
@@ -83,7 +83,7 @@ def apart_words(metres: float, torn: int, closed: int) -> str:
 
 
 def contradicted_words(share: float, most: float) -> str:
-    """Say which share of the beams contradicts a map, and how many may."""
+    """Tell which share of the beams contradicts a map, and the limit."""
     return (
         f"the map does not close. After matching, {share:.0%} of the beams contradict it (at most "
         f"{most:.0%} in a map that closed), so walls stand in it twice."

@@ -17,7 +17,7 @@ LOUD_ENOUGH = "The sound is loud enough."
 
 
 def news_words(news: CheckNews) -> str:
-    """Say what to do next in a check, or name the problem with the sound."""
+    """Tell the next step of a check, or the problem with the sound."""
     from tangy_hw.audio.meter import SoundTrouble
     from tangy_tui.speech.microphone_check import SourceNews
 
@@ -71,7 +71,7 @@ def advice_words(advice: SoundAdvice) -> str:
 
 
 def reason_words(checked: CheckResult) -> str:
-    """Say in one sentence why a check is not good enough to be kept; "" if it is."""
+    """Tell why the result of a check is not good enough to be stored; "" if it is."""
     figures = checked.chosen.figures
     known = figures.understood + figures.offered
     if checked.parted:
@@ -89,7 +89,7 @@ def reason_words(checked: CheckResult) -> str:
 
 
 def checked_document(checked: CheckResult) -> dict[str, Any]:
-    """Return what came of a check as one JSON document."""
+    """Return the result of a check as a JSON document."""
     return {
         "room_db": round(checked.room, 1) if checked.room_heard else None,
         "voice_db": round(checked.voice, 1),
@@ -107,7 +107,7 @@ def checked_document(checked: CheckResult) -> dict[str, Any]:
 
 
 def checked_lines(checked: CheckResult, mic: str) -> list[str]:
-    """Say what came of the check of a microphone."""
+    """Describe the result of a microphone check."""
     return [
         _loudness(checked),
         *_misheard(checked),

@@ -1,4 +1,4 @@
-"""Words about a microphone: faults of its sound, and how to cure them."""
+"""Words for faults of a microphone's sound, and how to fix them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a robot does not have, told once, before a game begins."""
+"""Words for a robot's missing devices, shown once before a game."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ NO_ARMS = "This robot has no arms: Tangy makes no gestures."
 
 
 def missing_words(robot: Robot, activity: Activity) -> list[str]:
-    """Say in a sentence each what a robot does not have, and what Tangy does instead.
+    """Describe each missing device in a sentence, and what Tangy does instead.
 
     Args:
-        robot: without the devices that nothing drives.
+        robot: the robot, without devices that have no driver.
         activity: the activity that it plays.
     """
     missing = missing_devices(robot)
@@ -49,12 +49,12 @@ def missing_words(robot: Robot, activity: Activity) -> list[str]:
 
 
 def no_camera_words(object: str) -> str:
-    """Say that nobody reads what people have before them, but staff."""
+    """Tell that only staff can read people's cards."""
     return f"This robot has no camera that sees a {object}: Tangy asks you how each one is."
 
 
 def staff_needed(object: str) -> str:
-    """Say that nobody could look at what people have before them."""
+    """Tell that nobody can read people's cards."""
     return (
         f"This robot has no camera that sees a {object}, and nobody is here to look instead: play "
         "with --plain or on the screen, or name a camera's source in the robot's file."

@@ -1,4 +1,4 @@
-"""What a person is called, how the name is said, and how Tangy speaks to them."""
+"""Words for people's names, their pronunciation, and how Tangy speaks to people."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ if TYPE_CHECKING:
 
 
 def renamed(person: str, name: str) -> str:
-    """Say what a person is called from now on."""
+    """Tell a person's new name."""
     return f"{person} is now called {name}."
 
 
 def said_words(said: HowSaid) -> str:
-    """Say how a name is said, and whether Tangy can hear it."""
+    """Tell the pronunciation of a name, and whether Tangy can recognise it."""
     match said.source:
         case "person":
             return f"{said.name} is said {said.phones}."
@@ -35,11 +35,11 @@ def said_words(said: HowSaid) -> str:
 
 
 def naming_lines(said: HowSaid, command: str) -> list[str]:
-    """Say of a new name, where Tangy cannot hear it yet, what can be done about it.
+    """Tell what to do about a new name that Tangy cannot recognise yet.
 
     Args:
-        said: how the name is said.
-        command: what notes how it is said, without the phones.
+        said: the pronunciation.
+        command: the command that stores a pronunciation, without the phones.
     """
     match said.source:
         case "person" | "dictionary":
@@ -58,7 +58,7 @@ def naming_lines(said: HowSaid, command: str) -> list[str]:
 
 
 def conflict_words(conflict: NameConflict) -> str:
-    """Say which other name or phrase a name sounds like, and what Tangy cannot hear then."""
+    """Tell which name or phrase a name sounds like, and what Tangy then cannot recognise."""
     name, like = conflict.person.name, conflict.like
     if conflict.guessed:
         return (
@@ -71,12 +71,12 @@ def conflict_words(conflict: NameConflict) -> str:
 
 
 def say_otherwise(command: str) -> str:
-    """Say what to do about a name that sounds like another."""
+    """Tell what to do about a name that sounds like another."""
     return f"Change how Tangy says it, or choose another name: {command}"
 
 
 def if_right(command: str) -> str:
-    """Say how a pronunciation that was suggested is accepted."""
+    """Tell how to accept a suggested pronunciation."""
     return f"To accept it: {command} --accept"
 
 
@@ -86,7 +86,7 @@ def known_now(sentence: str, world: str) -> str:
 
 
 def voice_words(name: str, rate: int | None, voice: str | None) -> str:
-    """Say how a person is spoken to."""
+    """Tell how a person is spoken to."""
     parts = []
     if rate is not None:
         parts.append(f"at {rate} words a minute")

@@ -1,4 +1,4 @@
-"""Counts, shares and lists as every sentence writes them: one number has one form."""
+"""Formats of counts, shares and lists, the same in every sentence."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ _ORDINALS = {1: "first", 2: "second", 3: "third"}
 
 
 def counted(number: int, noun: str, nouns: str = "") -> str:
-    """Write a number with its noun: "1 step", "2 steps", "3,725 entries".
+    """Format a number with its noun: "1 step", "2 steps", "3,725 entries".
 
     Args:
-        number: how many there are.
-        noun: the noun for one.
-        nouns: the noun for more, where it is not the noun for one with an "s".
+        number: the number.
+        noun: the singular.
+        nouns: the plural, if it is not the singular with an "s".
     """
     return f"{number:,} {noun if number == 1 else nouns or noun + 's'}"
 
 
 def ordinal(number: int) -> str:
-    """Write a place in an order: "second", "4th", "21st"."""
+    """Format an ordinal number: "second", "4th", "21st"."""
     if number in _ORDINALS:
         return _ORDINALS[number]
     ends = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10)
@@ -27,14 +27,14 @@ def ordinal(number: int) -> str:
 
 
 def number(value: float | None, digits: int = 2) -> str:
-    """Write a number, or a dash for none."""
+    """Format a number, or a dash for None."""
     return "\N{EN DASH}" if value is None else f"{value:.{digits}f}"
 
 
 def percent(share: float | None) -> str:
-    """Write a share (0 to 1) as a percentage with one decimal at most, or a dash for none.
+    """Format a share (0 to 1) as a percentage with one decimal at most, or a dash for None.
 
-    What is nearly nothing or nearly everything is not rounded to it.
+    Shares close to 0 or 1 are not rounded to them.
     """
     if share is None:
         return "\N{EN DASH}"
@@ -46,6 +46,6 @@ def percent(share: float | None) -> str:
 
 
 def listed(things: Iterable[object], last: str = "and") -> str:
-    """Write a list as people say it: "1", "1 and 2", "1, 2 and 3"; "" of nothing."""
+    """Format a list as in speech: "1", "1 and 2", "1, 2 and 3"; "" if it is empty."""
     *most, end = [str(thing) for thing in things] or [""]
     return f"{', '.join(most)} {last} {end}" if most else end

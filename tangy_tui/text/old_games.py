@@ -1,4 +1,4 @@
-"""The question where old games were played, if the log does not say."""
+"""The question where old games were played, if the log does not tell."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def settled_words(games: int, world: str) -> str:
 
 
 def unknown_words(games: int) -> str:
-    """Say, below a list, for how many games the log does not say where they were played."""
+    """Tell, below a list, for how many games the log does not tell the world."""
     verb = "was" if games == 1 else "were"
     told = f"The log does not say where {counted(games, 'game')} {verb} played (?)"
     return f"{told}. To set all of them: tangy log world unknown live."

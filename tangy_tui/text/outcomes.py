@@ -9,12 +9,12 @@ from tangy_tui.text.numbers import counted
 
 
 def faults_logged(count: int) -> str:
-    """Say how many faults a live game had, and what tells of them."""
+    """Tell how many faults a live game had, and the command to see them."""
     return f"{counted(count, 'fault')}. Read more with `tangy log report last`."
 
 
 def faults_played(count: int, critical: int) -> str:
-    """Say how many faults simulated games had, and what tells of them."""
+    """Tell how many faults simulated games had, and the commands to see them."""
     return (
         f"{counted(count, 'fault')}, {critical} of them critical. "
         "`tangy log` lists the games, `tangy log report last` shows the last one."
@@ -22,17 +22,17 @@ def faults_played(count: int, critical: int) -> str:
 
 
 def fault_left(name: str) -> str:
-    """Say which fault of the last game nobody has cleared."""
+    """Name the fault of the last game that nobody cleared."""
     return f"The last game ended with a fault that nobody has cleared: {name}."
 
 
 def injecting_words(example: str) -> str:
-    """Explain how to write a fault to inject."""
+    """Explain the syntax of a fault to inject."""
     return f"\nFor example: --inject {example}@12. After @ write a step, after ~ a chance."
 
 
 def did_not_come(injected: object, times: int, games: int) -> str:
-    """Say of an injected fault in how many games it did not come about."""
+    """Tell in how many games an injected fault did not occur."""
     return f"{injected} did not come about in {times} of {counted(games, 'game')}."
 
 

@@ -1,4 +1,4 @@
-"""Words for people: what works with each person, on how much data, and manual changes."""
+"""Words for people: what works with each person, with how much data, and manual changes."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from tangy_tui.interaction.record import Record
 
 SELDOM = 0.5
-"""A best strategy that works less often than this is not said to work."""
+"""A best strategy with a lower mean does not count as working."""
 
 
 def sentence(record: Record) -> str:
-    """Say in one line what works with a person, on how much that rests, and when they were seen."""
+    """Tell in one line what works with a person, with how much data, and when last seen."""
     return _what_works(record) + (
         f", last seen {ago(record.seen, record.now)}" if record.seen is not None else ""
     )
@@ -54,7 +54,7 @@ def _what_works(record: Record) -> str:
 
 
 def _only(record: Record) -> str:
-    """Say how often the one strategy that is left was complied with: nothing is best of one."""
+    """Tell the counts of the only strategy that is on, since one cannot be the best."""
     (only,) = record.on
     name, belief = record.person.name, record.beliefs[only]
     words = f"only {only} is switched on for {name}"
@@ -64,18 +64,18 @@ def _only(record: Record) -> str:
 
 
 def tally(belief: Beta) -> str:
-    """Write the responses that a belief rests on: "7 of 9"."""
+    """Format the responses behind a posterior: "7 of 9"."""
     return f"{belief.complied} of {belief.trials}"
 
 
 def method_words(record: Record) -> str:
-    """Say how the next strategy is chosen, and for whom that holds."""
+    """Tell how the next strategy is chosen, and for whom that is set."""
     whose = "for this person" if record.known.own else "as the activity sets"
     return f"{record.known.method.words} ({whose})"
 
 
 def drift_lines(record: Record) -> list[str]:
-    """Say which strategies have come to work less well, or better, with a person than before."""
+    """Name the strategies that have started to work better or worse with a person."""
     lines = []
     for drift in record.known.watch.drifts:
         before, now = (f"{yes} of {yes + no}" for yes, no in (drift.before, drift.after))
@@ -88,7 +88,7 @@ def drift_lines(record: Record) -> list[str]:
 
 
 def prior_words(prior: Beliefs) -> str:
-    """Say where the beliefs began, with what earlier people lend to each strategy."""
+    """Describe the prior: the counts of earlier people for each strategy."""
     lent = [
         f"{strategy} {start.alpha - 1:g} of {start.alpha + start.beta - 2:g}"
         for strategy, start in prior.items()
@@ -100,7 +100,7 @@ def prior_words(prior: Beliefs) -> str:
 
 
 def entry_words(entry: FeedbackEntry) -> str:
-    """Say what came of one request."""
+    """Tell the response to one request."""
     if entry.complied is None:
         return "answered later" if entry.settled else "no response yet"
     words = "complied" if entry.complied else "did not comply"
@@ -112,7 +112,7 @@ def entry_words(entry: FeedbackEntry) -> str:
 
 
 def change_words(change: Event[EventRecord]) -> str:
-    """Say what a change was that can be taken back."""
+    """Describe a change that can be undone."""
     match change.record:
         case FeedbackGiven():
             did = "complied" if change.complied else "did not comply"
@@ -129,7 +129,7 @@ BELIEF_COLUMNS = "worked/asked, mean, P(best)"
 
 
 def what_works(world: str) -> str:
-    """Return the title of the panel that shows what works with whom, in the games of a world."""
+    """Return the title of the panel with people's posteriors, for the games of a world."""
     return f"What works with whom, {world} games" if world else "What works with whom"
 
 
@@ -139,16 +139,16 @@ METHODS: dict[MethodName, str] = {
     "thompson": "Thompson sampling, as in the paper",
     "bayes-ucb": "Bayes-UCB: tries less, settles sooner",
 }
-"""How a strategy can be chosen, where a person's method is set."""
+"""The names of the persuasion methods."""
 
 
 def method_name(name: str) -> str:
-    """Return what a method is called where it is set; that of another package by its name."""
+    """Return the name of a method; that of another package by its own name."""
     return next((words for known, words in METHODS.items() if known == name), name)
 
 
 def method_title(name: str) -> str:
-    """Head the settings of a person's method."""
+    """Return the title of a person's method settings."""
     return f"How to persuade {name}"
 
 
@@ -181,7 +181,7 @@ def world_words(world: str) -> str:
 
 
 def void_detail(entry: FeedbackEntry, name: str) -> str:
-    """Say which response is not to count."""
+    """Name the response that should not count."""
     return f"{entry.strategy}: {name} {entry_words(entry)}, {on_day(entry.at)}."
 
 
@@ -191,12 +191,12 @@ def comply_words(entry: FeedbackEntry, name: str) -> tuple[str, str]:
 
 
 def switch_words(strategy: str, name: str, *, on: bool) -> tuple[str, str]:
-    """Ask before a strategy is switched, and say which data stays."""
+    """Ask before a strategy is switched, and tell which data stays."""
     return f"Switch {strategy} {'on again' if on else 'off'} for {name}?", SWITCH_DETAIL
 
 
 def take_back_words(change: Event[EventRecord], name: str) -> tuple[str, str]:
-    """Ask before a change is taken back, and name it."""
+    """Ask before a change is undone, and name it."""
     return f"Take this back for {name}?", f"What was said: {change_words(change)}."
 
 
@@ -206,7 +206,7 @@ def nothing_back_words(name: str) -> str:
 
 
 def strategies_title(name: str) -> str:
-    """Head the strategies of a person."""
+    """Return the title of a person's strategies."""
     return f"What works with {name}"
 
 

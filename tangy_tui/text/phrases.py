@@ -1,4 +1,4 @@
-"""The phrasebook in words: what can be said or typed, and how it is searched."""
+"""Words for the phrasebook: what can be said or typed, and how to search it."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ SOURCES: dict[WordSource, str] = {
     "suggested": "guessed, not heard yet",
     "": "unknown, cannot be heard",
 }
-"""Where a pronunciation comes from, in words."""
+"""Words for the source of a pronunciation."""
 
 
 class Item(NamedTuple):
     """One entry of the page: heading, subject, and text.
 
-    `phones` are those to hear (a comma between words; "" for none), `person` the id of whose name
-    it is, if it is one.
+    `phones` are those to speak (a comma between words; "" for none), `person` the id of a person if
+    the entry is a name.
     """
 
     heading: str
@@ -45,7 +45,7 @@ class Item(NamedTuple):
     person: str | None = None
 
     def has(self, wanted: str) -> bool:
-        """Whether all words of a search are in it."""
+        """Whether it contains all words of a search."""
         text = " ".join((self.about, *self.texts)).casefold()
         return all(word in text for word in wanted.casefold().split())
 

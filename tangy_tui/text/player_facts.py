@@ -1,4 +1,4 @@
-"""Answers and what was counted for each person, in words: for reports on activities by facts."""
+"""Words for each person's answers and counts, in reports on declared activities."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ UNCLEAR = "not clear"
 
 
 def player_columns(facts: PlayerFacts) -> tuple[str, ...]:
-    """Name the columns of the table of people."""
+    """Return the columns of the table of people."""
     unclear = (UNCLEAR,) if facts.unclear else ()
     return (PERSON, *facts.counts, *(fact.name for fact in facts.facts), *unclear)
 
 
 def player_rows(facts: PlayerFacts, name: Name) -> list[tuple[str, ...]]:
-    """Return a row for each person: what was counted, their answers, and how many were unclear."""
+    """Return a row for each person: counts, answers, and the number of unclear ones."""
     return [
         (
             name(person),
@@ -35,13 +35,13 @@ def player_rows(facts: PlayerFacts, name: Name) -> list[tuple[str, ...]]:
 
 
 def act_columns(facts: PlayerFacts) -> tuple[str, ...]:
-    """Name the columns of the table of answers."""
+    """Return the columns of the table of answers."""
     item = (ITEM,) if any(act.item for act in facts.acts) else ()
     return (WHEN, *item, PERSON, listed([fact.name for fact in facts.facts]))
 
 
 def act_rows(facts: PlayerFacts, name: Name) -> list[tuple[str, ...]]:
-    """Return a row for each answer, in their order."""
+    """Return a row for each answer, in order."""
     words = {fact.name: fact for fact in facts.facts}
     items = any(act.item for act in facts.acts)
     return [
@@ -56,7 +56,7 @@ def act_rows(facts: PlayerFacts, name: Name) -> list[tuple[str, ...]]:
 
 
 def player_lines(facts: PlayerFacts, name: Name) -> Iterator[str]:
-    """Tell each person's counts and answers in a line."""
+    """Format each person's counts and answers in a line."""
     for person in facts.people:
         told = [f"{fact} {numbers[person]}" for fact, numbers in facts.counts.items()]
         told += [

@@ -1,4 +1,4 @@
-"""Policies in words: kept ones, those that came out otherwise, and two beside each other."""
+"""Words for policies: stored ones, changed ones, and comparisons."""
 
 from __future__ import annotations
 
@@ -36,20 +36,20 @@ ALL_THE_SAME = "Both do the same in every situation; {differences} shows all row
 
 
 def compared_words(differ: int, situations: int) -> str:
-    """Say in how many situations two policies differ."""
+    """Tell in how many situations two policies differ."""
     count = counted(situations, "situation")
     return f"They differ in {differ} of {count}." if differ else f"They agree in all {count}."
 
 
 def left_out_words(step: LeftOut) -> str:
-    """Say which step Tangy does not learn from, because the activity does not know it."""
+    """Name a step left out of learning, because the activity does not define it."""
     where = f"{' / '.join(step.situation)} -> {step.behaviour}"
     of = step.demonstration
     return plain(f"Step {step.number} of {of} is left out: {step.activity} has no {where}.")
 
 
 def notice_words(notices: Iterable[PolicyNotice]) -> list[str]:
-    """Say what to know of a policy before it is used, a sentence each."""
+    """Return the notices about a policy before it is used, a sentence each."""
     return [line for notice in notices for line in _notice(notice)]
 
 

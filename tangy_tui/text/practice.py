@@ -1,4 +1,4 @@
-"""What came out of practice, as lines of text of at most 80 columns."""
+"""The results of speech practice as lines of at most 80 columns."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WIDTH = 80
 def meaning_words(
     row: Mapping[str, Any], questions: Mapping[str, str], names: Mapping[str, str]
 ) -> str:
-    """Say what a row of `tangy listen` means.
+    """Explain a row of `tangy listen`.
 
     Args:
         row: see `tangy_tui.speech.transcription.listen`.
@@ -152,7 +152,7 @@ def _named(name: str, width: int = NAME) -> str:
 
 
 def _short(text: str, most: int) -> str:
-    """Cut the middle out of a text that is too long for its column."""
+    """Cut the middle of a text that is too long for its column."""
     text = plain(text)
     if len(text) <= most:
         return text

@@ -1,4 +1,4 @@
-"""The program itself in words: home, colours, the window, what it is busy with."""
+"""Words for the application: home, colours, the window, and slow work."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ COLOURS = {
     "Light colours": "Dark on paper",
     "The terminal's colours": "Its own sixteen",
 }
-"""The names of the colour schemes, and what each is like."""
+"""The names and descriptions of the colour schemes."""
 COMPARE_POLICIES = ("Compare policies", "Teacher against teacher, before against after")
 VOICE = ("Voice on or off", "Tangy speaks what it says")
-"""What the command palette offers, and what each does."""
+"""Commands of the palette, with descriptions."""
 NOT_POSSIBLE, NOT_YET = "Not possible", "Not yet"
-"""Heads of dialogs that say why something cannot be done."""
+"""Titles of dialogs that tell why something cannot be done."""
 
 LEARNING = "Tangy is learning ..."
 PREPARING_DRILL = "Tangy is preparing the drill ..."
@@ -29,7 +29,7 @@ THINKING = "Tangy is working out what it would do ... (esc: cancel)"
 
 
 def not_saved_words(folder: Path, why: str | None) -> str:
-    """Say that the picture of the screen could not be kept."""
+    """Tell that a screenshot could not be saved."""
     return f"The picture could not be saved in {folder}: {why}."
 
 

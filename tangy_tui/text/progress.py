@@ -8,7 +8,7 @@ NOTHING_SHOWN = "Nobody has shown Tangy anything yet."
 
 
 def coverage_so_far(number: int, game: int, steps: int, shown: int, situations: int) -> str:
-    """Say of a demonstration, by its number, how much has been shown with it."""
+    """Tell the coverage up to a demonstration, given by number."""
     return (
         f"Demonstration {number} (game {game}): {counted(steps, 'step')}; "
         f"{shown} of {situations} situations were shown so far."
@@ -16,5 +16,5 @@ def coverage_so_far(number: int, game: int, steps: int, shown: int, situations: 
 
 
 def situations_shown(shown: int, situations: int) -> str:
-    """Say how many situations were shown."""
+    """Tell how many situations were demonstrated."""
     return f"{shown} of {situations} situations were shown."

@@ -1,4 +1,4 @@
-"""What Tangy asks before it does what it understood, and what it does not understand."""
+"""Words for verification questions, and for words that Tangy does not understand."""
 
 from __future__ import annotations
 
@@ -35,28 +35,28 @@ REJECTED = "Not done. Give a new command."
 
 
 def yes_words(key: str) -> str:
-    """Say which key says yes, after another was pressed."""
+    """Name the key for yes, after another was pressed."""
     return f"The yes of this question is {key}."
 
 
 def not_understood_words(heard: str, suggestions: Sequence[str]) -> str:
-    """Say that words were not understood, and which may have been meant."""
+    """Tell that words were not understood, and suggest similar ones."""
     near = f" {DID_YOU_MEAN}: {', '.join(suggestions)}?" if suggestions else ""
     return f"I do not know what {heard!r} means.{near}"
 
 
 def asked_words(reason: str, given: str = "") -> str:
-    """Say why Tangy asks, which answers were given before, and ask what it should do."""
+    """Tell why Tangy asks, which answers were given before, and ask what it should do."""
     return f"{reason} {given} What should Tangy do?" if given else f"{reason} What should Tangy do?"
 
 
 def acceptable_words(reason: str) -> str:
-    """Say what Tangy did not expect, and ask whether it is all right."""
+    """Tell what Tangy did not expect, and ask whether it is all right."""
     return f"{reason} If all is well, type: {ALL_RIGHT[0]}. If not, what should Tangy do?"
 
 
 def given_words(activity: Activity, why: Why) -> str:
-    """Say which answers demonstrations give in a situation, how often and by whom."""
+    """Tell which answers demonstrations give in a situation, how often and by whom."""
     given: dict[str, list[str]] = {}
     for shown in (*why.rests_on, *why.against):
         given.setdefault(shown.step.behaviour, []).append(shown.teacher)
@@ -69,7 +69,7 @@ def given_words(activity: Activity, why: Why) -> str:
 
 
 def answer_help(question: Asked | Offered) -> list[str]:
-    """Say what can be answered to an open question, a line each."""
+    """List the answers to an open question, one per line."""
     from tangy_tui.learning.verification import Offered
 
     if isinstance(question, Offered):

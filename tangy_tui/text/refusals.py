@@ -13,7 +13,7 @@ WHICH = "Please say which: type its number, or N for a new command."
 
 
 def refused_words(refused: Refused) -> str:
-    """Say in a sentence why something cannot be done now."""
+    """Tell in a sentence why a command is refused now."""
     about = refused.about
     match refused.why:
         case "no question":

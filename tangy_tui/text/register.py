@@ -24,7 +24,7 @@ def back_words(name: str) -> str:
 
 
 def not_archived(person: str, known: str) -> str:
-    """Say that nobody of that name is archived, and who is."""
+    """Tell that nobody with that name is archived, and who is."""
     return f"Nobody called {person!r} is archived. Archived: {known or 'nobody'}."
 
 
@@ -34,21 +34,21 @@ def guest_added_words(name: str, id: str) -> str:
 
 
 GUEST_NOTE = "Guest: "
-"""Begins the line of a guest in a list of people."""
+"""The prefix of a guest in a list of people."""
 
 
 def labelled(id: str, name: str) -> str:
-    """Return what staff read of a person: guests as such."""
+    """Return the name that staff read, with guests marked."""
     return f"{name} (guest)" if is_guest(id) else name
 
 
 def staff_names(name: Callable[[str], str]) -> Callable[[str], str]:
-    """Return what gives the names that staff read, from what gives those that Tangy says."""
+    """Turn a function that returns spoken names into one that returns the names that staff read."""
     return lambda id: labelled(id, name(id))
 
 
 def with_guests(names: Mapping[str, str], guests: Iterable[str]) -> dict[str, str]:
-    """Return what people are called in reports, by id: guests as such, also once forgotten."""
+    """Return people's names in reports, by id; guests are marked, even once forgotten."""
     numbered = {id: re.sub(r"\D+", "Guest ", id, count=1) for id in guests}
     called = {id: labelled(id, names[id]) if id in names else numbered[id] for id in numbered}
     return {**names, **called}

@@ -1,4 +1,4 @@
-"""Remarks on a step in words: what may have been overlooked, and what can be answered."""
+"""Words for remarks on a step: what may have been overlooked, and the answers."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ NOT_ALWAYS = "no, and do not ask again"
 
 
 def remark_words(remark: Remark, activity: Activity, name: Name, game: str = "") -> str:
-    """Say what may have been overlooked.
+    """Tell what may have been overlooked.
 
     Args:
         remark: the remark.
-        activity: what is taught.
-        name: gives a person's name for an id.
-        game: the demonstration that is being shown.
+        activity: the activity taught.
+        name: returns a person's name for an id.
+        game: the present demonstration.
     """
     done = activity.behaviour(remark.step.behaviour).question
     match remark:
@@ -67,12 +67,12 @@ def remark_words(remark: Remark, activity: Activity, name: Name, game: str = "")
 
 
 def ended_early(activity: Activity, lacks: str) -> str:
-    """Say that a game ended before the behaviour that ends it."""
+    """Tell that a game ended before the behaviour that ends it."""
     return f"The game ended early: nobody got to “{activity.behaviour(lacks).question}”."
 
 
 def answer_words(remark: Remark, activity: Activity) -> tuple[str, ...]:
-    """Say what each answer means, in the order of their numbers."""
+    """Tell what each answer means, in the order of their numbers."""
     return tuple(_answer(remark, answer, activity) for answer in answers_to(remark))
 
 
@@ -96,14 +96,14 @@ def _answer(remark: Remark, answer: RemarkAnswer, activity: Activity) -> str:
 
 
 def later_words(remark: Remark) -> str:
-    """Say what comes of leaving a remark unanswered."""
+    """Tell the effect of leaving a remark unanswered."""
     if isinstance(remark, NewWording):
         return NOT_ALWAYS
     return LATER if isinstance(remark, Contradicted) else GO_ON
 
 
 def remark_lines(remark: Remark, activity: Activity, name: Name, game: str = "") -> list[str]:
-    """Put a remark into lines, with what can be answered."""
+    """Format a remark in lines, with its answers."""
     numbered = enumerate(answer_words(remark, activity), 1)
     return [
         f"   ! {remark_words(remark, activity, name, game)}",
@@ -113,7 +113,7 @@ def remark_lines(remark: Remark, activity: Activity, name: Name, game: str = "")
 
 
 def settled_words(settled: Settled, activity: Activity) -> str:
-    """Say what came of the answer to a remark."""
+    """Tell the result of the answer to a remark."""
     if isinstance(settled.remark, NewWording):
         words, done = settled.remark.words, settled.remark.step.behaviour
         kept = f"From now on “{words}” means: {activity.behaviour(done).question}."
@@ -126,5 +126,5 @@ def settled_words(settled: Settled, activity: Activity) -> str:
 
 
 def no_own_phrase(phrase: str, teacher: str) -> str:
-    """Say that a teacher has no such phrase to remove."""
+    """Tell that a teacher has no such phrase to remove."""
     return f"{teacher} has no phrase {phrase!r}. See: tangy activity phrases"

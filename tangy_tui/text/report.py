@@ -1,4 +1,4 @@
-"""Words of the report on a session for staff: people, waits, calls, their own actions."""
+"""Words of the session report for staff: people, waits, calls, actions of staff."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ WORLD_WORDS: Mapping[GameWorld, str] = {
     BENCH: "on the bench, with simulated devices",
     LIVE: "live, with a robot",
 }
-"""Where a game was played, in reports."""
+"""The worlds of games, in reports."""
 
 PEOPLE = "Who got what"
 PEOPLE_COLUMNS = (
@@ -48,16 +48,16 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
     "cleared": "cleared it",
     "given up": "ended the game",
 }
-"""Words for what staff do about a fault."""
+"""Words for the actions of staff about a fault."""
 
 
 def asked_words(one: Attention) -> str:
-    """Say how often a person asked for help."""
+    """Tell how often a person asked for help."""
     return counted(one.requests, "time") if one.requests else "no"
 
 
 def waited_words(one: Attention) -> str:
-    """Say how long a person waited: the median and the longest wait."""
+    """Tell how long a person waited: the median and the longest wait."""
     if one.longest is None:
         return "\N{EN DASH}"
     if one.requests == 1 or one.median is None:
@@ -68,17 +68,17 @@ def waited_words(one: Attention) -> str:
 
 
 def visits_words(one: Attention) -> str:
-    """Say how often Tangy was with a person."""
+    """Tell how often Tangy visited a person."""
     return str(one.visits) if one.visits else "never"
 
 
 def time_words(one: Attention) -> str:
-    """Say how long Tangy was with a person."""
+    """Tell how long Tangy was with a person."""
     return length(one.seconds) if one.seconds else "\N{EN DASH}"
 
 
 def helped_words(one: Attention, activity: Activity | None) -> str:
-    """Say what Tangy did with a person, and how often."""
+    """Tell what Tangy did with a person, and how often."""
     parts = []
     for behaviour, times in one.helped.items():
         words = behaviour if activity is None else activity.behaviour_words(behaviour)
@@ -87,7 +87,7 @@ def helped_words(one: Attention, activity: Activity | None) -> str:
 
 
 def response_words(answers: Sequence[AnsweredRequest]) -> str:
-    """Say how often a person did as asked, "did 4 of 5", and how often that was not seen."""
+    """Tell how often a person complied, "did 4 of 5", and how often that is unknown."""
     known = [one for one in answers if one.complied is not None]
     if not answers:
         return "\N{EN DASH}"
@@ -101,7 +101,7 @@ def response_words(answers: Sequence[AnsweredRequest]) -> str:
 def care_lines(found: Iterable[Attention], name: Name, *, visits: bool = True) -> list[str]:
     """Name the people who need attention: still waiting, or after a long wait.
 
-    Where Tangy `visits` people in the activity, also those without a visit.
+    If Tangy `visits` people in the activity, also those without a visit.
     """
     people = list(found)
     lines = []
@@ -117,7 +117,7 @@ def care_lines(found: Iterable[Attention], name: Name, *, visits: bool = True) -
 
 
 def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
-    """Say who won before the end, whom Tangy visited unasked, and how often calls came first."""
+    """Tell who won early, whom Tangy visited unasked, and how often calls came first."""
     changes = [one for replay in replays for one in replay.changes]
     lines = [
         f"At {time_of_day(moment.at)} {changed_words(change, None, name)}"
@@ -138,7 +138,7 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
 
 
 def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str, str]]:
-    """Return the actions of staff: the time on the clock, who, and what."""
+    """Return the actions of staff: local time, who, and what."""
     rows: list[tuple[str, str, str]] = []
     last = ("", "")  # who did the last row, and whether it set the pace
     for replay in replays:
@@ -165,7 +165,7 @@ def _staff_words(moment: Moment, name: Name) -> tuple[str, str] | None:
 
 
 def fault_outcome(fault: Fault, status: str) -> str:
-    """Say what came of a fault: the last action about it, and its status."""
+    """Describe how a fault ended: the last move, and its status."""
     told = [move_words(move) for move in fault.moves]
     return "; ".join(dict.fromkeys([*told[-1:], status]))
 

@@ -1,4 +1,4 @@
-"""The check of a rule file in words: what it leaves unexplained."""
+"""Words for the check of a rule file: gaps in its rules."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ UNTRIED = "Rules that the simulator cannot bring about"
 
 
 def together_words(kinds: Sequence[str], code: str) -> str:
-    """Say which faults bring a rule about only together."""
+    """Name the faults that only together trigger a rule."""
     return f"Only together do {' and '.join(kinds)} bring about: {code}."

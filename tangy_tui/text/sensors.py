@@ -1,4 +1,4 @@
-"""What the robot's devices say of themselves, in words: the same on the screen and in lines."""
+"""Words for the state of the robot's devices, on the screen and in the console."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ CAMERA_STATES = {
     "BLURRED": "blurred",
     "ENDED": "at its end",
 }
-"""What is said of the states of a camera."""
+"""Words for the states of a camera."""
 
-NOW_SECONDS = 3.0  # for which what was seen at the last look is said to be so now
+NOW_SECONDS = 3.0  # for which the last look at a card counts as current
 SIMULATED = "simulated"
 ABSENT = "not there"
 BAD = ("DISCONNECTED", "FROZEN", STALE, ERROR)
@@ -39,19 +39,19 @@ Clock = Callable[[], float]
 
 
 class Sensing(AbstractAsyncContextManager[Any, Any], Protocol):
-    """A robot's cameras, as a screen shows them: our own, or those of the robot process.
+    """The cameras of a robot for a screen: opened by this process, or by the robot process.
 
     They are open within `async with`, and cards are read within `reading_cards`.
     """
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """The devices that are cameras with a source, in the order of the profile."""
+        """The cameras that have a source, in the order of the profile."""
         ...
 
     @property
     def card_device(self) -> str:
-        """The device that looks at cards, "" if none does."""
+        """The device that looks at cards, "" if there is none."""
         ...
 
     @property
@@ -60,7 +60,7 @@ class Sensing(AbstractAsyncContextManager[Any, Any], Protocol):
         ...
 
     def source(self, device: str) -> str:
-        """Return where the data of a device comes from, as it was named."""
+        """Return the source of a device's data, as configured."""
         ...
 
     def sight(self, device: str) -> Sight:
@@ -68,21 +68,20 @@ class Sensing(AbstractAsyncContextManager[Any, Any], Protocol):
         ...
 
     async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Frame | None:
-        """Return a camera's newest picture (after one of such a number), made to fit; or None."""
+        """Return a camera's newest picture, scaled to fit; None if it is not newer than `after`."""
         ...
 
     def reading_cards(self) -> AbstractContextManager[None]:
-        """Read cards as long as somebody is in it."""
+        """Read cards inside the context."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """A device as told to people: its state, since how long (s; None: unknown), and why.
+    """A device as shown to people: its state, since when (s; None: unknown), and why.
 
-    `code` is the state as the device has it, "" where nothing is known of it; `age` is of its
-    newest data, in s, and `rate` how often a second that comes (None: nobody counts); `facts` are
-    what it measures, in words.
+    `code` is the state that the device reports, "" if unknown; `age` is that of its newest data, in
+    s, and `rate` its rate in Hz (None: not measured); `facts` are its measurements in words.
     """
 
     device: DeviceProfile
@@ -109,7 +108,7 @@ class Told:
 
 
 class Teller:
-    """Tells of the devices of a robot: of those that are real, and of those that are simulated."""
+    """Describes the devices of a robot, real and simulated."""
 
     def __init__(
         self,
@@ -120,14 +119,14 @@ class Teller:
         *,
         live: bool = False,
     ) -> None:
-        """Prepare to tell.
+        """Describe a robot's devices.
 
         Args:
-            robot: whose devices they are.
+            robot: the robot with the devices.
             sensors: its real cameras, if there are any.
-            health: what the devices of a game say of themselves; nothing where none is going on.
-            clock: of the time for which a device that is no camera has been as it is, in s.
-            live: what devices say comes from a robot that is there, and what says nothing is not.
+            health: returns the readings of a game's devices; empty if there is no game.
+            clock: returns s, to measure how long other devices have been in their state.
+            live: the readings come from a real robot; devices without one are absent.
         """
         self._robot = robot
         self._sensors = sensors
@@ -137,7 +136,7 @@ class Teller:
         self._since: dict[str, tuple[str, float]] = {}
 
     def tell(self) -> list[Told]:
-        """Tell of every device, in the order of the profile."""
+        """Describe every device, in the order of the profile."""
         readings = {reading.device: reading for reading in self._health()}
         sensors = self._sensors
         cameras = () if sensors is None else sensors.cameras
@@ -200,7 +199,7 @@ def _camera(device: DeviceProfile, sight: Sight, source: str) -> Told:
 
 
 def _facts(device: DeviceProfile, facts: dict[str, Fact]) -> tuple[str, ...]:
-    """Say what a device measures, in the words of its profile."""
+    """Describe a device's measurements, in the words of its profile."""
     return tuple(
         f"{device.facts[name].says}: {_value(value)}"
         for name, value in facts.items()
@@ -215,7 +214,7 @@ def _value(value: Fact) -> str:
 
 
 def age_words(seconds: float | None) -> str:
-    """Say how old something is (in s), in a few characters that do not flicker."""
+    """Format an age (in s) in a few characters that do not flicker."""
     if seconds is None:
         return ""
     if seconds < 10:
@@ -226,7 +225,7 @@ def age_words(seconds: float | None) -> str:
 
 
 def rate_words(told: Told) -> str:
-    """Say how often a second a device's data comes, "" where nobody counts."""
+    """Format the rate of a device's data in Hz, "" if not measured."""
     if told.rate is None:
         return ""
     return f"{told.rate:.0f} Hz" if told.rate >= 9.5 else f"{told.rate:.1f} Hz"
@@ -238,7 +237,7 @@ def remark(told: Told) -> str:
 
 
 def card_words(cards: CardSight) -> tuple[str, str]:
-    """Say which card was read and when, and why none is read now ("" where one is)."""
+    """Tell which card was read and when, and why none is read now ("" if one is)."""
     now = time.monotonic()
     last = cards.last
     problem = ""
@@ -280,7 +279,7 @@ def sensor_document(told: Told) -> dict[str, Any]:
 
 
 def card_document(cards: CardSight) -> dict[str, Any]:
-    """Return the last card that was read as JSON has it."""
+    """Return the last card that was read as JSON data."""
     last = cards.last
     document: dict[str, Any] = {"card": None, "problem": cards.problem}
     if last is None:
@@ -305,7 +304,7 @@ NO_CARD_CAMERA = "No camera looks at cards."
 
 
 def no_source_words(verb: str) -> str:
-    """Say that no camera is named, and how a verb of the command line names one."""
+    """Tell that no camera is named, and how a command names one."""
     return (
         f"No camera is named. Name one when you start Tangy, as in: tangy {verb} --camera "
         "camera=0; or write its source into the robot's file."
@@ -313,10 +312,10 @@ def no_source_words(verb: str) -> str:
 
 
 def no_pictures_words(label: str) -> str:
-    """Say that a device is no camera."""
+    """Tell that a device is no camera."""
     return f"The {label} takes no pictures."
 
 
 def look_words(label: str) -> str:
-    """Say which key shows what a camera sees."""
+    """Tell which key shows a camera's picture."""
     return f"{{camera}} shows what the {label} sees."

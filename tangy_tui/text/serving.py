@@ -15,5 +15,5 @@ NOT_ENCRYPTED = "The page is not encrypted: use a network that you trust."
 
 
 def open_words(address: str) -> str:
-    """Say which address to open in a browser."""
+    """Tell which address to open in a browser."""
     return f"Open this in a browser: {address}"

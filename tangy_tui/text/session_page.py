@@ -1,4 +1,4 @@
-"""What the page about a session says beside its drawings and tables."""
+"""Words of a session's report beside its drawings and tables."""
 
 from __future__ import annotations
 
@@ -34,27 +34,27 @@ SUMS = "Faults by criticality and recovery"
 
 
 def drawn_words(drawn: int, games: int) -> str:
-    """Say which games are drawn, of more."""
+    """Tell how many of the games are drawn."""
     return f"The last {drawn} of {games} games are drawn."
 
 
 def game_caption(number: int, *, timed: bool) -> str:
-    """Say which game a timeline shows, and how."""
+    """Caption the timeline of a game."""
     return f"Game {number}, {'by minutes in the game' if timed else 'step by step'}."
 
 
 def person_words(person: Progress) -> str:
-    """Say how often a person was asked, and what came of it."""
+    """Tell how often a person was asked, and their responses."""
     return f"Asked {counted(person.interactions, 'time')}: {person.in_words}."
 
 
 def quiet_words(names: Sequence[str]) -> str:
-    """Say who was not asked for anything."""
+    """Name the people who were not asked for anything."""
     return f"Not asked for anything: {', '.join(names)}."
 
 
 def fault_facts(fault: Fault, game: int | None) -> str:
-    """Say when a fault was noticed, and what was done first; the game, where there are several."""
+    """Tell when a fault was noticed, and its first recovery; the game, if there are several."""
     where = "Step" if game is None else f"Game {game}, step"
     facts = f"{where} {fault.step}; first recovery: {RECOVERY_WORDS[fault.recovery]}."
     return f"{facts} Noticed after: {fault.behaviour}." if fault.behaviour else facts

@@ -25,7 +25,7 @@ def status_words(status: FaultStatus) -> str:
 
 
 def note_words(note: SessionNote) -> str:
-    """Say which details a report lacks, or what of it was brought about."""
+    """Tell which details a report lacks, or which of its events were injected."""
     match note.kind:
         case "unknown activity":
             return unknown_words(note.about)
@@ -38,7 +38,7 @@ def note_words(note: SessionNote) -> str:
 
 
 def unknown_words(activity: str) -> str:
-    """Say that an activity is unknown, and which details are missing for that reason."""
+    """Tell that an activity is unknown, and which details are therefore missing."""
     return plain(
         f"Tangy cannot find the file of the activity {activity!r}: name it with --activity. "
         "Without it, Tangy leaves out what it said, and counts each behaviour that it could carry "

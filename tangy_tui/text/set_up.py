@@ -1,4 +1,4 @@
-"""Words of the page on which staff set up a live game."""
+"""Words of the set-up of a live game."""
 
 from __future__ import annotations
 
@@ -54,12 +54,12 @@ NAMES: dict[CheckName, str] = {
 
 
 def people_words(setup: SetUp) -> str:
-    """Say how many people are here."""
+    """Tell how many people are here."""
     return f"{len(setup.seats) - len(setup.away)} of {len(setup.seats)} are here"
 
 
 def patterns_words(setup: SetUp) -> str:
-    """Name the patterns that are played for."""
+    """Name the patterns to play for."""
     rules, deck = setup.workspace.activity.rules, setup.workspace.activity.deck
     if labels := [rules.pattern(name).label for name in setup.patterns]:
         return ", then ".join(labels)
@@ -68,13 +68,13 @@ def patterns_words(setup: SetUp) -> str:
 
 
 def pattern_keys(setup: SetUp) -> str:
-    """Name the patterns with the number of each."""
+    """Name the patterns with their numbers."""
     patterns = setup.workspace.activity.rules.patterns
     return ", ".join(f"{number} {one.name}" for number, one in enumerate(patterns, 1))
 
 
 def winners_words(setup: SetUp) -> str:
-    """Say how many people can win."""
+    """Tell how many people can win."""
     return "everybody with the pattern at the same call" if setup.several else "one"
 
 
@@ -84,24 +84,24 @@ def visits_words(setup: SetUp) -> str:
 
 
 def strength_words(setup: SetUp) -> str:
-    """Say how strongly Tangy may speak to people."""
+    """Tell how strongly Tangy may speak to people."""
     strengths = setup.workspace.activity.rules.strengths
     chosen = next((one.label for one in strengths if one.name == setup.strength), "")
     return chosen or "as Tangy has learnt"
 
 
 def minutes_words(minutes: int) -> str:
-    """Say how long the session is planned to take."""
+    """Tell the planned length of the session, in minutes."""
     return f"{minutes} minutes" if minutes else "as long as you like"
 
 
 def pace_words(pace: float) -> str:
-    """Say how fast Tangy calls: `pace` is in s from call to call."""
+    """Tell the pace: `pace` is in s from call to call."""
     return f"a call every {pace:g} s"
 
 
 def check_words(check: Check) -> str:
-    """Say how a part is, and what to do if it is not ready."""
+    """Tell the state of a check, and what to do if it failed."""
     match check.state:
         case "off":
             return "off: Enter switches it on" if check.name == "robot" else "when Tangy is on"
@@ -136,14 +136,14 @@ def _to_try(name: CheckName) -> str:
 
 
 def not_ready_words(check: Check) -> str:
-    """Say in a sentence which part is not ready, and what to do."""
+    """Tell in a sentence which check failed, and what to do."""
     if check.name == "sound":
         return UNHEARD
     return f"{NAMES[check.name]}: {_to_do(check)}."
 
 
 def summary_words(checks: Sequence[Check]) -> str:
-    """Say in a line what is ready, and what is not."""
+    """Summarise the checks in a line."""
     if all(check.state == "off" for check in checks):
         return "Tangy is off: nothing is checked yet"
     wrong = [NAMES[check.name] for check in checks if check.state == "not ready"]
@@ -159,12 +159,12 @@ def table_words(number: int) -> str:
 
 
 def card_seen_words(card: str, name: str) -> str:
-    """Say whose card was read, and that they are here."""
+    """Tell whose card was read, and that they are here."""
     return f"Card {card}: {name} is here."
 
 
 def face_seen_words(name: str) -> str:
-    """Say who was seen, and that they are here."""
+    """Tell who was recognised, and that they are here."""
     return f"{name} is here."
 
 
@@ -213,18 +213,18 @@ LINES_ANYWAY = "Not everything is ready. Type begin to begin anyway, or end."
 
 
 def line_of(check: Check) -> str:
-    """Say how a part is, in line mode, which has no keys."""
+    """Tell the state of a check in line mode, which has no keys."""
     unchecked = check.state == "not checked"
     return "not tried" if unchecked else check_words(check)
 
 
 def activities_line(titles: Iterable[str]) -> str:
-    """List the activities that can be chosen."""
+    """List the activities to choose from."""
     return f"You can play: {', '.join(titles)}. Type: activity, and one of them."
 
 
 def rooms_line(names: Iterable[str]) -> str:
-    """List the rooms that can be chosen."""
+    """List the rooms to choose from."""
     return f"There are these rooms: {', '.join(names)}. Type: room, and one of them."
 
 

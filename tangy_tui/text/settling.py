@@ -12,5 +12,5 @@ NOTHING_ACCEPTED = "Staff have accepted nothing unexpected as all right."
 
 
 def how_to_settle(answers: int) -> str:
-    """Say what can be typed where demonstrations disagree."""
+    """Tell what can be typed where demonstrations disagree."""
     return f"Type a number from 1 to {answers}, the answer itself, b, or only Enter."

@@ -1,4 +1,4 @@
-"""How situations and steps are put in words: the same on screens, in lines and in reports."""
+"""Words for situations and steps, the same on screens, in the console and in reports."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ OVER_NOW = "the game is over"
 """The status line's words for a game that has ended."""
 
 MOST_STEPS = 3
-"""Steps that are named for each answer of a conflict."""
+"""The steps named for each answer of a conflict."""
 
 Name = Callable[[str], str]
-"""Gives a person's name for an id."""
+"""Returns a person's name for an id."""
 
 
 def agreement_words(activity: Activity, policy: Policy) -> str:
-    """Say whether a policy agrees with the activity's expected behaviours.
+    """Tell whether a policy agrees with the activity's expected behaviours.
 
-    Where it is not sure it asks instead of acting, so that it does not do what is expected either.
+    If it is unsure it asks instead of acting, which counts as not doing what is expected.
     """
     if not activity.expected:
         return "nothing to compare it with"
@@ -60,10 +60,10 @@ def step_words(
     """Format one step of a trajectory: situation, behaviour, target, and called number.
 
     Args:
-        activity: what is taught.
+        activity: the activity taught.
         step: the step.
-        name: gives a person's name for an id.
-        numbers: the numbers that it was about, where they are known.
+        name: returns a person's name for an id.
+        numbers: the numbers of the step, if known.
     """
     target = f" ({name(step.target)})" if step.target else ""
     draws = [b.name for b in activity.behaviours.values() if b.effect == "draw"]
@@ -73,7 +73,7 @@ def step_words(
 
 
 def moment_words(activity: Activity, state: ActivityState, name: Name) -> str:
-    """Write the situation of a state, with the person whom it is about if its words name one."""
+    """Format the situation of a state, with the person it is about if its words name one."""
     if isinstance(activity, DeclaredActivity):
         about = name(state.attended) if state.attended else ""
         return activity.told_of(state.situation, about)
@@ -81,7 +81,7 @@ def moment_words(activity: Activity, state: ActivityState, name: Name) -> str:
 
 
 def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
-    """Say what the robot knows now, in a sentence or two that a newcomer can act on."""
+    """Tell what the robot knows now, in a sentence or two that a newcomer can act on."""
     if state.place == FRONT:
         sentences = ["Tangy is at the front."]
     else:
@@ -116,7 +116,7 @@ def card_words(activity: Activity, card: CardView) -> str:
 
 
 def verification_lines(said: Verification, yes: str = "Y") -> list[str]:
-    """Put what the verification of a command says into lines; `yes` is what to type for yes."""
+    """Format the verification of a command in lines; `yes` is what to type for yes."""
     match said:
         case Asked(question=question, heard=heard, confidence=confidence, others=others):
             lines = [f"Did you say: {question}? Type {yes} to do it, or N for another command."]
@@ -142,7 +142,7 @@ def verification_lines(said: Verification, yes: str = "Y") -> list[str]:
 
 
 def conflict_lines(activity: Activity, library: Library, conflict: Conflict) -> list[str]:
-    """Put a conflict into lines: the situation, and each answer with where it was given."""
+    """Format a conflict in lines: the situation, and each answer with its steps."""
     lines = [f"Demonstrations disagree: {activity.in_words(conflict.situation)}."]
     for number, (behaviour, steps) in enumerate(conflict.answers.items(), 1):
         words = activity.behaviour_words(behaviour)
@@ -157,7 +157,7 @@ def conflict_lines(activity: Activity, library: Library, conflict: Conflict) -> 
 
 
 def edit_words(activity: Activity, library: Library, edit: Edit) -> str:
-    """Say what a change of the library did."""
+    """Describe the effect of a change of the library."""
     names = ", ".join(library.name(id) for id in edit.ids)
     match edit.done:
         case Deletion():
@@ -184,9 +184,9 @@ def lesson_words(activity: Activity, lesson: Lesson) -> str:
 
 
 ALL_RIGHT = ("all right", "all is right", "that is all right", "all is well", "ok")
-"""What can be said of something unexpected that is all right."""
+"""Answers that accept something unexpected as normal."""
 
 
 def once_words(instead: str) -> str:
-    """Say that an answer about a fault was acted upon, but not learnt."""
+    """Tell that an answer about a fault was carried out, but not learnt."""
     return f"Done this once. When nothing is wrong, Tangy goes on to {instead!r} here, as shown."

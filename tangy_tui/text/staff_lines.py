@@ -1,4 +1,4 @@
-"""What staff at the lines of a game are told: what they can type, and what becomes of it."""
+"""Words for staff in the console of a game: commands, and their results."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ NO_MORE = "There are no more lines. The game goes on by itself."
 
 
 def nothing_to(word: str) -> str:
-    """Say that a word of teaching does nothing in a game."""
+    """Tell that a command of teaching does nothing in a game."""
     return f"You cannot {word} in a game."
 
 
 def not_begun(fault: str) -> str:
-    """Say that no other game is begun, since nobody cleared a fault."""
+    """Tell that no other game begins, since nobody cleared a fault."""
     return f"Tangy begins no other game: nobody has cleared {fault!r}."
 
 
 def not_known(text: str, near: str | None) -> str:
-    """Say that a line is no command here, and which one may be meant."""
+    """Tell that a line is no command here, and suggest a similar one."""
     meant = f" Did you mean: {near}?" if near else ""
     return f"I do not know {text!r} here.{meant} Type: help."

@@ -1,4 +1,4 @@
-"""Words of the panel that shows staff how a game stands."""
+"""Words of the panel with the state of a game for staff."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ PAUSED, STOPPED, OVER = "Paused.", "Tangy was stopped.", "The game is over."
 
 
 def clock_words(seconds: float) -> str:
-    """Write a time in s as minutes and seconds."""
+    """Format a time in s as minutes and seconds."""
     whole = max(0, int(seconds))
     return f"{whole // 60}:{whole % 60:02}"
 
 
 def time_words(seconds: float, minutes: int) -> str:
-    """Say how long the game has lasted (s), and how much of the planned time is left."""
+    """Tell how long the game has lasted (s), and how much of the planned time is left."""
     gone = f"{clock_words(seconds)} so far"
     if not minutes:
         return gone
@@ -36,19 +36,19 @@ def time_words(seconds: float, minutes: int) -> str:
 
 
 def pace_words(view: StaffView) -> str:
-    """Say how fast Tangy calls."""
+    """Tell the pace of calls."""
     return f"a call every {view.pace:g} s" if view.pace else ""
 
 
 def played_words(patterns: Patterns | None) -> str:
-    """Name the pattern that is played for, and those that follow."""
+    """Name the pattern to play for, and those that follow."""
     if patterns is None or patterns.present is None:
         return ""
     return "for " + ", then ".join(one.label for one in (patterns.present, *patterns.left))
 
 
 def tangy_words(level: Autonomy, battery: float | None) -> str:
-    """Say how much Tangy does by itself, and how full its battery is (share from 0 to 1)."""
+    """Tell the level of autonomy, and the charge of the battery (share from 0 to 1)."""
     charge = "" if battery is None else f", battery {battery:.0%}"
     return f"Tangy {autonomy_words(level)}{charge}"
 
@@ -60,7 +60,7 @@ def next_words(
     name: Callable[[str], str],
     calls_first: int = 0,
 ) -> str:
-    """Say what Tangy does next, and why; so many calls come before those who ask."""
+    """Tell Tangy's next step, and why; `calls_first` calls come before people who asked."""
     behaviour = activity.behaviours.get(decision.behaviour)
     waiting = f"{counted(calls_first, 'number')} first, then those who ask"
     why = waiting if calls_first else activity.in_words(state.situation)
@@ -78,12 +78,12 @@ def next_words(
 
 
 def said_words(said: str) -> str:
-    """Quote what Tangy said last."""
+    """Quote Tangy's last speech."""
     return f"Tangy said: {said}"
 
 
 def person_words(person: PersonNow) -> str:
-    """Say how a person is, with the times that matter."""
+    """Describe a person's state, with the relevant times."""
     seen = "" if person.unvisited is None else f"visit {clock_words(person.unvisited)} ago"
     match person.state:
         case "away":
@@ -102,5 +102,5 @@ def person_words(person: PersonNow) -> str:
 
 
 def more_words(count: int) -> str:
-    """Say how many more people there are than the panel shows."""
+    """Tell how many more people there are than the panel shows."""
     return f"and {count} more"

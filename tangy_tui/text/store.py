@@ -14,13 +14,13 @@ from tangy_tui.text.numbers import counted
 
 
 def log_checked(folder: str, events: int, problems: int) -> str:
-    """Say how many events a log has, and in how many ways it is wrong."""
+    """Tell the number of events and of problems of a log."""
     found = counted(problems, "thing is wrong", "things are wrong")
     return f"{folder}: {counted(events, 'event')}, {found if problems else 'nothing is wrong'}."
 
 
 def accepted(losses: int) -> str:
-    """Say what became of losses that staff accepted."""
+    """Tell that losses were accepted, or that there are none."""
     return "Accepted: Tangy no longer says so." if losses else "There is nothing to accept."
 
 

@@ -1,4 +1,4 @@
-"""A demonstration, told line by line."""
+"""A demonstration in lines."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "Y") -> list[str]:
-    """Put one event of a teaching session into lines; `yes` is what to type for yes."""
+    """Format one event of a teaching session in lines; `yes` is what to type for yes."""
     match event:
         case Asked() | Offered() | NotUnderstood() | Refused() | Rejected():
             return verification_lines(event, yes)
@@ -74,7 +74,7 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
 
 CHOOSE_STEP, CANCEL = "Choose a step", "Cancel"
 LEAVE = "Leave; your steps are kept"
-"""What keys do while teaching."""
+"""Actions of keys while teaching."""
 
 NO_STEPS = "No steps yet."
 
@@ -93,17 +93,17 @@ HANDS_FREE = (
 
 
 def begin_words(*, heard: bool) -> str:
-    """Say how a demonstration begins; `heard` where commands can be spoken."""
+    """Tell how to start a demonstration; `heard` if commands can be spoken."""
     return f"No steps yet. {SAY_OR_TYPE if heard else 'Type'} what Tangy should do first."
 
 
 def sayable_words(phrases: Iterable[str]) -> str:
-    """Name what can be said."""
+    """List commands that can be spoken."""
     return f"You can say: {', '.join(phrases)}."
 
 
 def again_words(first: int, last: int) -> tuple[str, str]:
-    """Ask whether to go back before a step, and say what becomes of the steps from there on."""
+    """Ask whether to go back before a step, and tell the effect on later steps."""
     gone, back = f"Steps {first} to {last} are", "them back one by one"
     if first == last:
         gone, back = f"Step {first} is", "it back"
@@ -128,7 +128,7 @@ def discard_words(steps: int) -> tuple[str, str]:
 
 
 AFTERWARDS = ("next", "learn", "play")
-"""Words that lead on when a game is over."""
+"""Commands to continue with after a game."""
 OVER = "The game is over. Press {next} for another game, or {learn} to let Tangy learn."
 
 
@@ -138,7 +138,7 @@ def new_words(situation: str) -> str:
 
 
 def undone_words(undone: Sequence[StepUndone], activity: Activity) -> str:
-    """Say which steps were taken back (the last one first), and how they come back."""
+    """Tell which steps were undone (the last one first), and how to redo them."""
     last, first = undone[0], undone[-1]
     if last is first:
         done = activity.behaviour_words(last.step.behaviour)
@@ -147,7 +147,7 @@ def undone_words(undone: Sequence[StepUndone], activity: Activity) -> str:
 
 
 def beginning_words(teaching: TeachingSession, *, resumed: bool) -> str:
-    """Say which game begins, or that one goes on."""
+    """Tell which game begins, or that one is resumed."""
     shown = teaching.demonstration
     if resumed:
         return f"Going on where you left off, after {counted(len(shown.steps), 'step')}."
@@ -160,12 +160,12 @@ def beginning_words(teaching: TeachingSession, *, resumed: bool) -> str:
 
 
 def left_words(steps: int) -> str:
-    """Say how many steps of an unfinished game Tangy keeps, and how to go on."""
+    """Tell how many steps of an unfinished game are stored, and how to continue."""
     return f"Tangy keeps {counted(steps, 'step')} of this game. Teach goes on from there."
 
 
 def complete_words(teaching: TeachingSession) -> str:
-    """Say that a game was shown to its end, or that its teacher ended it before that."""
+    """Tell that a demonstration is complete, or that its teacher ended it early."""
     shown, activity = teaching.demonstration, teaching.activity
     steps = counted(len(shown.steps), "step")
     ending = "" if teaching.world.over else missed_end(activity, shown)
@@ -175,7 +175,7 @@ def complete_words(teaching: TeachingSession) -> str:
 
 
 def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:
-    """Say that a step became a rule, that the rule was taken back, or why there is none."""
+    """Tell that a step became a rule, that the rule was undone, or why there is none."""
     if isinstance(event, NoRule):
         return _no_rule(event)
     rule = event if isinstance(event, Ruled) else event.rule
@@ -187,7 +187,7 @@ def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:
 
 
 def ruled_step(step: str, facts: Sequence[str]) -> str:
-    """Write a step that is a rule: its words, and the facts that make no difference."""
+    """Format a step that is a rule: its words, and the facts that make no difference."""
     return f"{step} · rule: whatever {listed(facts, 'or')}"
 
 
@@ -197,12 +197,12 @@ def rule_question(step: Step, activity: Activity) -> str:
 
 
 def whatever_words(choice: RuleChoice) -> str:
-    """Name the facts that a rule leaves out, as the rest of a sentence."""
+    """Name the facts that a rule ignores, as the rest of a sentence."""
     return f"the {listed(choice.facts, 'or')} is"
 
 
 def covers_words(covers: int) -> str:
-    """Say how many situations a rule covers that nobody has shown."""
+    """Tell how many situations without a demonstration a rule covers."""
     return f"covers {counted(covers, 'more situation')}"
 
 

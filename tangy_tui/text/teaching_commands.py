@@ -1,4 +1,4 @@
-"""Words for a teacher in line mode: the commands, and what happens to demonstrations."""
+"""Words for a teacher in line mode: commands, and what happens to demonstrations."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MEANINGS = (
     ("my name is ROSA", "change your name"),
     ("quit", "leave; what you confirmed is kept"),
 )
-"""What can be typed by lines beside what Tangy should do, and what each does."""
+"""Commands in line mode besides behaviours, with their meanings."""
 
 STOPPED = "STOP: the simulated robot stands still until your next command."
 NOTHING_CHANGED = "You confirmed nothing, so nothing has changed."
@@ -45,7 +45,7 @@ def learn_next(command: str) -> str:
 
 
 def left_after(steps: int, command: str) -> str:
-    """Say that confirmed steps are stored, and which command continues."""
+    """Tell that confirmed steps are stored, and which command continues."""
     return (
         f"You left after {counted(steps, 'step')}. What you confirmed is kept. "
         f"Go on from here with `{command}`."
@@ -53,6 +53,6 @@ def left_after(steps: int, command: str) -> str:
 
 
 def command_line(verb: str, **options: str | None) -> str:
-    """Format a command as one types it, with those of its options that have a value."""
+    """Format a command line, with the options that have a value."""
     given = [f"--{name} {shlex.quote(value)}" for name, value in options.items() if value]
     return plain(" ".join(["tangy", verb, *given]))

@@ -1,4 +1,4 @@
-"""Words of the line in which staff tell Tangy what people answer or do."""
+"""Words of the line in which staff report people's answers and actions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TELL_HELP = (
 
 
 def card_question(name: str, object: str) -> str:
-    """Ask how the card of the person beside the robot is."""
+    """Ask for the state of the card of the person beside the robot."""
     return f"How is {name}'s {object} now? Give {name} time, look at it, and tell Tangy."
 
 
@@ -27,14 +27,14 @@ def waiting_words(
     object: str,
     name: Callable[[str], str],
 ) -> str:
-    """Say in line mode what the robot does or waits for; "" for nothing.
+    """Tell in line mode what the robot does or waits for; "" for nothing.
 
     Args:
-        going: where it drives to, "" for nowhere.
-        lets: for whom it stands on its way.
-        about: of whose card staff are to tell ("" for nobody's), and words that tell it.
-        object: what the activity calls a card.
-        name: what a person is called.
+        going: its destination, "" if it is not driving.
+        lets: the person it waits for on its way.
+        about: the person whose card staff should report ("" for nobody), and the words for it.
+        object: the activity's word for a card.
+        name: returns a person's name.
     """
     person, sayable = about
     if not person:
@@ -45,7 +45,7 @@ def waiting_words(
 
 
 def telling_words(waits_for: str, sayable: Sequence[str]) -> str:
-    """Say which words Tangy knows now, and whom they are about without a name."""
+    """Tell which words Tangy knows now, and whom they are about without a name."""
     known = f"One of: {', '.join(sayable)}." if sayable else "There is nothing to tell now."
     about = f" Without a name it is about {waits_for}." if waits_for else ""
     return f"{known}{about}"

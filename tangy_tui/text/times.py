@@ -1,4 +1,4 @@
-"""When something was, and how long it took, as reports write it."""
+"""Formats of times and durations in reports."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tangy_tui.text.numbers import counted
 
 
 def clock(seconds: float) -> str:
-    """Write a time within a game: "4:05", or "1:02:03" from an hour on."""
+    """Format a time within a game, in s: "4:05", or "1:02:03" from an hour on."""
     whole = int(seconds)
     hours, minutes = divmod(whole // 60, 60)
     if hours:
@@ -17,7 +17,7 @@ def clock(seconds: float) -> str:
 
 
 def length(seconds: float) -> str:
-    """Write how long something took: "40 s", "38 min", "1 h 5 min"."""
+    """Format a duration in s: "40 s", "38 min", "1 h 5 min"."""
     if seconds < 60:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60)
@@ -25,23 +25,23 @@ def length(seconds: float) -> str:
 
 
 def time_of_day(at: str) -> str:
-    """Write a time of the log (ISO 8601) on the clock of the place we are in."""
+    """Format a time of the log (ISO 8601) as local time of day."""
     return f"{datetime.fromisoformat(at).astimezone():%H:%M:%S}"
 
 
 def day_and_time(at: datetime) -> str:
-    """Write a day and a time on the clock of the place we are in."""
+    """Format a local day and time."""
     local = at.astimezone()
     return f"{local.day} {local:%B %Y, %H:%M}"
 
 
 def local_time(at: str) -> str:
-    """Write a time of the log (ISO 8601) as the date and time here, as wide in every row."""
+    """Format a time of the log (ISO 8601) as local date and time, of constant width."""
     return f"{datetime.fromisoformat(at).astimezone():%Y-%m-%d %H:%M}"
 
 
 def ago(then: datetime, now: datetime) -> str:
-    """Say how long ago something was, as people do; days are those of the place we are in."""
+    """Tell how long ago something was, as in speech, by local days."""
     days = (now.astimezone().date() - then.astimezone().date()).days
     if days < 1:
         return "today"
@@ -54,6 +54,6 @@ def ago(then: datetime, now: datetime) -> str:
 
 
 def on_day(at: datetime) -> str:
-    """Write the day and the time of something, in the time of the place we are in."""
+    """Format the local day and time of an event."""
     local = at.astimezone()
     return f"{local.day} {local:%b %Y %H:%M}"

@@ -1,4 +1,4 @@
-"""The captions of the tour that a new teacher is shown."""
+"""The words of the tour for a new teacher."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ TOUR_ON, SKIP_TOUR = "Go on with the tour", "Skip the tour"
 
 
 def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
-    """Return the screen's text of a stop; keys are named in braces.
+    """Return the text of a stop on the screen, with placeholders for keys in braces.
 
     Args:
-        stop: where the tour is.
-        teacher: who is shown around.
-        title: of the activity.
-        phrase: the command that is tried.
+        stop: the stop of the tour.
+        teacher: the teacher's name.
+        title: the activity's title.
+        phrase: the command to try.
     """
     match stop:
         case TourStop.ROOM:

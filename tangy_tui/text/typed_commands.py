@@ -19,5 +19,5 @@ def example_words(rules: GameRules) -> str:
 
 
 def not_known(words: str) -> str:
-    """Say that words are not a command."""
+    """Tell that words are not a command."""
     return plain(f"Tangy does not know {words[:60]!r} here.")

@@ -1,4 +1,4 @@
-"""Speech in words: what Tangy says aloud, what it hears, and how a name is said."""
+"""Words for speech: what Tangy says and hears, and how a name is pronounced."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ SOUNDS_HELP = (
 
 
 def said_title(name: str) -> str:
-    """Head how a person's name is said."""
+    """Return the title of a name's pronunciation."""
     return f"How {name} is said"
 
 
@@ -24,7 +24,7 @@ HANDS_FREE = "No key is needed: just speak."
 
 
 def shown_words(why: str) -> str:
-    """Say why nothing is heard of what Tangy says."""
+    """Tell why Tangy's speech is not audible."""
     return f"{why} What Tangy says is shown as text."
 
 

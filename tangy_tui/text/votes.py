@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def shown_here(seen: int, share: float) -> str:
-    """Say how often a behaviour was shown, and its share of the votes if that is not 1."""
+    """Tell how often a behaviour was demonstrated, and its share of the votes if that is not 1."""
     votes = f"{share:.0%} of the votes"
     if not seen:
         return f"a guess of the trees, {votes}"

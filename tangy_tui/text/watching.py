@@ -15,7 +15,7 @@ WORLDS: dict[GameWorld, str] = {
     BENCH: "on the bench",
     LIVE: "live, with the robot",
 }
-"""Where a game is played, on screens and pages."""
+"""The worlds of games, on screens and pages."""
 
 PHASES: dict[Phase, str] = {
     "idle": "no game",
@@ -45,19 +45,19 @@ HELP = (
 
 
 def stopped_by_guest(guest: str, driver: str) -> str:
-    """Say that a guest has stopped the robot, who may have the name of the person who drives."""
+    """Tell that an onlooker stopped the robot, who may have the driver's name."""
     if guest == driver:
         return "The robot was stopped from another console."
     return f"{guest} stopped the robot from another console."
 
 
 def driver_words(view: GameView) -> str:
-    """Say who drives, and where the game is played."""
+    """Tell who controls the game, and where it is played."""
     return f"{view.driver} drives, {WORLDS[view.world]}"
 
 
 def waiting_words(view: GameView, name: Name) -> str:
-    """Say who waits for help, since when; "" if nobody does."""
+    """Tell who waits for help, and for how long; "" if nobody does."""
     waits = {one.id: one.waits for one in view.people if one.waits is not None}
     told = [
         f"{name(one)} {clock_words(waits[one])}" if one in waits else name(one)
@@ -67,7 +67,7 @@ def waiting_words(view: GameView, name: Name) -> str:
 
 
 def called_words(view: GameView, activity: Activity | None) -> str:
-    """Say how many calls there were, and the last ones; "" if there were none."""
+    """Tell the number of calls, and the last ones; "" if there were none."""
     called = view.scene.called
     if not called:
         return ""
@@ -76,7 +76,7 @@ def called_words(view: GameView, activity: Activity | None) -> str:
 
 
 def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> list[str]:
-    """Describe in lines how a game stands."""
+    """Describe the state of a game in lines."""
     if view is None:
         return [NO_GAME]
     lines = [
@@ -87,13 +87,13 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
 
 
 def now_lines(view: GameView, activity: Activity | None, name: Name) -> list[str]:
-    """Describe the time, who waits for help, and what was called."""
+    """Describe the time, who waits for help, and the calls."""
     waits, called = waiting_words(view, name), called_words(view, activity)
     now = f"{time_words(view.seconds, view.minutes)}{f'. {waits}' if waits else ''}."
     return [now, called] if called else [now]
 
 
 def facts(view: GameView) -> list[str]:
-    """Say what stands beside the call."""
+    """Return the facts beside the call."""
     called = len(view.scene.called)
     return [time_words(view.seconds, view.minutes), f"{called} called" if called else ""]

@@ -13,11 +13,11 @@ HOW_TO_RENAME = "To change that, type: my name is Rosa."
 
 
 def renamed_teacher(name: str, present: str) -> str:
-    """Say who teaches from now on; `present` is the teacher of the current game."""
+    """Tell who teaches from now on; `present` is the teacher of the current game."""
     first = "" if present == name else f" This game stays {present}'s; the next one is yours."
     return f"You teach as {name} from now on.{first}"
 
 
 def teaches_as(name: str) -> str:
-    """Say in a line who teaches, and how to change it."""
+    """Tell in a line who teaches, and how to change it."""
     return f"You teach as {name}. {HOW_TO_RENAME}"
