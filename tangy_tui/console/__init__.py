@@ -1,1 +1,1 @@
-"""The line mode: teaching, games and drills for pipes, scripts and screen readers."""
+"""The console (line mode): teaching, games and drills for pipes, scripts and screen readers."""

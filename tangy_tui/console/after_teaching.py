@@ -1,4 +1,4 @@
-"""What a teacher at the lines may do with what was shown: let Tangy learn, and let it play."""
+"""Commands after teaching in the console: let Tangy learn, and let it play."""
 
 from __future__ import annotations
 
@@ -12,17 +12,16 @@ from tangy_tui.text.teaching_commands import NOW_PLAY, ON_THE_SCREEN
 
 @dataclass(frozen=True, slots=True)
 class AfterTeaching:
-    """Learning, and whether there is something to play by.
+    """Learns from demonstrations, and checks that there is a policy to play by.
 
-    `learn` learns from what was shown, and says what was learnt; `check` raises TangyError where
-    nothing was learnt yet.
+    `learn` learns and describes the result; `check` raises TangyError if nothing was learnt yet.
     """
 
     learn: Callable[[], list[str]]
     check: Callable[[], object]
 
     def perform(self, word: Perform) -> tuple[list[str], bool]:
-        """Carry out a word; return the sentences to say, and whether to play a game."""
+        """Carry out a command; return the sentences to write, and whether to play a game."""
         try:
             match word.action:
                 case "learn":

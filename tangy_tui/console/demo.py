@@ -1,4 +1,4 @@
-"""The demo by lines: the frames of its story, each with its caption and what happened."""
+"""The demo in the console: the frames of its story, each with caption and events."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tangy_tui.text.command_line import TEACH_YOURSELF
 
 
 def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[str, Any]:
-    """Tell the story line by line; return what its game added up to."""
+    """Write the story line by line; return the totals of its game."""
     story = Story(workspace, seed)
     scene, caption, asked = 0, "", ""
     for frame in story.frames():

@@ -27,25 +27,25 @@ from tangy_tui.text.drills import (
 )
 
 Read = Callable[[], str | None]
-"""Returns the next line, or None when there are no more."""
+"""Returns the next line, None at the end."""
 Write = Callable[[str], None]
 
 
 def drill_by_lines(drill: Drill, write: Write, read: Read, *, strict: bool = False) -> Sheet | None:
-    """Rehearse line by line; at the end of the lines, or when interrupted, it is left.
+    """Rehearse line by line; the end of the input or an interrupt leaves the drill.
 
     Args:
         drill: the rounds.
         write: writes a line.
-        read: returns the next line, None at their end.
-        strict: an answer that is none ends it, instead of being asked for again.
+        read: returns the next line, None at the end.
+        strict: end the drill at an invalid answer instead of asking again.
 
     Returns:
-        The sheet; None if nothing was answered.
+        The score sheet; None if nothing was answered.
 
     Raises:
-        TangyError: only if `strict`; what was answered before is kept.
-        KeyboardInterrupt: passed on, after what was answered before was kept and told.
+        TangyError: only if `strict`; earlier answers are stored.
+        KeyboardInterrupt: re-raised after earlier answers were stored and shown.
     """
     if drill.note:
         write(note_words(drill.note))
@@ -71,7 +71,7 @@ def _go_through(drill: Drill, write: Write, read: Read, strict: bool) -> None:
 
 
 def _tell(drill: Drill, write: Write) -> Sheet | None:
-    """Tell the sheet, and of a drill that was left what is kept of it."""
+    """Write the score sheet; for an unfinished drill also what is stored."""
     write("")
     sheet = drill.sheet if drill.sheet.answered else None
     if sheet is not None:

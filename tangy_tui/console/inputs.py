@@ -1,4 +1,4 @@
-"""Where lines and keys come from: a script, standard input, or the terminal behind it."""
+"""The sources of lines and keys: a script, standard input, or the terminal behind it."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ LARGEST_SCRIPT = 4_000_000  # bytes: a hundred thousand lines
 WAIT = re.compile(
     r"wait (?:(\d{1,3}(?:\.\d{1,2})?)(?: ?s)?|until (asked|halted|called|over|paused))"
 )
-"""A line of a script that lets time pass, in s, or waits until something has come about."""
+"""A line of a script that waits for some s, or until an event."""
 
 
 def any_waits(lines: Iterable[str]) -> bool:
-    """Say whether one of some lines lets a script wait."""
+    """Return whether a line makes a script wait."""
     return any(WAIT.fullmatch(line.casefold()) for line in lines)
 
 
 def line_reader(script: Path | None) -> Callable[[], str | None]:
-    """Return where lines come from: the script, or standard input."""
+    """Return a function that reads lines from the script or standard input."""
     if script is None:
-        lines_in = sys.stdin  # None where it was closed
+        lines_in = sys.stdin  # None if it is closed
         return lambda: lines_in.readline() or None if lines_in is not None else None
     try:
-        with script.open("rb") as file:  # which may be a pipe: `--script <(...)`, /dev/stdin
+        with script.open("rb") as file:  # may be a pipe: `--script <(...)`, /dev/stdin
             content = file.read(LARGEST_SCRIPT + 1)
         if len(content) > LARGEST_SCRIPT:
             raise TangyError(plain(f"{script}: is larger than {LARGEST_SCRIPT:,} bytes."))
@@ -43,15 +43,15 @@ def line_reader(script: Path | None) -> Callable[[], str | None]:
 
 
 def is_typed(script: Path | None) -> bool:
-    """Say whether lines are typed by a person now."""
+    """Return whether a person is typing the lines."""
     return script is None and sys.stdin is not None and sys.stdin.isatty()
 
 
 def keys_from_terminal(script: Path | None) -> int:
-    """Move the sound on standard input elsewhere, and read keys from the terminal instead.
+    """Free standard input, which carries sound, to read keys from the terminal.
 
     Returns:
-        The file descriptor that now has the sound.
+        The new file descriptor of the sound.
     """
     sound = os.dup(0)
     try:

@@ -1,4 +1,4 @@
-"""What staff can ask in a game by lines: for help, what Tangy sees, why, and what is wrong."""
+"""Questions of staff in the console of a game: help, situation, explanation, faults."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ HELP = "You can type at any time:"
 
 
 class Inquiries:
-    """Answers words that ask about the game."""
+    """Answers typed questions about the game."""
 
     def __init__(
         self, controller: GameController, name: Name, demonstrations: Demonstrations | None
     ) -> None:
-        """Answer about the games of a controller; demonstrations are the grounds of a question."""
+        """Answer about the games of a controller; `demonstrations` serve to explain decisions."""
         self._controller = controller
         self._game = controller.supervision
         self._name, self._demonstrations = name, demonstrations
 
     def lines(self, word: str) -> list[str] | None:
-        """Return the answer to a word that asks for something; None: it does not."""
+        """Return the answer to a typed question; None if it is none."""
         match read_inquiry(word):
             case "help" | "phrases":
                 return self._help()

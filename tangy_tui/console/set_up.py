@@ -1,4 +1,4 @@
-"""Setting a live game up by lines: the same choices and checks as on the page."""
+"""The set-up of a live game in the console: the same choices and checks as on the screen."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ _ROOMS = ("room", "rooms")
 
 
 class SetUpLines:
-    """Takes lines until staff begin or leave. Nothing is switched on meanwhile."""
+    """Reads lines until staff begin or leave; does not switch the robot on."""
 
     def __init__(
         self, setup: SetUp, read: Callable[[], str | None], write: Callable[[str], None]
     ) -> None:
-        """Take what is set up, and what reads and writes lines."""
+        """Read commands for a set-up."""
         self.setup = setup
         self._read, self._write = read, write
         self._command = command_reader(setup.workspace.activity, self._find)
 
     def run(self) -> bool:
-        """Set up; return whether the game is to begin."""
+        """Set up; return whether to begin the game."""
         self._tell()
         self._write(text.LINES_HELP)
         while (line := self._read()) is not None:
@@ -70,7 +70,7 @@ class SetUpLines:
         return False
 
     def begins_anyway(self) -> bool:
-        """Say what is ready, and ask whether to begin where something is not."""
+        """Write the results of the checks; if one failed, ask whether to begin."""
         for check in self.setup.checks():
             self._write(f"  {text.NAMES[check.name]}: {text.line_of(check)}")
         if not self.setup.not_ready:
@@ -87,7 +87,7 @@ class SetUpLines:
             self._write(line)
 
     def _own(self, words: str) -> bool:
-        """Do what is only said before a game; say whether it was that."""
+        """Carry out a command that only exists before a game; return whether it was one."""
         setup = self.setup
         if seat := _SEAT.fullmatch(words):
             person = self._find(seat[1])
@@ -114,11 +114,11 @@ class SetUpLines:
         self.setup.add(name, guest=guest)
 
     def _rooms(self) -> dict[str, str]:
-        """Return what loads each room, by its title in small letters."""
+        """Return the source of each room, by its title in lower case."""
         return {one.room.title.casefold(): one.source for one in self.setup.rooms() if one.room}
 
     def _play(self, wanted: str) -> None:
-        """Play another activity, called by its word or its title."""
+        """Change to another activity, given by name or title."""
         titles = self.setup.activities()
         called = {title.casefold(): name for name, title in titles.items()}
         self.setup.play(called.get(wanted.casefold(), wanted))

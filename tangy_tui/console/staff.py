@@ -1,9 +1,10 @@
-"""Games with staff at the lines, at any time or by turns.
+"""Games in the console, with staff who type at any time or by turns.
 
-At any time (`run`): each line may step in. One thread runs the games, one reads the lines, and one
-carries out what has to wait for its turn. Without more lines, a game that waits for staff is ended.
+At any time (`run`): every line may intervene. One thread runs the games, one reads the lines, and
+one carries out commands that wait for the current behaviour. At the end of the input, a game that
+waits for staff is ended.
 
-By turns (`run_by_turns`): a line is read only where Tangy waits for somebody, as scripts need it.
+By turns (`run_by_turns`): a line is read only when Tangy waits for staff, as scripts need it.
 """
 
 from __future__ import annotations
@@ -53,13 +54,13 @@ from tangy_tui.text.questions import ANSWER_HELP
 from tangy_tui.text.situations import Name, verification_lines
 from tangy_tui.text.telling import waiting_words
 
-LOOK_SECONDS = 0.1  # between two looks at the devices, and for the next line
-WORKS_SECONDS = 5.0  # for what was still to be done when the last game ended
+LOOK_SECONDS = 0.1  # between two checks of the devices, and for the next line
+WORKS_SECONDS = 5.0  # for pending commands when the last game ended
 LONGESTWAIT = 600.0  # s that a script may wait
 
 
 class StaffLines:
-    """Games by lines. `run` them."""
+    """Games in the console; `run` them."""
 
     def __init__(
         self,
@@ -74,18 +75,18 @@ class StaffLines:
         demonstrations: Callable[[], Sequence[Demonstration]] | None = None,
         yes: TypedYes | None = None,
     ) -> None:
-        """Take a seat.
+        """Connect staff to games.
 
         Args:
-            controller: of the games.
-            name: what a person is called.
+            controller: runs the games.
+            name: returns a person's name for an id.
             find_person: returns the id of a person by name or id.
-            read: returns the next line, None at their end; it may wait for it.
-            write: writes a line; it is called by one thread at a time.
-            speed: times life, in which the time of a simulated game passes; None: a robot's own.
-            also: is told all events, and returns what else is to be written.
-            demonstrations: gives all there are, for the grounds of a question.
-            yes: how a yes is typed.
+            read: blocks for the next line, and returns None at the end.
+            write: writes a line; is called by one thread at a time.
+            speed: pace of simulated time in times life; None: the robot's own time.
+            also: is called with all events, and returns further lines to write.
+            demonstrations: returns all demonstrations, to explain decisions.
+            yes: parses a typed yes.
         """
         self._controller = controller
         self._game = controller.supervision
@@ -105,7 +106,7 @@ class StaffLines:
         self._command = command_reader(self._game.world.activity, find_person)
 
     def run(self, games: int) -> bool:
-        """Play games; return whether all came to their end, or to that which staff set."""
+        """Play games; return whether all ended normally, or by staff's command."""
         prepare()
         threading.Thread(target=self._read_all, daemon=True).start()
         working = threading.Thread(target=self._work_off, daemon=True)
@@ -119,7 +120,7 @@ class StaffLines:
             try:
                 self._take_lines(playing)
                 playing.join()
-            except BaseException:  # the program was told to end
+            except BaseException:  # the program is ending
                 self._controller.abandon()
                 raise
         self._tasks.put(None)
@@ -127,12 +128,12 @@ class StaffLines:
         return self._end()
 
     def run_by_turns(self, games: int, *, scripted: bool = False, expert: bool = False) -> bool:
-        """Play games, and read a line only where Tangy waits; return as `run` does.
+        """Play games, reading a line only when Tangy waits; return as `run` does.
 
         Args:
-            games: how many.
+            games: the number of games.
             scripted: a scripted teacher answers, and no line is read.
-            expert: scripted staff clear what halts Tangy; otherwise the lines do, or the game ends.
+            expert: scripted staff clear the faults that halt Tangy; otherwise the lines do.
         """
         controller = self._controller
         self._by_turns = True
@@ -154,7 +155,7 @@ class StaffLines:
         return self._end()
 
     def _left_uncleared(self) -> bool:
-        """Say that no other game is begun, where nobody cleared what halts Tangy."""
+        """Return whether an uncleared fault prevents another game, and tell so."""
         if (fault := self._game.halted) is not None:
             self._write(staff_lines.not_begun(fault.name))
         return fault is not None
@@ -166,9 +167,9 @@ class StaffLines:
     # ----------------------------------------------------------------------------- the game
 
     def _play(self) -> None:
-        """Play one game to its end, in a thread of its own."""
+        """Play one game in its own thread."""
         controller, game = self._controller, self._game
-        while not (events := controller.begin()):  # staff have stopped it between two games
+        while not (events := controller.begin()):  # staff stopped the robot between two games
             if self._alone or self._leaves:
                 self._write(staff_lines.NOBODY if self._alone else staff_lines.NOT_BEGUN)
                 self._stopped |= self._alone
@@ -180,7 +181,7 @@ class StaffLines:
             before = game.seconds
             try:
                 events = controller.next()
-            except TangyError as error:  # the log could not be written, so nothing more is done
+            except TangyError as error:  # logging failed, so pause
                 self._tell([*controller.apply(Pause()), StaffNote("cannot", str(error))])
                 continue
             self._tell(events)
@@ -194,7 +195,7 @@ class StaffLines:
                 controller.nudge.wait(passed or LOOK_SECONDS)
 
     def _prompt(self) -> None:
-        """Say once what Tangy waits for."""
+        """Write what Tangy waits for, once."""
         proposal = self._controller.proposal
         asked = "" if proposal is None else proposal_words(proposal, self._name)
         if not asked and self._controller.phase == "halted":
@@ -240,10 +241,11 @@ class StaffLines:
         self._lines.put(None)
 
     def _take_lines(self, playing: threading.Thread) -> None:
-        """Take lines while a game is played. Until it has begun, only a STOP does not wait.
+        """Handle lines while a game runs. Until it has begun, only a STOP is handled at once.
 
-        In a script that waits for something a STOP comes after that, as it is written. What Tangy
-        is to do next is kept until it asks for that.
+        In a script with waits, a STOP comes in its order. Lines for Tangy's next action are kept
+        until
+        Tangy asks for it.
         """
         early: deque[str] = deque()
         while playing.is_alive():
@@ -253,7 +255,7 @@ class StaffLines:
                 continue
             if self._alone:
                 if self._begun.wait(LOOK_SECONDS):
-                    playing.join(LOOK_SECONDS)  # a longer wait may not hear a signal
+                    playing.join(LOOK_SECONDS)  # a longer wait could delay a signal
                 continue
             try:
                 line = self._lines.get(timeout=LOOK_SECONDS)
@@ -261,7 +263,7 @@ class StaffLines:
                 continue
             if line is None:
                 self._alone = not early
-                if early:  # they come first
+                if early:  # handle them first
                     self._lines.put(None)
                     time.sleep(LOOK_SECONDS)
                 elif self._controller.phase in ("idle", "running"):
@@ -273,7 +275,7 @@ class StaffLines:
                 early.append(line.strip())
 
     def _tell_where_it_goes(self) -> None:
-        """Say where the robot drives, or what it asks of a card: who reads lines sees neither."""
+        """Write where the robot drives, or its question about a card."""
         robot = self._controller.robot
         if (going := (robot.going, robot.lets, robot.asks_about)) != self._going:
             self._going = going
@@ -283,21 +285,21 @@ class StaffLines:
             self._tell([*self._controller.apply(EndGame())])
 
     def _is_due(self, line: str, early: deque[str]) -> bool:
-        """Say whether a line may be taken now: a game has begun, and no earlier line waits.
+        """Return whether to handle a line now: a game has begun, and no earlier line waits.
 
-        Only what must not wait, a STOP above all, overtakes an earlier line.
+        Only urgent commands, above all a STOP, overtake earlier lines.
         """
         begun, taking_over = self._begun.is_set(), self._controller.taking_over
-        if not begun or not taking_over or any_waits(early):  # a script goes on in its order
+        if not begun or not taking_over or any_waits(early):  # a script keeps its order
             return begun and not early
-        try:  # until Tangy asks what to do next, commands alone are taken
+        try:  # until Tangy asks for its next action, only commands are handled
             command = self._command(line)
         except TangyError:
             return not early
         return isinstance(command, AT_ONCE) if early else command is not None
 
     def _needs_no_game(self, line: str) -> bool:
-        """Say whether a line is a STOP, or goes on or ends after one."""
+        """Return whether a line is a STOP, or continues or ends the game after one."""
         try:
             command = self._command(line)
         except TangyError:
@@ -314,13 +316,13 @@ class StaffLines:
             self._take(text)
 
     def _work_off(self) -> None:
-        """Carry out, one after the other, what has to wait for its turn."""
+        """Carry out the queued commands, one after the other."""
         while (task := self._tasks.get()) is not None:
             self._tell(task())
             self._tasks.task_done()
 
     def _carry_out(self, command: GameCommand) -> None:
-        """Carry out a command now, or when it is its turn: the lines are read meanwhile."""
+        """Carry out a command now, or queue it for its turn while lines are read."""
         if isinstance(command, CallExpert) and self._game.halted is not None:
             self._write(expert_line(self._game))
         self._ended |= isinstance(command, EndGame)
@@ -366,7 +368,7 @@ class StaffLines:
             self._write(plain(staff_lines.not_known(text[:60], nearest_command(text))))
 
     def _answer(self, said: Verified) -> None:
-        """Have an answer carried out, which takes its time."""
+        """Carry out an answer, which takes time."""
 
         def answer() -> Sequence[Told]:
             try:
@@ -380,7 +382,7 @@ class StaffLines:
             self._tasks.put(answer)
 
     def _wait(self, seconds: float, what: str | None, playing: threading.Thread) -> None:
-        """Let time pass before the next line, or until something has come about."""
+        """Wait for some s, or until an event, before the next line."""
         until = time.monotonic() + min(seconds, LONGESTWAIT)
         calls = self._count_calls()
         while time.monotonic() < until and playing.is_alive():

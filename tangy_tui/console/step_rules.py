@@ -1,4 +1,4 @@
-"""The rules that the last step can get, for a line."""
+"""The possible rules for the last step, in the console."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tangy_tui.text.teaching import rule_lines, rule_words
 
 
 def rules_to_type(teaching: TeachingSession) -> list[str]:
-    """Return what to type to make the last step a rule, or why it cannot be one."""
+    """Return the commands that make the last step a rule, or why it cannot be one."""
     choices = teaching.rules.choices(teaching.demonstration)
     if isinstance(choices, NoRule):
         return [rule_words(choices, teaching.activity)]

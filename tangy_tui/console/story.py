@@ -1,8 +1,8 @@
-"""The demo as frames: true runs of teaching, learning and a game, with a caption for each moment.
+"""The demo as frames of real teaching, learning and playing, each with a caption.
 
-Nothing is canned: a session is taught, the forest is learnt from it, a game is played by it under
-execution monitoring, and each frame is made from what came of that. The same frames are shown on a
-screen and told by lines.
+Nothing is canned: a session is taught, a forest is trained on it, a game is played with the policy
+under execution monitoring, and each frame shows their results. The screen and the console show the
+same frames.
 """
 
 from __future__ import annotations
@@ -41,29 +41,30 @@ from tangy_tui.text.situations import step_words
 from tangy_tui.text.teaching import teaching_lines
 
 FAULT = next(kind.name for kind in KINDS.values() if kind.blinds and kind.helped)
-"""What is brought about: the head camera is covered, which people at the table can put right."""
+"""The injected fault: the head camera is covered, which people at the table can fix."""
 
 WORDS_A_SECOND = 4.0
-LEAST, GLANCE = 1.0, 0.4  # s: for any caption; for a step under the same one
-MOST_BESIDE = 6.0  # s for what stands beside it: who wants to read all of it holds the story
+LEAST, GLANCE = 1.0, 0.4  # s: for any caption; for a step under the same caption
+MOST_BESIDE = 6.0  # s for the panel beside it: a user can pause the story to read more
 GAMES_LATER = 17
-"""The seed of the game that is played after that of the one that is taught: for the usual seed this
-is a game in which somebody is asked, and says no, after a few steps."""
+"""The offset of the game's seed from the demonstration's: with the default seed, a person is asked
+and says no after a few steps."""
 MOST_STEPS = 400
-"""A game longer than this is not going to end."""
+"""A longer game counts as endless."""
 LEAD_IN = 8
-"""Steps before the mistake, unless somebody asks for help before."""
+"""Steps before the mistake, unless a person asks for help earlier."""
 FAULT_STEPS = 5
-"""Within so many steps a fault shows, and is recovered from."""
+"""The fault is noticed and recovered from within this many steps."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoryFrame:
     """One moment of the story.
 
-    `scene` counts from 1, `lines` are those under `heading` so far and `new` how many of them
-    came with this frame, `typed` stands in the teacher's line and `asked` is the question about
-    it, `said` is what the robot says, `seconds` how long people need to read it.
+    `scene` counts from 1, `lines` are those under `heading` so far and `new` the number of lines
+    new
+    in this frame, `typed` is the teacher's command and `asked` the question about it, `said` the
+    robot's speech, `seconds` the time to read the frame.
     """
 
     scene: int
@@ -79,10 +80,10 @@ class StoryFrame:
 
 
 class Story:
-    """Makes the frames, one after the other: what they show happens when they are asked for."""
+    """Generates the frames; the events happen when their frame is requested."""
 
     def __init__(self, workspace: Workspace, seed: int) -> None:
-        """Prepare it in an empty data folder; `seed` is of its games."""
+        """Prepare the story in an empty data folder; `seed` seeds its games."""
         self._workspace, self._seed = workspace, seed
         self._activity = workspace.activity
         self._teaching = workspace.teaching(text.TEACHER, seed, guided=True)
@@ -94,10 +95,10 @@ class Story:
         self._said = ""
         self._caption = ""
         self.tally = Tally()
-        """What the game added up to."""
+        """The totals of the game."""
 
     def frames(self) -> Iterator[StoryFrame]:
-        """Give the frames of the six scenes."""
+        """Yield the frames of the six scenes."""
         yield from self._question()
         yield from self._mistake()
         yield from self._learning()
@@ -105,7 +106,7 @@ class Story:
 
     @property
     def beliefs(self) -> Mapping[str, Beliefs]:
-        """What is believed of each person after the game."""
+        """The posteriors of each person after the game."""
         return self._game.persuasion.beliefs
 
     # ------------------------------------------------------------------------------ teaching
@@ -168,7 +169,7 @@ class Story:
         return next(event.question for event in events if isinstance(event, Asked))
 
     def _taught(self, command: Say, typed: str, asked: str, done: str) -> Iterator[StoryFrame]:
-        """Teach a step, with a caption when it is typed, asked about and done."""
+        """Teach a step, with captions for the command, the question and the result."""
         yield self._frame(typed, typed=command.text)
         question = self._asked(command)
         yield self._frame(asked, typed=command.text, asked=question)
@@ -181,12 +182,12 @@ class Story:
 
     @property
     def _away(self) -> bool:
-        """Whether the robot is with somebody, in a game that goes on."""
+        """Whether the robot is with a person, in an unfinished game."""
         over = self._teaching.demonstration.finished
         return not over and self._teaching.world.observe().place != FRONT
 
     def _until_help(self, caption: str) -> Iterator[StoryFrame]:
-        """Go on until somebody is to be helped, but not for long."""
+        """Continue until a person needs help, but not for long."""
         for _ in range(LEAD_IN):
             if self._teaching.demonstration.finished or self._helps(self._next()):
                 return
@@ -194,7 +195,7 @@ class Story:
             yield self._frame(caption, seconds=GLANCE)
 
     def _helps(self, command: Say) -> bool:
-        """Say whether a command sends the robot to somebody."""
+        """Return whether a command sends the robot to a person."""
         return command.text in {
             phrase
             for behaviour in self._activity.behaviours.values()
@@ -203,7 +204,7 @@ class Story:
         }
 
     def _slip(self, right: Say) -> Say | None:
-        """Return a command that is wrong here: to a person who did not ask, if there is one."""
+        """Return a wrong command: to a person who did not ask, if possible."""
         attended = self._teaching.world.observe().attended
         others = [person for person in self._teaching.people if person != attended]
         for person in others if self._helps(right) else ():
@@ -212,7 +213,7 @@ class Story:
         return next((Say(one) for one in self._teaching.sayable if one != right.text), None)
 
     def _apply(self, command: Say | Reply | Undo) -> list[TeachingEvent]:
-        """Put a command to the session, and keep what came of it as lines."""
+        """Apply a command to the session, and store the result as lines."""
         teaching = self._teaching
         events = teaching.apply(command)
         self._world = teaching.world
@@ -235,7 +236,7 @@ class Story:
     # ------------------------------------------------------------------------------- playing
 
     def _playing(self) -> Iterator[StoryFrame]:
-        """Play a game: until somebody was persuaded, through a fault, and to its end."""
+        """Play a game: until a person was persuaded, through a fault, and to its end."""
         self._game = self._workspace.supervision(self._policy, self._seed + GAMES_LATER)
         self._control = scripted_controller(self._game)
         self._show(text.GAME, ())
@@ -250,7 +251,7 @@ class Story:
         yield from self._your_turn()
 
     def _persuading(self) -> Iterator[StoryFrame]:
-        """Play until a person has said no and was asked in another way, or has just done it."""
+        """Play until a person refused and was asked another way, or complied."""
         responses: list[Response] = []
         while not self._game.over and not any(response.complied for response in responses):
             for event in self._step():
@@ -267,7 +268,7 @@ class Story:
                         yield self._frame(words)
 
     def _a_fault(self) -> Iterator[StoryFrame]:
-        """Bring about a fault, and play until it was recovered from."""
+        """Inject a fault, and play until Tangy has recovered."""
         if self._game.over or not isinstance(self._game.world, FaultyWorld):
             return
         self._game.world.inject(FAULT)
@@ -313,7 +314,7 @@ class Story:
         self._heading = heading
 
     def _show(self, heading: str, lines: Sequence[str]) -> None:
-        """Show other lines in the panel."""
+        """Replace the lines of the panel."""
         self._heading, self._lines, self._told = heading, list(lines), 0
         self._said = ""
 
@@ -324,7 +325,7 @@ class Story:
         if seconds is None or caption != self._caption:
             said = len(f"{caption} {asked}".split())
             below = len(" ".join(lines[len(lines) - new :]).split())
-            beside = min(MOST_BESIDE, below / WORDS_A_SECOND / 2)  # it is looked over
+            beside = min(MOST_BESIDE, below / WORDS_A_SECOND / 2)  # most people only scan it
             seconds = LEAST + said / WORDS_A_SECOND + beside
         self._told, self._caption = len(lines), caption
         return StoryFrame(

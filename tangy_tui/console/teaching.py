@@ -1,6 +1,6 @@
-"""The program line by line: for a pipe, a script, a screen reader or a simple terminal.
+"""Teaching in the console: for a pipe, a script, a screen reader or a simple terminal.
 
-It drives the same sessions as the screens. One thing is said per line, and nothing is drawn.
+It drives the same sessions as the screens, and writes one fact per line, without graphics.
 """
 
 from __future__ import annotations
@@ -68,12 +68,12 @@ from tangy_tui.text.voice import OR_SAY_WHICH, OR_SAY_YES
 from tangy_tui.text.who import renamed_teacher, teaches_as
 
 Read = Callable[[], str | None]
-"""Returns the next line, or None when there are no more."""
+"""Returns the next line, None at the end."""
 Write = Callable[[str], None]
 
 
 class TeachingLines:
-    """A teaching session by lines. `run` returns when the teacher leaves or the input ends."""
+    """A teaching session in the console; `run` returns when the teacher or the input ends it."""
 
     def __init__(
         self,
@@ -92,22 +92,22 @@ class TeachingLines:
         after: AfterTeaching | None = None,
         tour: bool = False,
     ) -> None:
-        """Make the session.
+        """Create the session.
 
         Args:
             teaching: the session.
-            read: returns the next line, None at their end.
+            read: returns the next line, None at the end.
             write: writes a line.
-            ears: spoken commands, if there are any; their questions are answered from `read`.
-            scripted: the lines are all there already, so what is spoken goes before them.
-            seen: counts in a sentence what was demonstrated so far; then what was not, a line each.
-            why: says what Tangy would do now.
-            resume: the command that goes on with this demonstration.
+            ears: the recogniser, if there is one; answers come from `read`.
+            scripted: the lines come from a script, so speech is handled before them.
+            seen: returns a sentence with the coverage, then the missing situations, one per line.
+            why: returns an explanation of Tangy's present decision.
+            resume: the command that resumes this demonstration.
             learn: the command that learns from it.
-            yes: how a yes is typed.
-            rename: keeps another name of the teacher, and returns it.
-            after: learns from what was shown, and plays by it.
-            tour: show a new teacher around.
+            yes: parses a typed yes.
+            rename: stores another name of the teacher, and returns it.
+            after: learns from the demonstrations, and plays by them.
+            tour: whether to show the tour.
         """
         self._together = ears is not None and ears.live and not scripted
         self._teaching = teaching
@@ -125,7 +125,7 @@ class TeachingLines:
         """Whether the teacher has left to see Tangy run a game."""
         self._tour = Tour() if tour else None
         self._scripted = scripted
-        self._kept = False  # something of the present demonstration is in the log
+        self._kept = False  # part of the present demonstration is in the log
         self._complete = False  # a demonstration was completed in this session
         self._spoken: asyncio.Future[Heard | None] | None = None
         self._typed: asyncio.Future[str | None] | None = None
@@ -133,7 +133,7 @@ class TeachingLines:
             ears.tell = lambda note: write(hearing_words(note))
 
     async def run(self, *, resume: bool = True) -> None:
-        """Teach until `quit` or the end of the input. What was verified is kept."""
+        """Teach until `quit` or the end of the input. Verified steps are stored."""
         ears = self._ears
         try:
             await self._teach(resume=resume)
@@ -162,12 +162,12 @@ class TeachingLines:
             elif command is not None:
                 self._tell(teaching.apply(command))
             if self._ears is not None:
-                if asked is not None and teaching.question is not asked:  # it answers no other
+                if asked is not None and teaching.question is not asked:  # for the next question
                     self._ears.asking(False)
                 self._ears.asking(teaching.question is not None, _choices(teaching.question))
 
     def _leave(self) -> None:
-        """Say what becomes of what was shown, and what to do next."""
+        """Write what happens to the demonstration, and what to do next."""
         if self.plays:
             return
         shown = self._teaching.demonstration
@@ -179,11 +179,11 @@ class TeachingLines:
             self._write(NOTHING_CHANGED)
 
     async def _next_line(self) -> str | Heard | None:
-        """Return what comes next: the spoken command if one is due, otherwise a line.
+        """Return the next input: a spoken command if one is due, otherwise a line.
 
-        A recording goes before the lines, so that a script can answer it; somebody who is
-        speaking now may as well type. While a question is open, what is spoken waits until it is
-        answered, unless it answers it or stops the robot.
+        A recording goes before the lines, so that a script can answer it; a live speaker may also
+        type.
+        While a question is open, speech waits unless it answers the question or stops the robot.
         """
         asks = self._teaching.question is not None
         if self._ears is None or (asks and not (self._together or self._answers)):
@@ -210,7 +210,7 @@ class TeachingLines:
         return said.text if isinstance(said, Say) and said.commands is None else said
 
     def _reading(self) -> asyncio.Future[str | None]:
-        """Read a line beside the program, in a thread that does not hold up its end."""
+        """Read a line in a thread that does not delay the end of the program."""
         loop = asyncio.get_running_loop()
         line: asyncio.Future[str | None] = loop.create_future()
 
@@ -220,7 +220,7 @@ class TeachingLines:
 
         def wait() -> None:
             read = self._read()
-            with suppress(RuntimeError):  # the program has ended meanwhile
+            with suppress(RuntimeError):  # the program has ended
                 loop.call_soon_threadsafe(give, read)
 
         Thread(target=wait, daemon=True).start()
@@ -279,7 +279,7 @@ class TeachingLines:
         return None
 
     def _tours(self, text: str) -> bool:
-        """Go on with the tour, or end it, where a line says so."""
+        """Continue or end the tour, if a line says so."""
         tour, skips = self._tour, text.casefold() == "skip"
         if tour is None or tour.at is None or not (skips or (tour.enter_goes_on and not text)):
             return False
@@ -298,7 +298,7 @@ class TeachingLines:
             self._write(words)
 
     def _named(self, name: str) -> str:
-        """Let somebody else teach, or say who does where no name was given."""
+        """Change the teacher's name, or return it if no name is given."""
         teaching = self._teaching
         if not name or self._rename is None:
             return teaches_as(teaching.teacher)
@@ -311,7 +311,7 @@ class TeachingLines:
         return renamed_teacher(teaching.teacher, teaching.demonstration.teacher)
 
     def _perform(self, word: Perform) -> None:
-        """Learn, or leave for a game; what else keys do needs a screen."""
+        """Learn, or leave for a game; other actions need a screen."""
         lines, self.plays = (
             ([ON_THE_SCREEN], False) if self._after is None else (self._after.perform(word))
         )
@@ -340,7 +340,7 @@ class TeachingLines:
             self._write(line)
 
     def _drop_answer(self) -> None:
-        """Forget a line that was typed before the question that it would answer."""
+        """Drop a line that was typed before the question that it would answer."""
         typed = self._typed
         if typed is not None and typed.done() and read_answer(typed.result() or "") is not None:
             self._typed = None
@@ -384,14 +384,14 @@ class TeachingLines:
 
 
 def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:
-    """Say whether what was spoken is there, and is a new command."""
+    """Return whether recognised speech is available, and is a new command."""
     if not spoken.done() or spoken.cancelled() or spoken.exception() is not None:
         return False
     return isinstance(spoken.result(), Say)
 
 
 def _choices(question: Asked | Offered | None) -> tuple[str, ...]:
-    """Return what can be chosen in place of what a question is about, as it is asked about."""
+    """Return the alternatives of a question, as worded in it."""
     match question:
         case Offered():
             return question.questions

@@ -1,7 +1,7 @@
-"""How a yes is typed to a question by lines: y, or a digit where the person sits elsewhere.
+"""A typed yes in the console: y, or a digit if the person is on another machine.
 
-A line that was typed before its question was written answers nothing. From another machine it may
-be on its way longer than that can be told; there the yes is a digit that the question names.
+A line typed before its question does not answer it. From another machine its delay is unknown, so
+there the yes is a digit that the question names.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tangy_tui.text.questions import yes_words
 
 
 class TypedYes:
-    """Says which line is a yes to the question that was asked last."""
+    """Parses a typed yes to the last question."""
 
     def __init__(
         self,
@@ -28,13 +28,13 @@ class TypedYes:
         session: Callable[[], TerminalSession] = terminal_session,
         flush: Callable[[], None] | None = None,
     ) -> None:
-        """Make it.
+        """Parse typed answers.
 
         Args:
-            terminal: the lines are typed by a person now; a script answers as it is written.
-            setting: what the user wants.
-            session: looks at where the person sits.
-            flush: drops what was typed and not yet read (default: on standard input).
+            terminal: a person types the lines; a script answers as written.
+            setting: the user's setting of the key for yes.
+            session: returns where the terminal is.
+            flush: drops typed input that was not read yet (default: of standard input).
         """
         self._terminal = terminal
         self._digit = terminal and (setting == "digit" or (setting == "auto" and session().remote))
@@ -43,11 +43,11 @@ class TypedYes:
         self.key = "Y"
 
     def ask(self, typed: SimpleQueue[str | None] | None = None) -> str:
-        """Drop the answers that were typed ahead, and return what says yes to a new question.
+        """Drop answers typed ahead, and return the key for yes to a new question.
 
         Args:
-            typed: the lines that were read already. Where there are such, nothing is dropped of
-                what is being typed: it may be a stop.
+            typed: the lines read so far, of which answers are dropped. In this case unread input is
+                kept, since it may be a stop.
         """
         if self._terminal and typed is None:
             self._flush()
@@ -58,11 +58,11 @@ class TypedYes:
         return self.key
 
     def ask_of(self, said: Verification, typed: SimpleQueue[str | None] | None = None) -> str:
-        """Do so where a verification asks something; return what says yes to it."""
+        """Do so if a verification asks something; return the key for yes."""
         return self.ask(typed) if isinstance(said, Asked | Offered) else self.key
 
     def answer(self, line: str) -> Reply | str | None:
-        """Return the answer that a line is, what is wrong with it, or None if it is none."""
+        """Return the answer in a line, the problem with it, or None if it is none."""
         reply = read_answer(line)
         if not self._digit or reply is None:
             return reply
@@ -84,10 +84,10 @@ def _drop_answers(typed: SimpleQueue[str | None]) -> None:
 
 
 def _flush_input() -> None:
-    """Drop what was typed on the terminal and not read."""
+    """Drop unread input of the terminal."""
     import termios
 
     try:
         termios.tcflush(sys.stdin, termios.TCIFLUSH)
-    except (termios.error, ValueError):  # it has gone; there is nothing to drop
+    except (termios.error, ValueError):  # it is closed; there is nothing to drop
         return

@@ -1,4 +1,4 @@
-"""Looking on by lines: what happens in a game that another program runs, as it happens."""
+"""Looking on in the console: the events of a game that another program runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tangy_tui.text.register import staff_names
 
 
 class WatchingLines:
-    """Tells a game by lines, or as JSON lines. `look` again and again, or `run`."""
+    """Writes a game in lines, or as JSON lines. Call `look` repeatedly, or `run`."""
 
     def __init__(
         self, folder: Path, store: Store, write: Callable[[str], None], *, as_json: bool = False
@@ -26,9 +26,9 @@ class WatchingLines:
 
         Args:
             folder: the data folder.
-            store: its log, opened for reading.
+            store: its log, open for reading.
             write: writes a line.
-            as_json: each line is a JSON document.
+            as_json: write each line as a JSON document.
         """
         self.guest = Guest(folder)
         self._log = WatchedLog(store)
@@ -38,7 +38,7 @@ class WatchingLines:
         self._there = False
 
     def run(self, ends: Callable[[], bool] = lambda: False) -> None:
-        """Tell what happens until `ends` says so, or the program that ran the games has gone."""
+        """Write events until `ends` returns True, or the program that ran the games has ended."""
         self._tell_first()
         while not ends():
             was = self._there
@@ -49,7 +49,7 @@ class WatchingLines:
         self.guest.close()
 
     def look(self) -> None:
-        """Tell what is new."""
+        """Write new events."""
         self._there = self.guest.look()
         news = self._log.news()
         if news is not None:

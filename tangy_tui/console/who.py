@@ -1,4 +1,4 @@
-"""Asking the teacher's name by lines, once; it is kept."""
+"""Asks for the teacher's name in the console, once, and stores it."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from tangy_tui.text.who import TYPE_A_NAME, TYPE_NAME, WHO, WHO_DETAIL
 def ask_who(
     folder: Path, read: Callable[[], str | None], write: Callable[[str], None]
 ) -> tuple[str, bool]:
-    """Return who teaches, and whether they have said so only now; it is kept.
+    """Return the teacher's name, and whether it was given just now.
 
     Args:
         folder: the data folder.
-        read: returns the next line, None where there is none any more.
+        read: returns the next line, None at the end.
         write: writes a line.
     """
     profile, usual = read_profile(folder), login_name()

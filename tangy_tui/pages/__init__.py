@@ -1,1 +1,1 @@
-"""Pages for the web browser: what reports are made of, and the report of a session."""
+"""HTML pages: building blocks of reports, and the report of a session."""

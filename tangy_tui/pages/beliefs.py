@@ -10,14 +10,14 @@ from tangy_profiles.beliefs import Beta
 from tangy_tui.monitoring.session import Attempts, Progress
 
 WIDTH, LEFT, RIGHT, ROW, AXIS = 460, 100, 22, 30, 20
-"""Of the drawing, in its own units: the strategies' names stand left, the axis below."""
+"""The layout of the drawing in its own units: names of strategies at the left, the axis below."""
 LONGEST = 13
-"""Letters of a strategy's name that there is room for."""
+"""The most letters of a strategy's name."""
 
 
 @cache
 def interval(alpha: float, beta: float) -> tuple[float, float]:
-    """Return the interval of a Beta belief, two probabilities, worked out once."""
+    """Return the interval of a Beta posterior, two probabilities; cached."""
     return Beta(alpha, beta).interval()
 
 

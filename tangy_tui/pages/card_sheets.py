@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from fpdf import FPDF
 
 PAPERS = {"a4": (297.0, 210.0), "letter": (279.4, 215.9), "a5": (148.0, 210.0)}
-"""Width and height in mm of a sheet: two cards beside each other, or one on A5, which is cut."""
+"""Width and height of a sheet in mm: two cards side by side, or one on A5, which is cut."""
 CUT = 4.0  # mm, the length of a cut mark
 POINTS = 72 / 25.4  # to the mm
-LONG_AGO = datetime(2000, 1, 1, tzinfo=UTC)  # the same cards give the same file on every day
+LONG_AGO = datetime(2000, 1, 1, tzinfo=UTC)  # a fixed date: the same cards give the same file
 
 
 def card_sheets(activity: Activity, cards: Sequence[int], seed: int, paper: str) -> bytes:
-    """Make a PDF of cards, two to a sheet with cut marks (A5: one), and of the call sheet."""
+    """Create a PDF of cards, two to a sheet with cut marks (A5: one), and of the call sheet."""
     from fpdf import FPDF
 
     width, height = PAPERS[paper]
@@ -53,7 +53,7 @@ def card_sheets(activity: Activity, cards: Sequence[int], seed: int, paper: str)
 
 
 class _Pen:
-    """Draws in mm of a card on a sheet that has the card somewhere, in some size."""
+    """Draws in a card's mm on a sheet, with the card's position and scale."""
 
     def __init__(self, pdf: FPDF, left: float, top: float, scale: float) -> None:
         self._pdf, self._left, self._top, self._scale = pdf, left, top, scale
@@ -78,7 +78,7 @@ class _Pen:
 
 
 def _cut_marks(pdf: FPDF, width: float, height: float, scale: float) -> None:
-    """Draw short grey lines where the cards are cut; where the sheet ends, there is none."""
+    """Draw short grey lines where the cards are cut, except at the edges of the sheet."""
     pdf.set_draw_color(120)
     pdf.set_line_width(0.2)
     middle, across, down = width / 2, WIDTH * scale, HEIGHT * scale

@@ -1,4 +1,4 @@
-"""The pages of a person over time, and of a house over months."""
+"""The reports of a person over time, and of a care home over months."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ def house_page(
     people: Sequence[PersonOverTime],
     others: Sequence[GameWorld],
 ) -> str:
-    """Return the page of a house: its months, people and faults.
+    """Return the report of a house: its months, people and faults.
 
     Args:
-        logs: of its robots.
-        world: whose games are told of.
-        people: who took part in them.
-        others: the worlds of which there are games as well.
+        logs: the logs of its robots.
+        world: the world whose games are reported.
+        people: the people in these games.
+        others: other worlds that also have games.
     """
     games = of_world(logs, world)
     parts = [*_notes(logs, others), heading(say.MONTHS)]
@@ -42,13 +42,13 @@ def person_page(
     world: GameWorld,
     others: Sequence[GameWorld],
 ) -> str:
-    """Return the page of one person: game by game, and what works with them.
+    """Return the report of one person: game by game, and what works with them.
 
     Args:
-        person: who, with the games that are told of.
-        logs: of the robots.
-        world: whose games are told of.
-        others: the worlds of which there are games as well.
+        person: the person, with the games to report.
+        logs: the logs of the robots.
+        world: the world whose games are reported.
+        others: other worlds that also have games.
     """
     parts = [*_notes(logs, others), table(say.WHO_COLUMNS, say.who_rows([person]))]
     if strategies := list(say.strategy_rows(person)):

@@ -1,4 +1,4 @@
-"""One self-contained HTML page: text, tables and drawings, and nothing from anywhere else."""
+"""A self-contained HTML page: text, tables and drawings, without external resources."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ figure { margin: 1rem 0; } figcaption { color: var(--dim); font-size: .9rem; }
 
 
 def document(title: str, subtitle: str, parts: Iterable[str], style: str = "") -> str:
-    """Return a whole page, which is well-formed XML, too; `style` is its own beside all pages'."""
+    """Return a whole page, which is well-formed XML too; `style` is added to the common style."""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8"/>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1"/>\n'
@@ -74,7 +74,7 @@ def figure(svg: str, caption: str) -> str:
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a table, which scrolls by itself where the window is narrow."""
+    """Return a table, which scrolls by itself in a narrow window."""
     head = "".join(f'<th scope="col">{escape(column)}</th>' for column in columns)
     body = "".join(
         "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>\n"
@@ -87,14 +87,14 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def check_place(path: Path, option: str = "--report") -> None:
-    """Check, before long work begins, that a page can be written there.
+    """Check, before long work begins, that a page can be written to a path.
 
     Args:
-        path: where it is to be written.
-        option: how the place was given on the command line.
+        path: the file to write.
+        option: the command-line option that named it.
 
     Raises:
-        TangyError: it cannot.
+        TangyError: it cannot be written.
     """
     if path.is_dir():
         raise TangyError(plain(f"{option} {path}: that is a folder; name a file in it."))
@@ -103,10 +103,10 @@ def check_place(path: Path, option: str = "--report") -> None:
 
 
 def write(path: Path, page: str, option: str = "--report") -> None:
-    """Write a page; `option` is how its place was given on the command line.
+    """Write a page; `option` is the command-line option that named the file.
 
     Raises:
-        TangyError: it cannot be written there.
+        TangyError: it cannot be written.
     """
     try:
         path.write_text(page, encoding="utf-8")

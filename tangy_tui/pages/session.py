@@ -1,4 +1,4 @@
-"""The report of a session as one page: what a nurse wants to know first, then all the rest."""
+"""The report of a session as one page: first what staff want to know, then the details."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 MOST_DRAWN = 24
-"""Games that are drawn on one page; of more, the last ones."""
+"""The most games drawn on one page: the last ones."""
 
 FEW_DRAWN = 3
-"""Games that are drawn where the page is to fit on two sheets."""
+"""The most games drawn if the page should fit on two sheets."""
 
 COLUMNS = ("person", "strategy", "used", *(words for _, words in RESULTS), "before", "after")
-"""Of the table of people: the results add up to how often a strategy was used."""
+"""The columns of the table of people: the results add up to the uses of a strategy."""
 
 STYLE = """
 :root { --critical: #b91c1c; --minor: #b45309; --on: #ffffff; }
@@ -96,11 +96,11 @@ KEY = (
     ('<g class="fault critical"><path d="M10 0L18 8L10 16L2 8Z"/></g>', "critical fault"),
     ('<rect class="halt" x="1" y="0" width="18" height="16"/>', say.STOOD_STILL),
 )  # fmt: skip
-"""The marks of the timeline, and what they mean."""
+"""The marks of the timeline, with their meanings."""
 
 
 def session_page(session: Session, *, full: bool = True) -> str:
-    """Return the page of a session: what staff need, and in `full` what researchers ask as well."""
+    """Return the report of a session for staff; `full` adds the details for researchers."""
     games = session.games
     title = f"{session.title}: session of {day_and_time(games[0].at)}"
     parts = [*_head(session), *_care(session), *people_part(session)]
@@ -192,7 +192,7 @@ def _care(session: Session) -> Iterator[str]:
     told: set[tuple[str, str]] = set()
     for fault in session.look_after:
         if (fault.name, fault.console) in told:
-            continue  # once is enough, however often it came
+            continue  # once is enough for repeated faults
         told.add((fault.name, fault.console))
         steps = "".join(f"<li>{escape(step)}</li>" for step in fault.advice)
         number = f"{numbers[fault.id]}. " if fault.id in numbers else ""
@@ -317,7 +317,7 @@ def _fault(fault: Fault, number: int, replay: GameReplay, many: bool) -> str:
 
 
 def _times(replay: GameReplay, fault: Fault) -> Iterator[tuple[float, str, str]]:
-    """Yield the moments of a fault: time in the game (s), on the clock, and what was done."""
+    """Yield the moments of a fault: time in the game (s), local time, and what was done."""
     moves = iter(fault.moves)
     for moment in replay.moments:
         if getattr(moment.what, "fault", None) is fault:
@@ -360,6 +360,6 @@ def _notes(session: Session) -> Iterator[str]:
 
 
 def _numbers(session: Session) -> dict[str, int]:
-    """Number the faults of a session, as they stand on the drawing and in the lists."""
+    """Number the faults of a session, for the drawing and the lists."""
     faults: Sequence[Fault] = session.faults
     return {fault.id: number for number, fault in enumerate(faults, 1)}

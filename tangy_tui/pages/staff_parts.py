@@ -1,4 +1,4 @@
-"""The parts of a session's page that staff read first: people, numbers, what staff did, faults."""
+"""The parts of a session's report that staff read first: people, calls, staff actions, faults."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ STYLE = """
 
 
 def people_part(session: Session) -> Iterator[str]:
-    """Tell what each person got: requests, waits, visits, help, and what they did when asked."""
+    """Report each person's requests, waits, visits, help, and responses."""
     found = attention(session.replays)
     answers = [answer for replay in session.replays for _, answer in replay.answers]
     yield heading(say.PEOPLE)
@@ -51,7 +51,7 @@ def people_part(session: Session) -> Iterator[str]:
 
 
 def calls_part(session: Session) -> Iterator[str]:
-    """Tell the numbers that were called, game by game, in their order."""
+    """List the calls of each game, in order."""
     told = [(replay.game, calls_in(replay)) for replay in session.replays]
     told = [(game, calls) for game, calls in told if calls]
     if not told:
@@ -71,7 +71,7 @@ def calls_part(session: Session) -> Iterator[str]:
 
 
 def player_facts_part(session: Session) -> Iterator[str]:
-    """Tell what people answered and what was counted for each, game by game."""
+    """Report people's answers and counts, game by game."""
     found = session.player_facts
     if not found:
         return
@@ -87,14 +87,14 @@ def player_facts_part(session: Session) -> Iterator[str]:
 
 
 def staff_part(session: Session) -> Iterator[str]:
-    """Tell what staff did, and when."""
+    """List the actions of staff, with times."""
     rows = say.staff_rows(session.replays, session.name)
     yield heading(say.STAFF)
     yield table(say.STAFF_COLUMNS, rows) if rows else paragraph(say.NO_STAFF)
 
 
 def faults_part(session: Session) -> Iterator[str]:
-    """Tell each fault in a line: when, what, and what came of it."""
+    """List the faults: when, what, and how each ended."""
     rows = [
         (time_of_day(at), fault.name, say.fault_outcome(fault, status_words(fault.status)))
         for at, fault in session.timed_faults

@@ -12,26 +12,26 @@ from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay
 from tangy_tui.text.sessions import status_words
 
 WIDTH, LEFT, RIGHT = 1000, 118, 18
-"""Of the drawing, in its own units; the lanes' names stand left of the lanes."""
+"""The layout of the drawing in its own units; the names of the lanes are at the left."""
 AXIS, BAND, TICKS, LANE, MARKS = 26, 26, 24, 26, 28
-"""Heights: the axis, the stages, what is said to all, one person, one row of faults."""
+"""Heights: the axis, the stages, speech to all, one person, one row of faults."""
 STEPS = (1, 2, 5, 10, 15, 20, 30, 60, 120, 240, 480)
 MOST_TICKS = 11
 INKS = (1, 3, 4, 6, 5, 2)
-"""The page's inks for stages, in order; the one that looks like a fault's comes last."""
+"""The inks of stages, in order; the one similar to faults' comes last."""
 LETTER = 7.2
-"""About how wide a letter is."""
+"""The approximate width of a letter."""
 
 
 class Span(NamedTuple):
-    """A stretch of the game, by time (s) or, where no times are known, by steps."""
+    """A span of the game, by time (s) or, without times, by steps."""
 
     begun: float
     over: float
 
 
 class Scale:
-    """Places what happened on the drawing: by time, or by steps where the log has no times."""
+    """Maps events to the drawing: by time, or by steps if the log has no times."""
 
     def __init__(self, replay: GameReplay) -> None:
         self.timed = replay.timed
@@ -42,15 +42,15 @@ class Scale:
         self.end = max(end, 1.0)
 
     def at(self, seconds: float, step: int) -> float:
-        """Return where a moment, in s of the game, is on the axis (a share of it)."""
+        """Return the position of a moment, in s of the game, on the axis (in s, or in steps)."""
         return seconds if self.timed else float(step)
 
     def x(self, where: float) -> float:
-        """Return the place on the drawing, in px, of a share of the axis."""
+        """Return the x in px of a position on the axis (in s, or in steps)."""
         return LEFT + (WIDTH - LEFT - RIGHT) * min(max(where, 0.0), self.end) / self.end
 
     def ticks(self) -> Iterator[tuple[float, str]]:
-        """Yield where the axis is marked (a share of it), and with what."""
+        """Yield the ticks of the axis: their position (in s, or in steps), and label."""
         unit = 60 if self.timed else 1
         whole = self.end / unit
         step = next((s for s in STEPS if whole / s < MOST_TICKS), max(1, round(whole / 10)))
@@ -69,9 +69,9 @@ def timeline(
 
     Args:
         replay: the game, step by step.
-        numbers: what stands on each fault's mark, by its id.
-        names: of the people, by id.
-        stages: those of the session with their words, in the order in which they get their inks.
+        numbers: the number on each fault's mark, by its id.
+        names: the names of the people, by id.
+        stages: the stages of the session with their words, in the order of their inks.
     """
     scale = Scale(replay)
     people = list(replay.game.people)
@@ -109,7 +109,7 @@ def timeline(
 
 
 def stages_of(replays: Sequence[GameReplay]) -> list[str]:
-    """Return the stages that came about, in the order in which they first did."""
+    """Return the stages that occurred, in order of first occurrence."""
     return list(dict.fromkeys(done.state.stage for replay in replays for done in replay.done))
 
 
@@ -123,7 +123,7 @@ def _axis(scale: Scale, height: float) -> Iterator[str]:
 
 
 def _halts(replay: GameReplay, scale: Scale, height: float) -> Iterator[str]:
-    """Shade the time in which the robot stood still because of a critical fault."""
+    """Shade the time in which a critical fault halted the robot."""
     begun: float | None = None
     for moment in replay.moments:
         kind = moment.what.move.kind if isinstance(moment.what, Moved) else ""
@@ -146,7 +146,7 @@ def _halt(scale: Scale, span: Span, height: float) -> str:
 
 
 def ink(stage: str, stages: Iterable[str]) -> str:
-    """Return the class of a stage's band."""
+    """Return the CSS class of a stage's band."""
     return f"s{INKS[list(stages).index(stage) % len(INKS)]}"
 
 
@@ -208,7 +208,7 @@ def _asks(done: Done, person: str) -> bool:
 
 
 def _spans(replay: GameReplay, scale: Scale, holds: Callable[[Done], bool]) -> Iterator[Span]:
-    """Yield the stretches from the end of one behaviour to the next in which something holds."""
+    """Yield the spans, from the end of one behaviour to the next, in which a condition holds."""
     begun: float | None = None
     for done in replay.done:
         here = scale.begun[done.number]
@@ -224,7 +224,7 @@ def _spans(replay: GameReplay, scale: Scale, holds: Callable[[Done], bool]) -> I
 def _answer(x: float, y: float, answer: AnsweredRequest) -> str:
     """Mark a person's response: a dot, a ring if it was late, a cross if there was none.
 
-    What is not known is a broken ring.
+    An unknown response is a broken ring.
     """
     if answer.complied:
         return f'<circle class="yes" cx="{x:.1f}" cy="{y}" r="5"><title>complied</title></circle>'
@@ -243,7 +243,7 @@ def _answer(x: float, y: float, answer: AnsweredRequest) -> str:
 
 
 def _fault_span(replay: GameReplay, fault: Fault, scale: Scale) -> tuple[float, float]:
-    """Return from where to where a fault was dealt with; to the end where it stayed."""
+    """Return the start and end of a fault; an open one lasts to the end of the game."""
     begun, over = None, scale.end
     for moment in replay.moments:
         if getattr(moment.what, "fault", None) is not fault:
@@ -257,7 +257,7 @@ def _fault_span(replay: GameReplay, fault: Fault, scale: Scale) -> tuple[float, 
 
 
 def _stacked(spans: Sequence[tuple[float, float]]) -> list[int]:
-    """Give every mark the first row in which it does not lie on another."""
+    """Assign every mark to the first row in which it does not overlap another."""
     ends: list[float] = []
     rows: list[int] = []
     for begun, over in spans:
