@@ -32,8 +32,7 @@ class Wires:
     """The addresses of the simulated devices.
 
     `corners` are those of the table in the infrared picture (px); `faces` maps the id of each
-    person
-    to the number of their drawn face.
+    person to the number of their drawn face.
     """
 
     rosbridge: str

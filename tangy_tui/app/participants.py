@@ -130,8 +130,7 @@ class Participants:
 
         Raises:
             TangyError: a phone is unknown, the number of words differs from the name's, or it
-                sounds
-                like another person's name or like a phrase.
+                sounds like another person's name or like a phrase.
         """
         self.store.pronounce(person.id, phones and self.check_said(person, phones))
         self.read_people()
@@ -158,8 +157,7 @@ class Participants:
         """Forget a person: name, pronunciation, voice, face, and consent.
 
         The name is also deleted from typed and recognised words in the log and in the files of the
-        data
-        folder. The person's actions stay in the log, under an id that names nobody.
+        data folder. The person's actions stay in the log, under an id that names nobody.
 
         Args:
             person: the person to forget.

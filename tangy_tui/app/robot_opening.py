@@ -187,8 +187,7 @@ def open_robot(
     `requests` names the sensor of requests, with the `corners` of the table in its pictures; by
     default the robot's file names it. The robot starts at the front, unless it is `lost`: then it
     localises itself. `cards` maps people to the numbers of their cards, `courtesies` are the
-    robot's
-    words to people for whom it waits. `cancellation` cancels the opening.
+    robot's words to people for whom it waits. `cancellation` cancels the opening.
 
     Raises:
         Cancelled: it was cancelled.

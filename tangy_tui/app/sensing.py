@@ -33,8 +33,7 @@ class LinkedSensors:
     """The devices of a robot, read through its process; satisfies `sensor_lines.Sensing`.
 
     Within `async with` it polls the state of the cameras. It shows the card that the game read
-    last,
-    and triggers no reading of its own.
+    last, and triggers no reading of its own.
     """
 
     def __init__(self, link: RobotLink, robot: Robot, deck: Deck) -> None:

@@ -61,8 +61,7 @@ def teaching_world(activity: Activity, shown: Demonstration, store: Store) -> Wo
     """Create the simulated world of a demonstration, in which people ask more often.
 
     The guided world of a declared activity creates situations that earlier demonstrations in the
-    log
-    have not covered.
+    log have not covered.
     """
     if isinstance(activity, DeclaredActivity):
         return _declared_teaching(activity, shown, store)

@@ -63,8 +63,7 @@ def terminal_session(
     """Inspect the environment and the ancestors of this process.
 
     A multiplexer outlives its client and may be attached from elsewhere: its session counts as
-    remote
-    if one of the clients is remote, or if one of them cannot be inspected.
+    remote if one of the clients is remote, or if one of them cannot be inspected.
 
     Args:
         environ: the environment (default: the process's own).

@@ -26,8 +26,7 @@ class UserSettings:
     """The settings of the user interface.
 
     `question`: the key for a yes to a question; `keymap`: the keys of the actions; `link`: the
-    speed
-    of the connection to the terminal.
+    speed of the connection to the terminal.
     """
 
     question: QuestionKey = "auto"

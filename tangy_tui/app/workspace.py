@@ -152,8 +152,7 @@ class Workspace(Participants):
         """Create a teaching session; `begin` resumes an unfinished demonstration.
 
         Without a seed, the session takes one that no demonstration has used yet. A guided game
-        brings
-        about every situation. `again` names a demonstration to show again from some step.
+        brings about every situation. `again` names a demonstration to show again from some step.
         """
         from tangy_tui.learning import library
         from tangy_tui.learning.teaching_session import TeachingSession

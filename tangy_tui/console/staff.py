@@ -1,8 +1,7 @@
 """Games in the console, with staff who type at any time or by turns.
 
-At any time (`run`): every line may intervene. One thread runs the games, one reads the lines, and
-one carries out commands that wait for the current behaviour. At the end of the input, a game that
-waits for staff is ended.
+At any time (`run`): every line may intervene. One thread runs the games, one reads the lines, one
+carries out commands that wait for the current behaviour. The end of the input ends a waiting game.
 
 By turns (`run_by_turns`): a line is read only when Tangy waits for staff, as scripts need it.
 """
@@ -244,8 +243,7 @@ class StaffLines:
         """Handle lines while a game runs. Until it has begun, only a STOP is handled at once.
 
         In a script with waits, a STOP comes in its order. Lines for Tangy's next action are kept
-        until
-        Tangy asks for it.
+        until Tangy asks for it.
         """
         early: deque[str] = deque()
         while playing.is_alive():

@@ -62,9 +62,8 @@ class StoryFrame:
     """One moment of the story.
 
     `scene` counts from 1, `lines` are those under `heading` so far and `new` the number of lines
-    new
-    in this frame, `typed` is the teacher's command and `asked` the question about it, `said` the
-    robot's speech, `seconds` the time to read the frame.
+    new in this frame, `typed` is the teacher's command and `asked` the question about it, `said`
+    the robot's speech, `seconds` the time to read the frame.
     """
 
     scene: int

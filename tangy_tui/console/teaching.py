@@ -182,8 +182,8 @@ class TeachingLines:
         """Return the next input: a spoken command if one is due, otherwise a line.
 
         A recording goes before the lines, so that a script can answer it; a live speaker may also
-        type.
-        While a question is open, speech waits unless it answers the question or stops the robot.
+        type. While a question is open, speech waits unless it answers the question or stops the
+        robot.
         """
         asks = self._teaching.question is not None
         if self._ears is None or (asks and not (self._together or self._answers)):

@@ -252,8 +252,7 @@ class TangyApp(App[None]):
         """Ignore errors of a screen that was still being laid out when the program ended.
 
         Textual mounts nothing once an application exits, so that such a screen does not find its
-        widgets.
-        All other errors are reported.
+        widgets. All other errors are reported.
         """
         if not (self._exit and isinstance(error, NoMatches)):
             super()._handle_exception(error)

@@ -23,8 +23,7 @@ async def first_start(
     """Ask for the teacher's name if it is unknown, then start.
 
     A new teacher gets the tour, within a guided game if nobody has taught the activity yet.
-    Otherwise
-    the home screen stays: staff may have come to run a game.
+    Otherwise the home screen stays: staff may have come to run a game.
     """
     if asks and not read_profile(program.workspace.store.folder).name:
         program.new_teacher = await ask_name(program, unasked=True) is not None

@@ -52,8 +52,7 @@ def run_teaching(
     """Open the teaching screen; return the exit status.
 
     The scripted teacher gives `games` demonstrations at `speed` steps a second, then the
-    application
-    ends; a human teacher returns to the home screen.
+    application ends; a human teacher returns to the home screen.
     """
 
     async def start(program: Program) -> None:
@@ -96,8 +95,8 @@ def run_playing(
     """Open the playing screen (speed in times life); return the exit status.
 
     The default speed is 1 if Tangy speaks or if `sensors` are given, which then count as the
-    robot's
-    cameras; otherwise it is faster. Answers to Tangy's questions may be spoken if there are `ears`.
+    robot's cameras; otherwise it is faster. Answers to Tangy's questions may be spoken if there are
+    `ears`.
     """
     return _run(
         workspace,

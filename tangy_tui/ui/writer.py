@@ -13,9 +13,8 @@ class OutlivingWriter(WriterThread):
     """Textual's writer thread, except that it outlives its terminal.
 
     If a window is closed, a write fails and Textual's writer ends. Nobody empties its queue, and
-    the
-    program waits forever to exit, with the data folder still locked. This writer continues to empty
-    the queue and drops the output.
+    the program waits forever to exit, with the data folder still locked. This writer continues to
+    empty the queue and drops the output.
     """
 
     def run(self) -> None:

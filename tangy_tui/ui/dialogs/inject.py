@@ -50,8 +50,7 @@ class InjectDialog(Dialog[str | None]):
             there: the kinds of the present faults.
             to_come: the kinds that are still to come.
             called: the kinds that are possible for this robot, with the console's name of each
-                fault,
-                which the filter also matches.
+                fault, which the filter also matches.
         """
         super().__init__(None)
         self._all = [kind for kind in KINDS.values() if kind.name in called]

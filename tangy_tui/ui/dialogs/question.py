@@ -62,8 +62,7 @@ class VerifyingDialog(Dialog[Answer]):
 
     It replaces the command bar, so that little changes on the screen. Enter and space do nothing.
     Keys typed, or words spoken, before it was visible do not answer it. On a no, the caller puts
-    the
-    text back into the command bar.
+    the text back into the command bar.
     """
 
     DEFAULT_CSS = """

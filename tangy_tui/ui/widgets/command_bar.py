@@ -86,8 +86,7 @@ class CommandInput(Input):
         """Handle each key before the next one.
 
         Textual would send Enter and the arrows to the app and back while it already inserts the
-        letters
-        that follow; keys that arrive together would change order.
+        letters that follow; keys that arrive together would change order.
         """
         bindings = self._bindings.key_to_bindings.get(event.key, [])
         asks_for_help = event.key == "question_mark" and not self.value

@@ -92,8 +92,7 @@ class MicrophoneLine(Inked):
     """One line; costs nothing while the microphone is closed.
 
     Call `look` when the state or the words may have changed. Level and trouble are polled at most
-    ten
-    times a second, and redrawn when they change.
+    ten times a second, and redrawn when they change.
     """
 
     DEFAULT_CSS = """

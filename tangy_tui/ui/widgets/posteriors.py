@@ -39,8 +39,7 @@ class Posteriors(RowView, can_focus=True):
     """For each person and strategy: curve, complied / asked, mean and P(best).
 
     A star marks the strategy with the highest P(best) if it is unique; a settled one is named
-    beside
-    the person. Only changed lines are redrawn.
+    beside the person. Only changed lines are redrawn.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [

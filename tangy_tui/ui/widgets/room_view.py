@@ -39,8 +39,7 @@ class RoomView(Inked):
     """Robot and people in the activity room, seen from behind the people.
 
     `show` draws a scene at once; `drive` animates the robot to its destination, and `hold` freezes
-    it
-    at its drawn position, whatever scene is shown.
+    it at its drawn position, whatever scene is shown.
     """
 
     DEFAULT_CSS = """
@@ -182,8 +181,7 @@ class RoomView(Inked):
         """Animate the robot to the front or a person in some s; posts `Arrived` at the end.
 
         It starts from the drawn position, so that the scene with its destination may be shown
-        before or
-        after.
+        before or after.
         """
         self._at = self._seen
         self._seconds = max(0.0, seconds)
