@@ -1,1 +1,1 @@
-"""The verbs of the command line, a file for each subject; `cli.py` puts them together."""
+"""The commands of the command line, one module for each subject; `cli.py` combines them."""

@@ -1,4 +1,4 @@
-"""`tangy activity`: which activities there are, and whether their files have mistakes."""
+"""`tangy activity`: list activities, check their files, and write new ones."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ app = typer.Typer(
 )
 
 LARGEST_QUESTIONS = 1_000_000  # bytes of a file of questions
-SHOWN = 4  # people with whom phrases are tried: most behaviours can be asked for by a name
+SHOWN = 4  # people with whom phrases are tried: most behaviours can be aimed at a person
 
 
 @app.callback(invoke_without_command=True)
@@ -54,7 +54,7 @@ def activity_list(as_json: Json = False) -> None:
             found.append((name, load_activity(name)))
         except ProfileError:
             if name in shipped:
-                raise  # of what others bring, `tangy doctor` says what is wrong
+                raise  # an activity of another package; `tangy doctor` tells its mistake
     if as_json:
         print_json([_activity_document(name, activity) for name, activity in found])
         return
@@ -221,7 +221,7 @@ def activity_new(
 
 
 def _write_new(folder: Path, name: str, activity: str, items: str) -> None:
-    """Write the file of a new activity, and its table if it has one, over nothing."""
+    """Write the file of a new activity, and its table if it has one; never overwrite a file."""
     from tangy_tui.text import activity_template as template
 
     toml, table = folder / f"{name}.toml", folder / f"{name}.csv"
@@ -255,7 +255,7 @@ def _yes_or_no(text: str) -> bool | None:
 
 
 def _asked(question: str) -> str:
-    """Ask for a line; what could not stand in a file's text is left out."""
+    """Ask for a line; drop characters that would break a TOML string."""
     try:
         said = input(question)
     except EOFError:
@@ -320,7 +320,7 @@ def activity_hear(
 
 
 def _holds_faults(file: str) -> bool:
-    """Say whether a file is one of fault rules; one that cannot be read is told of later."""
+    """Return whether a file holds fault rules; a file that cannot be read is reported later."""
     from tangy_profiles.reading import read_toml
 
     if not file.endswith(".toml"):

@@ -1,4 +1,4 @@
-"""`tangy camera` and `tangy capture`: see whether a camera works, and record what it sees."""
+"""`tangy camera` and `tangy capture`: check a camera, and record its pictures."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ async def _capture(
 
 
 def _card_reader(activity: str, deck_seed: int) -> Reader:
-    """Return what says of a picture which card is in it, as `tangy read-card --json` does."""
+    """Return a function that reads the card in a picture, as `tangy read-card --json` does."""
     from tangy_hw.perception.cards.reader import CardReader
     from tangy_profiles.activity import load_activity
 
@@ -204,7 +204,7 @@ def _card_reader(activity: str, deck_seed: int) -> Reader:
 
 
 def _card(known: dict[str, Any]) -> str:
-    """Say in words which card was seen."""
+    """Describe the card that was read."""
     seen = known["seen"]
     if seen is None:
         return ""

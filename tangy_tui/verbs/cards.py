@@ -1,4 +1,4 @@
-"""`tangy cards`: print the cards that Tangy can read, and list what stands on them."""
+"""`tangy cards`: print the cards that Tangy can read, and list their numbers."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def _cards(first: int, count: int) -> Sequence[int]:
 
 
 def _draw(activity: Activity, cards: Sequence[int], seed: int, dpi: float, folder: Path) -> None:
-    """Write a picture of each card, and `cards.json` that says what stands where on it."""
+    """Write a picture of each card, and `cards.json` with its numbers and their positions."""
     from PIL import Image
 
     from tangy_profiles.card_face import CardLayout, rows_of

@@ -1,4 +1,4 @@
-"""Which verbs there are, and the module of each: it is imported when the verb is called."""
+"""The commands and their modules, each of which is imported when its command is called."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from typer.core import TyperGroup
 
 @dataclass(frozen=True)
 class Verb:
-    """Where a verb is found: a function of a module, or a module's `app` with verbs below it."""
+    """Where a command is defined: a function of a module, or a module's `app` with subcommands."""
 
     module: str
     function: str = ""
     below: tuple[tuple[str, str, str], ...] = ()
-    """Verbs below it that have modules of their own: name, module, function."""
+    """Subcommands with modules of their own: name, module, function."""
 
     def load(self, name: str) -> Any:
         """Import the verb and return it as a command of this name."""
         module = import_module(f"tangy_tui.verbs.{self.module}")
         parent = typer.Typer(add_completion=False, rich_markup_mode=None)
-        parent.callback()(lambda: None)  # so that a single verb, too, is one below it
+        parent.callback()(lambda: None)  # so that even a single command is a subcommand
         if self.function:
             parent.command(name)(getattr(module, self.function))
         else:
@@ -75,18 +75,18 @@ VERBS = {
     "report": Verb("report"),
     "store": Verb("store"),
 }
-"""In the order in which help lists them."""
+"""In the order of the help page."""
 
 
 class LazyVerbs(TyperGroup):
-    """The verbs of the program: each is imported when it is called, all of them for help."""
+    """The commands of the program: each is imported when it is called, all of them for help."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Return the names of all verbs, in the order of the help page."""
+        """Return the names of all commands, in the order of the help page."""
         return list(VERBS)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Return a verb, imported now; None where there is none of this name."""
+        """Import a command and return it; None if there is none of this name."""
         if cmd_name not in VERBS:
             return None
         if cmd_name not in self.commands:

@@ -1,4 +1,4 @@
-"""What the verbs share: their options, and how they print."""
+"""Options and output functions that the commands share."""
 
 from __future__ import annotations
 
@@ -38,18 +38,18 @@ Games = Annotated[int, typer.Option(min=1, help="How many games.")]
 
 
 def as_given(data: Path | None, users: int = REGISTERED) -> str:
-    """Return the options that a command to copy needs, so that it means the same data folder."""
+    """Return the options with which a command to copy uses the same data folder."""
     folder = "" if data is None else f" --data {shlex.quote(str(data))}"
     return folder + ("" if users == REGISTERED else f" --users {users}")
 
 
 def print_line(line: str) -> None:
-    """Print a line at once; on a terminal it is broken between words, not within them."""
+    """Print a line at once; on a terminal, wrap it between words."""
     print(fitted(line, _columns()), flush=True)
 
 
 def fitted(line: str, columns: int) -> str:
-    """Break a line between words where it is longer than so many columns; 0 breaks nowhere."""
+    """Wrap a line between words if it is longer than some columns; 0 never wraps."""
     if not columns or len(line) <= columns:
         return line
     inset = line[: len(line) - len(line.lstrip())]
@@ -61,10 +61,10 @@ def fitted(line: str, columns: int) -> str:
 
 
 def _columns() -> int:
-    """Return how wide the terminal is that lines are printed on; 0 where it is none."""
+    """Return the width of the terminal for output; 0 if it is none."""
     try:
         return os.get_terminal_size(sys.stdout.fileno()).columns if sys.stdout.isatty() else 0
-    except (OSError, ValueError):  # it has gone, or has no file
+    except (OSError, ValueError):  # it is closed, or has no file descriptor
         return 0
 
 

@@ -1,4 +1,4 @@
-"""`tangy demonstrations`: what was shown, and what is done to it afterwards."""
+"""`tangy demonstrations`: list and edit demonstrations, and settle their conflicts."""
 
 from __future__ import annotations
 
@@ -250,7 +250,7 @@ def _change(
     change: Callable[[Editor], Edit],
     before: str = "",
 ) -> None:
-    """Make a change of the library and say what it was."""
+    """Change the library, and print what changed."""
     from tangy_tui.learning.editing import Editor
     from tangy_tui.text.numbers import counted
 

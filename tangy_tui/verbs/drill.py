@@ -112,10 +112,10 @@ def drill(
 
 
 def _interrupted(workspace: Workspace, who: str, *, resume: bool, discard: bool) -> Sheet | None:
-    """Return the sheet so far of a drill that was interrupted, unless that is to be ended.
+    """Return the sheet of an interrupted drill, unless it is discarded.
 
     Raises:
-        TangyError: there is none to resume, or it is to be resumed and discarded.
+        TangyError: there is none to resume, or both options were given.
     """
     from tangy_tui.monitoring.drill_log import interrupted_sheet, keep_interrupted
     from tangy_tui.text.drills import NO_INTERRUPTED_DRILL
@@ -133,7 +133,7 @@ def _interrupted(workspace: Workspace, who: str, *, resume: bool, discard: bool)
 
 
 def _by_lines(workspace: Workspace, past: Sheet | None, *, anew: bool) -> Sheet | None:
-    """Say on standard error what becomes of an interrupted drill, which goes on if not `anew`."""
+    """Print what happens to an interrupted drill, which resumes unless `anew`."""
     from tangy_tui.monitoring.drill_log import keep_interrupted
     from tangy_tui.text.drills import begins_anew, goes_on
 

@@ -1,4 +1,4 @@
-"""`tangy experiment`: run the paper's scenarios again, and put what comes out beside the paper."""
+"""`tangy experiment`: repeat the paper's scenarios, and compare the results with the paper."""
 
 from __future__ import annotations
 
@@ -154,14 +154,14 @@ def _run(
 
 
 def _end(document: dict[str, Any]) -> None:
-    """Let a script know by the exit status that games did not come to their end."""
+    """Exit with status 1 if games stopped early, for scripts."""
     if document.get("stopped"):
         raise typer.Exit(1)
 
 
 @contextmanager
 def _progress() -> Iterator[Callable[[str, int, int], None]]:
-    """Show a bar for each sweep on stderr, where somebody can see it; say how to go on."""
+    """Show a progress bar for each sweep on a terminal; if interrupted, tell how to resume."""
     from rich.console import Console
     from rich.progress import Progress, TaskID
 

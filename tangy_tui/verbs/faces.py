@@ -1,4 +1,4 @@
-"""`tangy faces`: whose face it is, among those who agreed that Tangy knows theirs."""
+"""`tangy faces`: recognise the faces of people who consented."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Robot = Annotated[
     str, typer.Option("--robot", help="A robot, or its TOML, which may name files for faces.")
 ]
 GUEST = "guest"
-"""Somebody whose face is known and who does not play is guest1, guest2 and so on."""
+"""People who are known by face but do not play are guest1, guest2 and so on."""
 
 
 @app.command("who")
@@ -157,7 +157,7 @@ def faces_forget(
 def knowing(
     data: Path | None, robot: str, *, write: bool = False
 ) -> Iterator[tuple[Workspace, FaceReader, Gallery]]:
-    """Open the workspace, the reader of faces that the robot has, and the faces that are known."""
+    """Open the workspace, the robot's face reader, and the known faces."""
     from tangy_hw.perception.faces.face_store import read_faces
     from tangy_hw.perception.faces.gallery import Gallery
     from tangy_hw.perception.faces.reader import open_reader
@@ -169,12 +169,12 @@ def knowing(
 
 
 def names_of(workspace: Workspace) -> dict[str, str]:
-    """Return the names of all who may be known by their faces, by id."""
+    """Return the names of all who may be known by face, by id."""
     return workspace.store.names() | workspace.names
 
 
 def find_anybody(workspace: Workspace, wanted: str) -> Person:
-    """Return somebody who plays, or a guest whose face is known, by id or name.
+    """Return a player, or a guest whose face is known, by id or name.
 
     Raises:
         TangyError: nobody, or more than one, is called that.
@@ -191,7 +191,7 @@ def find_anybody(workspace: Workspace, wanted: str) -> Person:
 
 
 def _row(faces: list[FaceReading], gallery: Gallery) -> dict[str, Any]:
-    """Say of a picture whose faces are in it; the first that can be told stands for it."""
+    """Describe the faces in a picture; the first one without a problem represents it."""
     matches = [None if face.vector is None else gallery.compare(face.vector) for face in faces]
     told = [_face_row(face, match) for face, match in zip(faces, matches, strict=True)]
     chief = next((row for row in told if not row["problem"]), told[0] if told else None)
@@ -221,7 +221,7 @@ def _enough() -> float:
 
 
 def _voted(pictures: list[list[FaceReading]], gallery: Gallery) -> dict[str, Any]:
-    """Let the frames vote that show one face well."""
+    """Let the frames that show one face well vote."""
     from tangy_hw.perception.faces.enrolment import one_face
     from tangy_hw.perception.faces.face_votes import vote
 
@@ -248,7 +248,7 @@ def _voted(pictures: list[list[FaceReading]], gallery: Gallery) -> dict[str, Any
 async def _watch(
     source: CameraSource, reader: FaceReader, gallery: Gallery, seconds: float
 ) -> dict[str, Any]:
-    """Look at a camera until enough frames with a face could vote, or time is over."""
+    """Watch a camera until enough frames have a face, or time is up."""
     from tangy_hw.drivers.camera import Camera
     from tangy_hw.perception.faces.enrolment import one_face
     from tangy_hw.perception.faces.face_votes import FRAMES
@@ -272,7 +272,7 @@ async def _watch(
 
 
 def _told(row: dict[str, Any]) -> str:
-    """Say in words whose face it is."""
+    """Name the recognised person in words."""
     if row["problem"]:
         return f"cannot tell: {row['problem']}"
     likeness = "" if row["likeness"] is None else f", likeness {row['likeness']:.2f}"

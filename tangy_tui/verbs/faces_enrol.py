@@ -1,4 +1,4 @@
-"""`tangy faces enrol`: let Tangy know a person's face, once that person has agreed."""
+"""`tangy faces enrol`: learn a person's face, with their consent."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tangy_profiles.store import Store
     from tangy_tui.app.workspace import Workspace
 
-EVERY = 0.4  # seconds between two pictures of a camera: the head has moved
+EVERY = 0.4  # seconds between two pictures of a camera, for other poses of the head
 Tell = Callable[[str], None]
 
 
@@ -119,7 +119,7 @@ def faces_enrol(
 
 
 def _find(workspace: Workspace, wanted: str) -> tuple[Person, bool]:
-    """Find who is meant, or make a guest of somebody who is new; say whether they are."""
+    """Find the person, or create a guest for a new name; return also whether they are new."""
     from tangy_profiles.people_records import FaceConsent
 
     called = wanted.strip()
@@ -136,10 +136,10 @@ def _find(workspace: Workspace, wanted: str) -> tuple[Person, bool]:
 
 
 def _agreed(workspace: Workspace, person: Person, how: str | None) -> str | None:
-    """Ask the person, unless they have agreed before, or somebody says how they did.
+    """Ask the person for consent, unless they gave it before or `how` tells how they did.
 
     Returns:
-        How they agreed, "" if they had before; None if they have not.
+        How they consented, "" if they had before; None if they do not.
     """
     from tangy_hw.perception.faces.face_store import consent, consented
 
@@ -147,7 +147,7 @@ def _agreed(workspace: Workspace, person: Person, how: str | None) -> str | None
     if how is not None:
         if not how.strip():
             raise TangyError('--consent: say how they agreed, as in "in writing, asked by staff".')
-        name = re.escape(person.name)  # names stay out of the log, where nothing is deleted
+        name = re.escape(person.name)  # names stay out of the log, which keeps everything
         return re.sub(rf"\b{name}\b", person.id, how, flags=re.I)[:200]
     if person.id in consented(store):
         return ""
@@ -166,10 +166,10 @@ def _agreed(workspace: Workspace, person: Person, how: str | None) -> str | None
 
 
 def _check_same(enrolment: Enrolment, gallery: Gallery, person: Person) -> None:
-    """Refuse pictures of somebody who is known that show somebody else.
+    """Refuse pictures of a known person that show another person.
 
     Raises:
-        TangyError: most of them do not look like the person as known.
+        TangyError: most of them do not resemble the known face.
     """
     if person.id not in gallery.people:
         return
@@ -186,7 +186,7 @@ def _check_same(enrolment: Enrolment, gallery: Gallery, person: Person) -> None:
 
 
 def _note(store: Store, person: Person, new: bool, how: str) -> None:
-    """Note that a person agreed, and the name of a guest who is new: both, or neither."""
+    """Store the consent together with the name of a new guest, in one transaction."""
     from tangy_hw.perception.faces.face_store import consent
 
     with store.transaction():
@@ -242,7 +242,7 @@ async def _from_camera(
 
 
 def _chief_reason(rows: list[dict[str, Any]]) -> str:
-    """Say what was mostly wrong with the pictures."""
+    """Return the most frequent problem of the pictures."""
     reasons = [re.sub(r"\(.*?\) ?", "", row["problem"]) for row in rows if row["problem"]]
     if not reasons:
         return ""
@@ -250,7 +250,7 @@ def _chief_reason(rows: list[dict[str, Any]]) -> str:
 
 
 def _like_another(enrolment: Enrolment, gallery: Gallery, person: Person) -> str | None:
-    """Return who else the pictures look like, of those who are known already."""
+    """Return the other known person whom the pictures resemble, if any."""
     seen = [gallery.compare(vector).person for vector in enrolment.vectors()]
     others = [one for one in seen if one is not None and one != person.id]
     if 2 * len(others) <= len(seen):

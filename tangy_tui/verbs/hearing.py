@@ -1,4 +1,4 @@
-"""The options by which a verb listens to somebody who speaks, and the ears they ask for."""
+"""The options for speech input that commands share, and the recogniser that they open."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ WithVoice = Annotated[bool, typer.Option("--voice", help="Let Tangy speak (on th
 
 @dataclass(frozen=True, slots=True)
 class Listening:
-    """What was asked for on the command line about listening."""
+    """The options for speech input."""
 
     mic: str | None
     hands_free: bool = False
@@ -53,10 +53,10 @@ class Listening:
     record: bool = False
 
     def check(self) -> None:
-        """Check that there is something to listen to.
+        """Check that the options name a microphone.
 
         Raises:
-            TangyError: an option says how, and there is no microphone.
+            TangyError: there are other options, but no microphone.
         """
         if self.mic is None and (self.hands_free or self.answers or self.mode or self.record):
             raise TangyError("There is nothing to listen to: name a microphone with --mic.")
@@ -70,17 +70,17 @@ class Listening:
         sound: int,
         spoken: bool = False,
     ) -> SpeechInput | None:
-        """Open the ears, if any are wanted.
+        """Open the recogniser, if one is wanted.
 
         Args:
-            workspace: whose settings and recordings they have.
-            phrasebook: what can be said.
+            workspace: its settings and recordings are used.
+            phrasebook: the phrases to recognise.
             who: the teacher who speaks.
-            sound: the descriptor that - stands for.
-            spoken: a recording is heard as if somebody said it now.
+            sound: the file descriptor for `-`.
+            spoken: treat a recording as live speech.
 
         Raises:
-            TangyError: the microphone cannot be used, or nobody can be asked for consent.
+            TangyError: the microphone cannot be used, or there is no terminal to ask for consent.
         """
         if self.mic is None:
             return None
@@ -103,7 +103,7 @@ class Listening:
 
 
 def recorder_for(workspace: Workspace, teacher: str) -> Recorder | None:
-    """Record a teacher who agrees; nothing is recorded without a yes."""
+    """Return a recorder for a teacher who consents; None without consent."""
     from tangy_tui.speech.recordings import FOLDER, Recorder, consent, consented
     from tangy_tui.text.hearing import consent_question
 
@@ -121,7 +121,7 @@ def recorder_for(workspace: Workspace, teacher: str) -> Recorder | None:
 
 
 def _options(workspace: Workspace) -> str:
-    """Return the options with which another command means the same data folder."""
+    """Return the options with which another command uses the same data folder."""
     from tangy_tui.app.workspace import data_folder
 
     folder = workspace.store.folder

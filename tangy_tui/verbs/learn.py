@@ -1,4 +1,4 @@
-"""`tangy learn` and `tangy policy`: make a policy from demonstrations, show it, compare two."""
+"""`tangy learn` and `tangy policy`: learn a policy, show it, or compare two."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tangy_tui.learning.policy import Policy
 
 MOST_SHOWN = 8
-"""Steps that are listed of those that a decision rests on."""
+"""The most steps listed that support a decision."""
 
 
 def learn(
@@ -131,7 +131,7 @@ def policy(
 
 
 def _settle_conflicts(workspace: Workspace) -> None:
-    """Put each conflict to the person at the terminal, before anything is learnt."""
+    """Ask the user at the terminal to settle each conflict before learning."""
     from tangy_tui.learning.editing import Editor
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.situations import conflict_lines
@@ -251,7 +251,7 @@ def _why(workspace: Workspace, name: str, wanted: str, as_json: bool) -> None:
 
 
 def _situation(workspace: Workspace, wanted: str) -> Situation:
-    """Return the situation of a number, of its parts, or of its words."""
+    """Return the situation with a number, with these parts, or with these words."""
     activity = workspace.activity
     situations = list(activity.situations)
     if wanted.isdecimal() and 1 <= int(wanted) <= len(situations):

@@ -1,4 +1,4 @@
-"""`tangy listen`: what is understood of recordings, one by one or counted over a folder of them."""
+"""`tangy listen`: recognise recordings one by one, or score a folder of them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tangy_tui.speech.evidence import EvidenceSettings
 
 Tell: TypeAlias = Callable[[dict[str, Any]], str]
-"""Says in words what a row of `listen` means."""
+"""Explains a row of `listen` in words."""
 
 
 def listen(
@@ -95,7 +95,7 @@ def listen(
 
 
 def _told_by(workspace: Workspace) -> Tell:
-    """Return what says in words what a row of `listen` means."""
+    """Return a function that explains a row of `listen`."""
     from tangy_tui.text.practice import meaning_words
 
     behaviours = workspace.activity.behaviours.values()
@@ -143,7 +143,7 @@ def _read(
 
 
 def _cut_off(file: Path) -> str:
-    """Say of a file that ends too early how much of it is heard; "" of others."""
+    """Tell how much is missing of a recording that ends too early; "" for others."""
     from tangy_hw.audio.wav import seconds_cut_off
 
     missing = seconds_cut_off(file)
@@ -183,7 +183,7 @@ def _bench(folder: Path, phrasebook: Phrasebook, settings: EvidenceSettings, as_
 
 @contextmanager
 def told_progress() -> Iterator[Callable[[int, int], None]]:
-    """Show a bar on stderr, where somebody can see it."""
+    """Show a progress bar if stderr is a terminal."""
     if not sys.stderr.isatty():
         yield lambda done, of: None
         return

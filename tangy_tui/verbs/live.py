@@ -1,4 +1,4 @@
-"""`tangy live`: a real robot runs real games, or the bench stands in for it."""
+"""`tangy live`: play games with a real robot, or on the bench."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from tangy_tui.console.set_up import SetUpLines
     from tangy_tui.monitoring.supervision import Event
 
-PACE = 30.0  # as in tangy_hw.robot_client.live_world, which is not to be imported here
+PACE = 30.0  # as in tangy_hw.robot_client.live_world, which must not be imported here
 LARGEST_LIST = 100_000  # bytes of a list of faults
 
 
@@ -154,7 +154,7 @@ def live(
         raise TangyError("--load: only a bench game is played on a busy machine: add --bench.")
     faults = _listed(inject or [])
     listens = mic == "-" and not (headless or as_json)
-    sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
+    sound = keys_from_terminal(None) if listens else 0  # before checking for a screen
     if plain_lines and (headless or as_json):
         raise TangyError("--plain is for staff at the lines: leave --headless and --json out.")
     screen = not (headless or as_json or plain_lines) and full_screen()
@@ -239,7 +239,7 @@ def live(
                 print(plain(screen_words(there.link.screen, there.link.code)), file=sys.stderr)
             told_missing = missing_words(workspace.robot, workspace.activity)
             for told in [] if as_json or lines is not None else told_missing:
-                print(plain(told), file=sys.stderr)  # the lines of the set-up have told it
+                print(plain(told), file=sys.stderr)  # the set-up has told it in console mode
             asks = plain_lines or who == SCRIPTED
             if lines is not None:
                 lines.setup.world = there
@@ -255,11 +255,11 @@ def live(
                 played = LiveGames(workspace, supervision, past)
                 to_their_end = _play(workspace, played, games, as_json, expert=bool(expert))
         if not to_their_end:
-            raise typer.Exit(1)  # so that a script knows that games did not come to their end
+            raise typer.Exit(1)  # so that a script knows that games stopped early
 
 
 def _set_up(workspace: Workspace, pace: float) -> SetUpLines | None:
-    """Return what sets a game up by lines, None where nobody types them."""
+    """Return the set-up in the console, None if nobody types."""
     from tangy_tui.app.set_up import SetUp
     from tangy_tui.console.inputs import is_typed, line_reader
     from tangy_tui.console.set_up import SetUpLines
@@ -270,10 +270,10 @@ def _set_up(workspace: Workspace, pace: float) -> SetUpLines | None:
 
 
 def _listed(given: list[str]) -> tuple[Injection, ...]:
-    """Read the faults that were asked for: those of files line by line.
+    """Parse the faults to inject, those in files line by line.
 
     Raises:
-        TangyError: a file cannot be read, or there is no such fault.
+        TangyError: a file cannot be read, or a fault does not exist.
     """
     from tangy_sim.worlds.injection import read_injection
 
@@ -296,7 +296,7 @@ def _listed(given: list[str]) -> tuple[Injection, ...]:
 def _play(
     workspace: Workspace, played: LiveGames, games: int, as_json: bool, *, expert: bool
 ) -> bool:
-    """Play games, tell of them, and return whether all of them came to their end."""
+    """Play games, print their events, and return whether none stopped early."""
     from tangy_tui.app.live_games import News
     from tangy_tui.text.live_news import live_lines
     from tangy_tui.ui import reports

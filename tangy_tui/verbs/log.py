@@ -1,4 +1,4 @@
-"""`tangy log`: the games that were played, step by step, and where."""
+"""`tangy log`: list the games, show them step by step, and set where they were played."""
 
 from __future__ import annotations
 
@@ -169,14 +169,14 @@ def open_log(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
 
 
 def known_activities_of(games: Sequence[Game], file: str) -> dict[str, Activity]:
-    """Load the activities of games, as far as they are to be had.
+    """Load the activities of games that are available.
 
     Args:
-        games: the games, each of which may know the file of its activity.
-        file: an activity's file that counts before all others ("": none).
+        games: the games, which may know the files of their activities.
+        file: an activity's file that takes precedence ("": none).
 
     Raises:
-        TangyError: the file that was named has a mistake, or none of the games is of it.
+        TangyError: that file has a mistake, or none of the games is of its activity.
     """
     from tangy_profiles.activity import known_activities, load_activity
     from tangy_profiles.errors import ProfileError

@@ -1,4 +1,4 @@
-"""`tangy doctor`: what of this machine works."""
+"""`tangy doctor`: check which parts of this machine work."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 
 
 def _print_logs(folder: Path, *, as_json: bool) -> None:
-    """Say where the logs of a data folder are, and how to follow one command through them."""
+    """Print the paths of the logs of a data folder, and how to follow one command through them."""
     from tangy_profiles.process_log import LEVEL, LOGS
 
     rows = [
@@ -57,7 +57,7 @@ def doctor(
     from tangy_tui.doctor import examine, examine_contacts, examine_robot
 
     findings = examine(data_folder(data))
-    wanted = {"data folder"}  # what was asked for: what else is missing, Tangy does without
+    wanted = {"data folder"}  # parts that were asked for; Tangy can do without the others
     drawing: list[str] = []
     if robot is not None:
         from tangy_hw.perception.camera_hub import camera_sources

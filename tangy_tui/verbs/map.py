@@ -1,4 +1,4 @@
-"""`tangy map`: draw the map by which a robot finds its place and its way."""
+"""`tangy map`: draw the map for a robot's localisation and navigation."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ def _of_log(
 
 
 def _refuse(path: Path, closes: Verdict, share: float, found: Revisits, picture: str) -> NoReturn:
-    """Say why a matched map is not taken, and which picture shows it.
+    """Tell why a matched map is rejected, and which picture shows it.
 
     Raises:
         TangyError: always.

@@ -1,4 +1,4 @@
-"""`tangy map --drive`: record a drive by the keys, from which a map is drawn."""
+"""`tangy map --drive`: record a drive by the keys to draw a map from."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from tangy_tui.verbs.opening import full_screen, open_workspace
 def drive_for_map(
     yaml: Path | None, *, robot: str, bench: bool, seed: int, data: Path | None, ascii_only: bool
 ) -> Path:
-    """Let staff drive, and return the log of scans, which stands beside the map to be written.
+    """Let staff drive, and return the log of scans, which is beside the file of the map.
 
     Raises:
-        TangyError: there is no terminal, or no room for the log; or the robot cannot be reached.
+        TangyError: there is no terminal, the log exists already, or the robot cannot be reached.
         Exit: staff left without a map.
     """
     if yaml is None:

@@ -1,4 +1,4 @@
-"""`tangy mic`: hand a laptop's microphone on to the Tangy that runs on this robot."""
+"""`tangy mic`: forward a laptop's microphone to the Tangy on this robot."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ that does not listen yet, and finds it again when it is started again. Ctrl+C en
 """
 
 BAR = 30  # columns
-WORDS_SECONDS = 1.0  # between two looks at the meter
-FIRST_WORDS = 4  # looks after connecting, when it is said that all is well
+WORDS_SECONDS = 1.0  # between two checks of the meter
+FIRST_WORDS = 4  # checks after connecting, before reporting that all is well
 
 app = typer.Typer(rich_markup_mode=None, help=HELP)
 
@@ -64,7 +64,7 @@ def mic(
 
 
 def forward(data: Path | None, socket: Path | None) -> None:
-    """Hand standard input on until it ends."""
+    """Forward standard input until it ends."""
     from tangy_hw.audio.forwarding import Forwarder, TakenOver
     from tangy_hw.audio.piped_source import open_standard_input
     from tangy_hw.audio.sources import SOCKET_NAME
@@ -98,7 +98,7 @@ async def _run(forwarder: Forwarder) -> None:
 
 
 async def _show(forwarder: Forwarder) -> None:
-    """Say how loud it is: every second on a terminal, elsewhere when there is something new."""
+    """Show the level: every second on a terminal, otherwise only changes."""
     connected, wrong = 0, None
     while True:
         await asyncio.sleep(WORDS_SECONDS)
@@ -115,7 +115,7 @@ async def _show(forwarder: Forwarder) -> None:
 
 
 def _draw(forwarder: Forwarder) -> None:
-    """Draw a bar, and what is wrong beside it, over the last one."""
+    """Redraw the bar, with any trouble beside it."""
     state = "connected" if forwarder.connected else "waiting for Tangy"
     columns = shutil.get_terminal_size().columns
     bar = "#" * round(BAR * forwarder.meter.loudest(1.5 * WORDS_SECONDS))

@@ -1,4 +1,4 @@
-"""`tangy mic check`: find out how Tangy listens best with this microphone in this room."""
+"""`tangy mic check`: find the best settings for a microphone in its room."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tangy_tui.speech.lexicon import Lexicon
     from tangy_tui.speech.microphone_check import CheckNews, CheckResult
 
-ALONE = 3.0  # s without any sound, after which a check is given up where nobody could help
+ALONE = 3.0  # s without sound, after which an unattended check is given up
 
 
 def check(
@@ -85,7 +85,7 @@ def check(
 
 
 def _list(workspace: Workspace, as_json: bool) -> None:
-    """Print what is to be said."""
+    """Print the sentences to say."""
     _, _, asked = _asked(workspace)
     if as_json:
         print_json([{"say": one.text, "command": one.meant is not None} for one in asked])
@@ -95,7 +95,7 @@ def _list(workspace: Workspace, as_json: bool) -> None:
 
 
 def _asked(workspace: Workspace) -> tuple[Phrasebook, Lexicon, list[CalibrationPrompt]]:
-    """Return what can be said, what of it can be heard, and what is to be said."""
+    """Return the phrasebook, its lexicon, and the sentences to say."""
     from tangy_tui.speech.lexicon import Lexicon
     from tangy_tui.speech.microphone_check import to_say
 
@@ -132,7 +132,7 @@ async def _run(workspace: Workspace, source: Source, as_json: bool) -> CheckResu
 
 
 def patience(mic: str) -> float:
-    """Return how many seconds somebody has to plug in a microphone, or to begin to send."""
+    """Return the time in seconds to plug in a microphone, or to start sending."""
     from tangy_tui.speech.microphone_check import PATIENCE
 
     from_elsewhere = mic.partition(":")[0] == "socket"

@@ -1,4 +1,4 @@
-"""Opening the workspace that a verb works in, and the program on its screens; without Typer."""
+"""Opens the workspace of a command, or the application on its screens; does not need Typer."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
 
 MOST_TOLD = 5
-"""Events that are named one by one where they were left out."""
+"""The most omitted events that are named one by one."""
 
 
 @contextmanager
@@ -31,10 +31,10 @@ def open_workspace(
     robot: str = USUAL_ROBOT,
     room: str = "",
 ) -> Iterator[Workspace]:
-    """Open the workspace on a data folder, say what its store has noticed, and close it afterwards.
+    """Open the workspace of a data folder, print the notices of its store, and close it at the end.
 
     Raises:
-        TangyError: where the folder, the activity, the robot or the room cannot be read.
+        TangyError: the folder, the activity, the robot or the room cannot be read.
     """
     from tangy_tui.app.workspace import Workspace, data_folder
 
@@ -54,9 +54,9 @@ def open_workspace(
 def open_program(
     data: Path | None = None, *, robot: str = USUAL_ROBOT, ascii_only: bool = False
 ) -> int:
-    """Open the program at its first screen, and return its exit status.
+    """Open the application on its home screen, and return its exit status.
 
-    Beside another program that runs in the same folder, it looks on.
+    If another program runs in the same folder, it opens as an onlooker.
     """
     from tangy_profiles.errors import StoreBusy
     from tangy_tui.ui.run import run_program
@@ -73,7 +73,7 @@ def open_program(
 
 
 def _check_faults(workspace: Workspace) -> None:
-    """Say what is wrong with the faults of a robot's file before any screen is open."""
+    """Check the fault rules of a robot's file before any screen opens."""
     from tangy_profiles.fault_file import load_faults
 
     load_faults(workspace.robot)
@@ -82,7 +82,7 @@ def _check_faults(workspace: Workspace) -> None:
 def watch_program(
     data: Path | None = None, *, who: str = "", note: str = "", ascii_only: bool = False
 ) -> int:
-    """Open the program as a second console beside another one, and return its exit status."""
+    """Open a second console beside another program, and return its exit status."""
     from tangy_tui.app.teacher_profile import login_name
     from tangy_tui.app.workspace import data_folder
     from tangy_tui.ui.run import run_watching
@@ -92,12 +92,12 @@ def watch_program(
 
 
 def full_screen() -> bool:
-    """Return whether input and output are a terminal on which screens can be drawn."""
+    """Return whether input and output are a terminal that can show screens."""
     return terminal_kind().full_screen
 
 
 def say_aside(store: Store) -> None:
-    """Say which events of the log were left out of what was just done with it."""
+    """Print the events of the log that were omitted in the last operation."""
     told = [store.aside[seq] for seq in sorted(store.aside)]
     if (more := len(told) - MOST_TOLD) > 0:
         told[MOST_TOLD:] = [more_left_out(more)]

@@ -1,4 +1,4 @@
-"""`tangy people`: who takes part, what works with them, and what staff say about it."""
+"""`tangy people`: who takes part, what works with them, and corrections by staff."""
 
 from __future__ import annotations
 
@@ -296,7 +296,7 @@ def people_rename(
 def _changing(
     data: Path | None, activity: str, users: int, person: str, as_json: bool, world: str = ""
 ) -> Iterator[tuple[Workspace, Person]]:
-    """Open the workspace for a change to a person, and say afterwards what is now known of them."""
+    """Open the workspace for a change to a person; afterwards, print what is now known of them."""
     from tangy_tui.text.people import method_words, sentence
 
     with open_workspace(data, activity, users) as workspace:
@@ -310,12 +310,12 @@ def _changing(
 
 
 def _changed(chosen: PersuasionConfig, words: list[str]) -> PersuasionConfig:
-    """Change what the words say of a choice of method, and nothing else."""
+    """Change only the settings of a method that the words mention."""
     from dataclasses import replace
 
     from tangy_profiles.persuading import PERIODS, PRIORS, known_methods, spoken_persuading
 
-    spoken = spoken_persuading(words)  # which refuses what is none of them
+    spoken = spoken_persuading(words)  # refuses unknown words
     known = dict.fromkeys(known_methods(), "method") | dict.fromkeys(PRIORS, "prior")
     known |= dict.fromkeys(PERIODS, "forgetting_per")
     said = {known.get(word.casefold(), "forgetting") for word in words}
@@ -323,7 +323,7 @@ def _changed(chosen: PersuasionConfig, words: list[str]) -> PersuasionConfig:
 
 
 def _entry_words(entry: FeedbackEntry) -> str:
-    """Name a line of a history: its number, strategy, time, and what came of it."""
+    """Name a line of a history: number, strategy, time, and response."""
     from tangy_tui.text.people import entry_words
     from tangy_tui.text.times import on_day
 
@@ -340,7 +340,7 @@ def _record(workspace: Workspace, person: Person, world: GameWorld | None) -> Re
 
 
 def _world(word: str) -> GameWorld | None:
-    """Return the world that was asked for; None: that of the last game."""
+    """Return the wanted world; None: that of the last game."""
     return read_game_world(word) if word else None
 
 
@@ -353,13 +353,13 @@ def _printed(record: Record, as_json: bool) -> bool:
 
 
 def _known(word: str, words: Iterable[str], what: str) -> None:
-    """Refuse a word that is none of these, with the nearest one."""
+    """Refuse an unknown word, suggesting the nearest one."""
     if word not in words:
         raise TangyError(plain(f"There is no {what} {word!r}: {nearest(word, words)}"))
 
 
 def _numbered(history: list[FeedbackEntry], number: int | None, person: Person) -> FeedbackEntry:
-    """Return the line of a history with a number; without one, the last that counts."""
+    """Return the history entry with a number; without one, the last that counts."""
     counting = [entry for entry in history if entry.counts]
     if number is None and counting:
         return counting[-1]

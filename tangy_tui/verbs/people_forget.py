@@ -1,4 +1,4 @@
-"""`tangy people forget`: forget who somebody is, their face, and where they are named."""
+"""`tangy people forget`: delete a person's name, face and voice."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def people_forget(
 
 
 def _agreed(workspace: Workspace, person: Person) -> bool:
-    """Ask whether a person is to be forgotten.
+    """Ask whether to forget a person.
 
     Raises:
         TangyError: there is no terminal to ask on.

@@ -1,4 +1,4 @@
-"""`tangy people pronounce` and `tangy people voice`: how to speak of a person, and to them."""
+"""`tangy people pronounce` and `tangy people voice`: pronunciation of names, and voices."""
 
 from __future__ import annotations
 
@@ -105,12 +105,12 @@ def people_voice(
 
 
 def voice_sentence(person: Person) -> str:
-    """Say how a person is spoken to."""
+    """Tell how a person is spoken to."""
     return voice_words(person.name, person.voice.rate, person.voice.voice)
 
 
 def _check_voice(wanted: VoicePreference) -> None:
-    """Refuse a voice that espeak-ng does not have, where it is installed."""
+    """Refuse a voice that espeak-ng does not have, if it is installed."""
     from tangy_hw.audio.synthesis import Synthesiser
 
     synthesiser = Synthesiser()

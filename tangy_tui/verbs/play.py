@@ -1,4 +1,4 @@
-"""`tangy play` and `tangy demo`: let Tangy run games, and see the whole story."""
+"""`tangy play` and `tangy demo`: play simulated games, and show the demo."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def play(
     listening = Listening(mic, hands_free, spoken_answers, mode)
     listening.check()
     listens = mic == "-" and not (headless or as_json)
-    sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
+    sound = keys_from_terminal(None) if listens else 0  # before checking for a screen
     if plain_lines and (headless or as_json):
         raise TangyError("--plain is for staff at the lines: leave --headless and --json out.")
     screen = not (headless or as_json or plain_lines) and full_screen()
@@ -264,4 +264,4 @@ def _play_headless(
             critical = sum(fault.get("criticality") == "critical" for fault in faults)
             print(faults_played(len(faults), critical))
     if tally.stopped:
-        raise typer.Exit(1)  # so that a script knows that games did not come to their end
+        raise typer.Exit(1)  # so that a script knows that games stopped early

@@ -1,4 +1,4 @@
-"""What the verbs that play games share: who answers, who clears, and by which policy."""
+"""Options and functions that the commands for playing games share."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ Expert = Annotated[
     ),
 ]
 SCRIPTED = "scripted"
-"""Who answers, or clears, by what the activity expects."""
+"""Answers, or clears faults, by the activity's expected behaviours."""
 
 
 def tell_small_room(workspace: Workspace) -> None:
-    """Say on standard error if the chosen room is too small, and which one is taken."""
+    """Print which room is used if the chosen one is too small."""
     from tangy_tui.text.rooms import fallback_words
 
     if (chosen := workspace.chosen_room) is not None and workspace.room is not chosen:
@@ -56,7 +56,7 @@ def tell_small_room(workspace: Workspace) -> None:
 
 
 def who_answers(teacher: str | None, expert: str, data: Path | None) -> str:
-    """Return who answers where Tangy asks.
+    """Return who answers Tangy's questions.
 
     Raises:
         TangyError: there is no such expert.
@@ -70,12 +70,12 @@ def who_answers(teacher: str | None, expert: str, data: Path | None) -> str:
 
 
 def recall(workspace: Workspace, wanted: str, *, quiet: bool) -> Policy:
-    """Return the policy to play by; say what is to be known before, also of the last game.
+    """Return the policy to play by; print notices about it and about the last game.
 
     Args:
-        workspace: whose policy it is.
+        workspace: the workspace of the policy.
         wanted: its name or digest, "" for the last one.
-        quiet: whether the last game is left out.
+        quiet: whether to leave out the last game.
 
     Raises:
         TangyError: there is no such policy.
@@ -93,11 +93,11 @@ def recall(workspace: Workspace, wanted: str, *, quiet: bool) -> Policy:
 
 
 INJECT_HELP = "help"
-"""The word that lists the faults instead of bringing one about."""
+"""The word that lists the faults instead of injecting one."""
 
 
 def list_injections(as_json: bool) -> None:
-    """Print the faults that can be brought about: each with what happens and when it shows."""
+    """Print the faults that can be injected, with their effects and when they are noticed."""
     from tangy_sim.worlds.injection import KINDS
 
     if as_json:
@@ -111,10 +111,10 @@ def list_injections(as_json: bool) -> None:
 
 
 def check_injections(injections: Sequence[Injection], workspace: Workspace) -> None:
-    """Refuse a fault that needs a device which the robot does not have.
+    """Refuse a fault of a device that the robot does not have.
 
     Raises:
-        TangyError: naming the fault and the robot.
+        TangyError: names the fault and the robot.
     """
     from tangy_profiles.fault_file import load_faults
     from tangy_tui.app.injected import possible_kinds
@@ -138,16 +138,16 @@ def play_with_staff(
     speed: float | None = None,
     past: PastGame | None = None,
 ) -> bool:
-    """Play games with staff at the lines of standard input; return whether all came to their end.
+    """Play games with staff at standard input; return whether none stopped early.
 
     Args:
-        workspace: of the games.
-        supervision: what runs them.
-        games: how many.
+        workspace: the workspace of the games.
+        supervision: runs the games.
+        games: the number of games.
         teacher: who types.
-        robot: the world of a robot that is there.
+        robot: the world of a real robot.
         speed: times life, for simulated games.
-        past: a game that was interrupted, which is taken up first.
+        past: an interrupted game to resume first.
     """
     lines = _lines(workspace, supervision, teacher, robot=robot, speed=speed, past=past)
     return lines.run(games)
@@ -162,15 +162,15 @@ def play_by_turns(
     expert: bool,
     past: PastGame | None = None,
 ) -> None:
-    """Play simulated games by lines that are read only where Tangy waits for somebody.
+    """Play simulated games in the console, reading lines only when Tangy waits for staff.
 
     Args:
-        workspace: of the games.
-        supervision: what runs them.
-        games: how many.
-        teacher: who answers; a scripted one reads no line.
-        expert: scripted staff clear what halts the robot.
-        past: a game that was interrupted, which is taken up first.
+        workspace: the workspace of the games.
+        supervision: runs the games.
+        games: the number of games.
+        teacher: who answers; a scripted one reads no lines.
+        expert: scripted staff clear the faults that halt the robot.
+        past: an interrupted game to resume first.
     """
     scripted = teacher == SCRIPTED
     lines = _lines(workspace, supervision, teacher, past=past)

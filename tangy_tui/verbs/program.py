@@ -1,4 +1,4 @@
-"""`tangy` itself: its options, the verbs below it, and the program where no verb is given."""
+"""`tangy` itself: its options, its subcommands, and the application if none is given."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def program(
 
 
 def _defaults(command: Any, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the defaults of a command, and of those below it, that were given before it."""
+    """Return the defaults of a command and its subcommands that were given before it."""
     found = {option.name: given[option.name] for option in command.params if option.name in given}
     for name, below in getattr(command, "commands", {}).items():
         found[name] = _defaults(below, given)

@@ -1,4 +1,4 @@
-"""`tangy read-card`: which card is in a picture, and what is marked on it."""
+"""`tangy read-card`: read the card in a picture, and its marks."""
 
 from __future__ import annotations
 
@@ -114,9 +114,9 @@ def read_card(
 
 
 def _pictures(paths: list[Path]) -> list[Path]:
-    """Put the pictures in folders, by their names, in the place of these.
+    """Replace folders by the pictures in them, sorted by name.
 
-    A folder without any stays, to be refused as no picture.
+    A folder without pictures stays, to be refused as no picture.
 
     Raises:
         TangyError: a folder cannot be opened.
@@ -143,7 +143,7 @@ def _readings(
     reader: CardReader,
     draw: Path | None,
 ) -> tuple[list[tuple[str, CardReading]], int]:
-    """Read pictures; of those that cannot be opened say why, and count them."""
+    """Read pictures; report and count those that cannot be opened."""
     from tangy_hw.perception.pictures import PictureError, read_picture
 
     readings: list[tuple[str, CardReading]] = []
@@ -165,7 +165,7 @@ def _readings(
 def _draw(
     picture: NDArray[Any], reading: CardReading, reader: CardReader, path: Path, folder: Path
 ) -> None:
-    """Write a picture with what was read on it."""
+    """Write a picture with its reading drawn on it."""
     import cv2
 
     from tangy_hw.perception.cards.overlay import draw_reading
@@ -180,7 +180,7 @@ def _draw(
 
 
 def _explain(readings: list[CardReading]) -> None:
-    """Say what the drawings mean, and how several pictures of a card become one reading."""
+    """Print a legend of the drawings, and how to combine several pictures of a card."""
     signs = []
     if any(reading.card is not None and reading.marked for reading in readings):
         signs.append("[ ] is marked")
@@ -194,7 +194,7 @@ def _explain(readings: list[CardReading]) -> None:
 
 
 def _called(text: str, activity: Activity) -> set[int]:
-    """Understand the numbers that were called: 5,17 or B-5,I-17.
+    """Parse called numbers: 5,17 or B-5,I-17.
 
     Raises:
         TangyError: one of them is no number of the deck.
@@ -227,7 +227,7 @@ def _row(
 
 
 def _told(row: dict[str, Any], reading: CardReading, unseen: str) -> str:
-    """Say in words what was read; `unseen` is the state of a card that is not in view."""
+    """Describe the reading; `unseen` is the state of a card that is not in view."""
     if len(reading.cards) > 1:
         return f"{reading.problem}; which one is meant cannot be told, so none is read"
     if row["card"] is None:
@@ -245,7 +245,7 @@ def _told(row: dict[str, Any], reading: CardReading, unseen: str) -> str:
 
 
 def _drawn(reading: CardReading, reader: CardReader) -> list[str]:
-    """Draw a card in letters: [12] is marked, 12? cannot be told."""
+    """Draw a card as text: [12] is marked, 12? is unknown."""
     from tangy_profiles.card_face import numbers_of
 
     deck = reader.deck

@@ -1,4 +1,4 @@
-"""`tangy report`: of a session, of a person over time, of the house over months; and tables."""
+"""`tangy report`: reports on a session, a person over time, or the house; and tables."""
 
 from __future__ import annotations
 
@@ -204,7 +204,7 @@ def _read(data: Path | None, also: Sequence[Path] | None, activity: str) -> list
     """Read the logs of one robot or several.
 
     Raises:
-        TangyError: a folder that was named holds no log, or no game was played.
+        TangyError: a given folder has no log, or no game was played.
     """
     from tangy_profiles.log_file import FILE
     from tangy_tui.monitoring.games import read_games
@@ -225,7 +225,7 @@ def _read(data: Path | None, also: Sequence[Path] | None, activity: str) -> list
 
 
 def _world(logs: Sequence[RobotLog], wanted: str) -> tuple[GameWorld, list[GameWorld]]:
-    """Return whose games are told of, and the other worlds of which there are games."""
+    """Return the world to report, and the other worlds with games."""
     from tangy_profiles.game_world import GAME_WORLDS, read_game_world
 
     there = {replay.game.world for log in logs for replay in log.replays}

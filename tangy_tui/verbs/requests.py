@@ -1,4 +1,4 @@
-"""`tangy requests`: see whether requests for help arrive, from a button box, a broker or signs."""
+"""`tangy requests`: check a source of requests for help: a button box, a broker or signs."""
 
 from __future__ import annotations
 

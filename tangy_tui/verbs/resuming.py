@@ -1,4 +1,4 @@
-"""What the verbs that play share about a game that was interrupted."""
+"""Options and functions about interrupted games that the commands for playing share."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ Discard = Annotated[
 def past_game(
     workspace: Workspace, world: GameWorld, *, resume: bool, discard: bool, asks: bool
 ) -> PastGame | None:
-    """Return the interrupted game that is to go on, None where a new game is to begin.
+    """Return the interrupted game to resume, None if a new game begins.
 
     Args:
-        workspace: whose games.
-        world: where is played now.
-        resume: it goes on without a question.
-        discard: it is ended.
-        asks: a screen asks about it later; else a new game begins beside it, which is said.
+        workspace: the workspace of the games.
+        world: the world to play in.
+        resume: resume without asking.
+        discard: end the interrupted game.
+        asks: a screen asks later; otherwise a new game begins beside it, which is printed.
 
     Raises:
         TangyError: nothing was interrupted, or its room cannot be had.

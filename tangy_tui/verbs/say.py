@@ -1,4 +1,4 @@
-"""`tangy say`: hear a text as Tangy would speak it in a game."""
+"""`tangy say`: speak a text as Tangy does in a game."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def say(
 
 
 def _forget(synthesiser: Synthesiser, as_json: bool) -> None:
-    """Empty the cache of spoken lines, and print how many there were."""
+    """Empty the cache of speech, and print the number of lines deleted."""
     from tangy_tui.text.numbers import counted
 
     count = synthesiser.clear()
@@ -115,7 +115,7 @@ def _forget(synthesiser: Synthesiser, as_json: bool) -> None:
 
 
 def _list(synthesiser: Synthesiser, as_json: bool) -> None:
-    """Print the voices there are, and what can be added to each."""
+    """Print the available voices and their variants."""
     from tangy_hw.audio.synthesis import VoiceError
 
     try:
@@ -140,7 +140,7 @@ def _write(wav: Path, out: Path) -> None:
 
 
 async def _play(wav: Path, sink: str) -> tuple[str, str]:
-    """Play a WAV; return on what it was heard, and what went wrong."""
+    """Play a WAV; return the name of the sink, and the problem, if any."""
     from tangy_hw.audio.player import PlayerError, open_player
 
     try:

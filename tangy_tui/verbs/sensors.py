@@ -1,4 +1,4 @@
-"""`tangy sensors`: what the robot's devices say of themselves, what its cameras see and read."""
+"""`tangy sensors`: show the state of the robot's devices, and the pictures of its cameras."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def sensors(
 async def _look(
     workspace: Workspace, sensors: CameraHub, seconds: float
 ) -> tuple[list[Told], dict[str, Any]]:
-    """Look at all devices for so many s; return what is told of them, and of the last card."""
+    """Watch all devices for some s; return their descriptions, and the last card."""
     from tangy_tui.text.sensors import Teller, card_document, card_words
 
     async with sensors:

@@ -1,4 +1,4 @@
-"""`tangy store`: whether the log of a data folder is sound."""
+"""`tangy store`: check the log of a data folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tangy teach`: demonstrate an activity on a screen, by lines, by script or by voice."""
+"""`tangy teach`: demonstrate an activity on a screen, in the console, by script or by voice."""
 
 from __future__ import annotations
 
@@ -79,10 +79,10 @@ def teach(
 
     listening = Listening(mic, hands_free, spoken_answers, mode, record)
     listening.check()
-    sound = keys_from_terminal(script) if mic == "-" else 0  # before it is asked for a screen
+    sound = keys_from_terminal(script) if mic == "-" else 0  # before checking for a screen
     screen = not (plain_lines or script or as_json) and full_screen()
     if not screen:
-        listening = replace(listening, hands_free=True)  # there is no key to talk with
+        listening = replace(listening, hands_free=True)  # there is no key for push-to-talk
     with open_workspace(data, activity, users) as workspace:
         teaching = workspace.teaching(who, seed, guided=guided, again=_again(again))
         teaching.check()
@@ -109,7 +109,7 @@ def teach(
 
 
 def _again(wanted: str | None) -> Again | None:
-    """Read N@STEP: a demonstration, and the first step that is to be shown again."""
+    """Parse N@STEP: a demonstration, and the first step to repeat."""
     if wanted is None:
         return None
     from tangy_tui.learning.teaching_events import Again
@@ -198,7 +198,7 @@ def _teach_by_lines(
 
 
 def _learn(workspace: Workspace) -> list[str]:
-    """Learn from what was shown to its end, and say what was learnt."""
+    """Learn from the finished demonstrations, and describe the result."""
     from tangy_tui.app.training import learn
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.learnt import NOT_SHOWN, learnt_lines
@@ -210,7 +210,7 @@ def _learn(workspace: Workspace) -> list[str]:
 
 
 def _play(workspace: Workspace, teacher: str) -> None:
-    """Let Tangy run a game by what it learnt last, with the same lines."""
+    """Let Tangy run a game with the last policy, with the same input."""
     from tangy_tui.verbs.play import SPEED
     from tangy_tui.verbs.playing import play_with_staff, recall
 
@@ -219,7 +219,7 @@ def _play(workspace: Workspace, teacher: str) -> None:
 
 
 def _seen(workspace: Workspace, teaching: TeachingSession) -> list[str]:
-    """Say which situations were shown, in what is finished and in the present demonstration."""
+    """Tell which situations the finished and the present demonstrations cover."""
     from tangy_tui.learning.coverage import coverage, missing_words
     from tangy_tui.learning.library import read_library
 
@@ -232,7 +232,7 @@ def _seen(workspace: Workspace, teaching: TeachingSession) -> list[str]:
 
 
 def _why(workspace: Workspace, teaching: TeachingSession) -> list[str]:
-    """Say what Tangy would do now by what it has been shown, and why."""
+    """Explain what Tangy would do now after the demonstrations so far."""
     from tangy_tui.learning.explanation import explain, foresee
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policy import NothingToLearnFrom

@@ -1,4 +1,4 @@
-"""`tangy watch`: a second console that shows another one's games, and can stop the robot."""
+"""`tangy watch`: a second console that shows another program's games, and can stop the robot."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def watch(
 
 
 def _stop(guest: Guest, who: str) -> None:
-    """Stop the robot, and wait until that is answered.
+    """Stop the robot, and wait for the answer.
 
     Raises:
         TangyError: there is no game to stop.
