@@ -48,14 +48,14 @@ def _is_taught(program: Program) -> bool:
 
 
 async def ask_name(program: Program, *, unasked: bool = False) -> str | None:
-    """Ask who teaches, and keep the answer; None: it is left as it is.
+    """Ask for the teacher's name, and store it; None: it is unchanged.
 
-    Keys that were typed before an `unasked` question was seen are no answer.
+    An `unasked` question ignores keys typed before it was visible.
     """
     from tangy_tui.ui.dialogs.name import NameDialog
 
     usual = program.workspace.teacher
-    suggested = "" if usual == NOBODY else usual  # a name that nobody has tells nobody apart
+    suggested = "" if usual == NOBODY else usual  # the placeholder distinguishes nobody
     name = await program.push_screen_wait(NameDialog(suggested, unasked=unasked))
     return name if name is not None and _keep(program, name) else None
 

@@ -88,7 +88,7 @@ class Program(SoundingApp):
         return home
 
     def show_home(self) -> None:
-        """Show the first screen, which nobody saw behind the questions before another one."""
+        """Show the home screen, hidden so far behind the questions at the start."""
         for screen in self.screen_stack:
             screen.remove_class("-behind")
 

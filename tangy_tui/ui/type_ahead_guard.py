@@ -102,7 +102,7 @@ class FreshKeys:
         return self.counts(event)
 
     def counts(self, event: events.Key | events.Paste) -> bool:
-        """Say whether a key or a paste came after the dialog was seen."""
+        """Return whether a key or a paste came after the dialog was visible."""
         if self._from is not None:
             return event.time >= self._from
         if self._trip is not None:

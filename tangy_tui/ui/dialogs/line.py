@@ -22,16 +22,16 @@ ValueT = TypeVar("ValueT")
 
 
 class FreshInput(Input):
-    """A line that drops what was typed before its dialog was seen, if it has fresh keys."""
+    """An input line that ignores keys typed before its dialog was visible, if it has fresh keys."""
 
     fresh_keys: FreshKeys | None = None
 
     def on_key(self, event: events.Key) -> None:
-        """Drop a key that was typed ahead."""
+        """Drop a key typed ahead."""
         self._drop_old(event)
 
     def on_paste(self, event: events.Paste) -> None:
-        """Drop a paste that came ahead."""
+        """Drop text pasted ahead."""
         self._drop_old(event)
 
     def _drop_old(self, event: events.Key | events.Paste) -> None:
@@ -69,13 +69,13 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
 
         Args:
             title: the question.
-            words: what helps to answer it.
-            keys: what keys do.
-            begun: stands in the line already.
-            selected: the next letter takes the place of what stands there.
-            longest: how many characters a line may have.
-            unasked: it comes by itself, so that keys may be on their way that are not meant for it.
-            clock: s, on the scale of `time.monotonic` (default: the app's).
+            words: the explanation above the line.
+            keys: the keys and their actions.
+            begun: the initial text of the line.
+            selected: whether that text is selected, so that typing replaces it.
+            longest: the most characters of a line.
+            unasked: whether it opens by itself, so that it must ignore keys typed ahead.
+            clock: returns s, on the scale of `time.monotonic` (default: the app's clock).
         """
         super().__init__(None)
         self._title, self._words, self._keys = title, words, keys
@@ -91,7 +91,7 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
         raise NotImplementedError
 
     def compose(self) -> ComposeResult:
-        """Lay out the words and the line."""
+        """Lay out the explanation and the line."""
         line = FreshInput(self._begun, max_length=self._longest, select_on_focus=self._selected)
         line.cursor_blink = False
         line.fresh_keys = self._fresh_keys

@@ -29,7 +29,7 @@ class NameDialog(LineDialog[str]):
         unasked: bool = False,
         clock: Clock | None = None,
     ) -> None:
-        """Make the dialog; `suggested` stands in the line, selected; others as in `LineDialog`."""
+        """Create the dialog; `suggested` is the initial text, selected; others: as in the base."""
         super().__init__(
             clean(title),
             detail,

@@ -1,1 +1,1 @@
-"""Screens: each draws one part of the program, and takes its keys."""
+"""Screens: each shows one part of the application, and handles its keys."""

@@ -1,4 +1,4 @@
-"""Two policies side by side, row by row: teacher against teacher, before against after."""
+"""Two policies side by side, row by row: of two teachers, or before and after."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ from tangy_tui.ui.widgets.rows import Span, fit
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 SIDE_BY_SIDE = 110
-"""From this width a situation and both policies stand on one line."""
+"""From this width in cells, a situation and both policies fit on one line."""
 
 
 WIDEST = 44
-"""Columns that one policy has at the most, so that both can be looked at together."""
+"""The greatest width of one policy in cells, so that both can be read together."""
 
 
 async def choose_two(app: App[Any], workspace: Workspace, first: str | None) -> list[str]:
-    """Let two policies or teachers be chosen; `first` is one already. Fewer than two: no choice."""
+    """Let the user choose two policies or teachers; `first` is one already. [] if cancelled."""
     options = comparison_options(workspace.store, workspace.activity)
     if len(options) < 2:
         await app.push_screen_wait(MessageDialog(ONE_POLICY, title=NOTHING_TO_COMPARE))
@@ -62,7 +62,7 @@ async def choose_two(app: App[Any], workspace: Workspace, first: str | None) -> 
 
 
 async def choose_policy(app: App[Any], workspace: Workspace) -> str | None:
-    """Let one of the policies that were kept be chosen."""
+    """Let the user choose one of the stored policies."""
     options = policy_options(workspace.store, workspace.activity)
     return await app.push_screen_wait(ChooseDialog(WHICH, options))
 
@@ -78,7 +78,7 @@ def decision_words(activity: Activity, decision: Decision) -> str:
 
 
 class CompareScreen(TangyScreen[None]):
-    """Every situation with what A and B do there; rows that differ come first and have a mark."""
+    """Every situation with the behaviours of A and B; marked rows that differ come first."""
 
     TITLE = "Compare"
     CSS = """
@@ -102,7 +102,7 @@ class CompareScreen(TangyScreen[None]):
     def __init__(
         self, workspace: Workspace, a: Policy, b: Policy, notices: Sequence[str] = ()
     ) -> None:
-        """Make the screen; `notices` are what must be said of the policies."""
+        """Create the screen; `notices` are warnings about the policies."""
         super().__init__()
         self._workspace = workspace
         self._pair = (a, b)
@@ -113,7 +113,7 @@ class CompareScreen(TangyScreen[None]):
 
     @property
     def rows(self) -> list[SituationComparison]:
-        """The rows on the screen."""
+        """The rows shown."""
         return [row for row in self._all if not (self._only and row.same)]
 
     def compose(self) -> ComposeResult:
@@ -126,7 +126,7 @@ class CompareScreen(TangyScreen[None]):
         )
 
     def on_mount(self) -> None:
-        """Let the arrows choose."""
+        """Focus the page."""
         self.query_one(Page).focus()
 
     def action_differences(self) -> None:
@@ -135,24 +135,24 @@ class CompareScreen(TangyScreen[None]):
         self.query_one(Page).show(self._write)
 
     def action_why(self, which: int) -> None:
-        """Tell why the one or the other does what it does in the chosen row."""
+        """Explain the behaviour of A or B in the chosen row."""
         chosen, rows = self.query_one(Page).chosen, self.rows
         if chosen is not None and chosen < len(rows):
             policy = self._pair[which]
             self.app.push_screen(why_row(self._workspace, policy, rows[chosen].situation))
 
     def on_page_chosen(self, event: Page.Chosen) -> None:
-        """Tell why A does so."""
+        """Explain A's behaviour."""
         event.stop()
         self.action_why(0)
 
     async def action_choose(self) -> None:
-        """Compare others."""
+        """Compare other policies."""
         close(self, None)
         await self.run_action("app.compare")
 
     def action_leave(self) -> None:
-        """Go back."""
+        """Close the screen."""
         close(self, None)
 
     def _summary(self) -> str:

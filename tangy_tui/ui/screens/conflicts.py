@@ -1,4 +1,4 @@
-"""The conflicts screen: two answers to one situation, side by side, and which of them is right."""
+"""The conflicts screen: the answers to one situation side by side, to choose the right one."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 
 class ConflictsScreen(TangyScreen[bool]):
-    """One conflict after another. Dismissed with True to go on, False to go back."""
+    """Shows one conflict after another. Dismissed with True to continue, False to go back."""
 
     CSS_PATH = "conflicts.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
@@ -54,7 +54,7 @@ class ConflictsScreen(TangyScreen[bool]):
     ]
 
     def __init__(self, workspace: Workspace, *, then: str = "go on") -> None:
-        """Make the screen; `then` says what follows when all were looked at."""
+        """Create the screen; `then` names what follows after the last conflict."""
         super().__init__()
         self._workspace = workspace
         self._then = then
@@ -66,7 +66,7 @@ class ConflictsScreen(TangyScreen[bool]):
 
     @property
     def _present(self) -> Conflict | None:
-        """The conflict that is looked at, None when all were."""
+        """The present conflict, None after the last one."""
         at = len(self._answered)
         return self._conflicts[at] if at < len(self._conflicts) else None
 
@@ -80,17 +80,17 @@ class ConflictsScreen(TangyScreen[bool]):
         yield KeyLine(*self._key_words())
 
     async def on_mount(self) -> None:
-        """Show the first one."""
+        """Show the first conflict."""
         await self._show()
 
     async def on_key(self, event: events.Key) -> None:
-        """Take an answer, if the conflict was on the screen by then."""
+        """Handle an answer, if the conflict was visible before."""
         key = event.character or event.key
         if event.key not in ("escape", "enter"):
             if not key.isdecimal():
                 return
         elif event.key == "enter" and self._present is not None:
-            return  # it opens the step under the cursor
+            return  # Enter opens the step at the cursor
         if self._keys.take(event):
             await self._take(event.key)
 
@@ -107,7 +107,7 @@ class ConflictsScreen(TangyScreen[bool]):
             await self._resolve(present, list(present.answers)[int(key) - 1])
 
     def on_answer_steps_chosen(self, event: AnswerSteps.Chosen) -> None:
-        """Open a step where it was demonstrated."""
+        """Open a step in its demonstration."""
         from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 
         event.stop()
@@ -117,12 +117,12 @@ class ConflictsScreen(TangyScreen[bool]):
         )
 
     def action_other(self) -> None:
-        """Choose an answer that nobody gave."""
+        """Choose an answer that no demonstration gives."""
         if (present := self._present) is not None:
             self.run_worker(self._other(present), name="other")
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
     # --------------------------------------------------------------------------- the answers
 
@@ -139,7 +139,7 @@ class ConflictsScreen(TangyScreen[bool]):
         await self._show()
 
     async def _other(self, conflict: Conflict) -> None:
-        """Let another behaviour be chosen that nobody showed here."""
+        """Let the user choose a behaviour that was not demonstrated here."""
         activity = self._workspace.activity
         others = [b for b in activity.behaviours if b not in conflict.answers]
         dialog = WordsDialog(text.OTHER, list(map(activity.behaviour_words, others)))
@@ -154,7 +154,7 @@ class ConflictsScreen(TangyScreen[bool]):
         await self._show()
 
     async def action_undo(self) -> None:
-        """Take back the last answer, and ask again."""
+        """Undo the last answer, and ask again."""
         if not self._answered:
             self._log.write(text.NOTHING_TAKEN_BACK, "warn")
             return
@@ -200,7 +200,7 @@ class ConflictsScreen(TangyScreen[bool]):
         columns[0].focus()
 
     def _key_words(self) -> Sequence[str | Key]:
-        """Say which keys do something now."""
+        """Return the keys that have an effect now."""
         undo: list[str | Key] = ["undo"] if self._answered else []
         if self._present is None:
             return [f"open:{self._then}", *undo, "back", "help"]
@@ -221,7 +221,7 @@ class ConflictsScreen(TangyScreen[bool]):
 
 
 async def settle_conflicts(app: Any, workspace: Workspace, then: str) -> bool:
-    """Let the conflicts be settled, if there are any; say whether to go on."""
+    """Let the user settle the conflicts, if there are any; return whether to continue."""
     if not Editor(workspace.store, workspace.activity).library.conflicts:
         return True
     return bool(await app.push_screen_wait(ConflictsScreen(workspace, then=then)))

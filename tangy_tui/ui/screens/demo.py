@@ -1,4 +1,4 @@
-"""The demo on one screen: a caption, the room, what happened, and the teacher's line."""
+"""The demo on one screen: caption, room, events, and the teacher's command."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 LONGEST_DRIVE = 1.5
-"""s for which the picture of the robot drives."""
+"""The longest animation of the robot, in s."""
 
 READ = (text.LEARNT, text.WHY, text.BELIEVES)
-"""Heads of what is read and not watched: at 80 columns it takes the room's place."""
+"""Headings of panels to read rather than watch: at 80 columns they replace the room."""
 
 KEYS = (
     f"still:{text.HOLD}", f"left:{text.EARLIER}", f"right:{text.LATER}", "back:leave", "help",
@@ -34,7 +34,7 @@ KEYS = (
 
 
 class DemoScreen(TangyScreen[None]):
-    """Shows the frames of a story at reading pace; it can be held, and gone through by hand."""
+    """Plays the frames of a story at reading pace; the user can pause and step through them."""
 
     CSS_PATH = "demo.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
@@ -49,23 +49,23 @@ class DemoScreen(TangyScreen[None]):
     ]
 
     def __init__(self, workspace: Workspace, story: Story, *, pace: float = 1.0) -> None:
-        """Make it; `pace` is the ratio of its speed to that of people who read."""
+        """Create the screen; `pace` is the ratio of its speed to reading pace."""
         super().__init__()
         self._workspace = workspace
         self._story = story.frames()
         self._pace = pace
         self.frames: list[StoryFrame] = []
-        """Those that have happened."""
+        """The frames so far."""
         self.at = -1
-        """Which of them is shown."""
+        """The index of the frame shown."""
         self.held = False
         self.ended = False
-        """Whether nothing more happens."""
+        """Whether the story has ended."""
         self._making = asyncio.Lock()
         self._nudge = asyncio.Event()
 
     def compose(self) -> ComposeResult:
-        """Lay out the caption above room and lines, the teacher's line below."""
+        """Lay out the caption above room and lines, with the teacher's command below."""
         yield StatusLine(Status(mode="demo"))
         yield panel(Static(id="caption", markup=False))
         with Horizontal(id="body"):
@@ -77,11 +77,11 @@ class DemoScreen(TangyScreen[None]):
         yield KeyLine(*KEYS)
 
     def on_mount(self) -> None:
-        """Begin."""
+        """Start the story."""
         self.run_worker(self._tell(), name="story")
 
     async def _tell(self) -> None:
-        """Show one frame after the other, each for as long as it takes to read."""
+        """Show one frame after the other, each for its reading time."""
         while await self._make(self.at + 1):
             await on_top(self)
             if self.at + 1 < len(self.frames) and not self.held:
@@ -99,7 +99,7 @@ class DemoScreen(TangyScreen[None]):
         self._status()
 
     async def _make(self, number: int) -> bool:
-        """Let happen what a frame shows, in a thread; False: the story is over before it."""
+        """Generate frames up to a number, in a thread; False: the story has ended before it."""
         async with self._making:
             while number >= len(self.frames) and not self.ended:
                 frame = await asyncio.to_thread(next, self._story, None)
@@ -110,7 +110,7 @@ class DemoScreen(TangyScreen[None]):
         return number < len(self.frames)
 
     async def rest(self) -> None:
-        """Wait until nothing happens any more, so that its folder can go."""
+        """Wait until no frame is being generated, so that the data folder can be deleted."""
         async with self._making:
             self.ended = True
 
@@ -123,7 +123,7 @@ class DemoScreen(TangyScreen[None]):
         self._status()
 
     async def action_go(self, by: int) -> None:
-        """Go to the caption before, or on to the next one."""
+        """Go to the previous or the next caption."""
         if not self.frames:
             return
         if by < 0:
@@ -138,7 +138,7 @@ class DemoScreen(TangyScreen[None]):
         self._nudge.set()
 
     def _beginning(self, at: int) -> int:
-        """Return where the caption begins that a frame has."""
+        """Return the first frame with the caption of a frame."""
         while at and self.frames[at - 1].caption == self.frames[at].caption:
             at -= 1
         return at
@@ -189,7 +189,7 @@ class DemoScreen(TangyScreen[None]):
 
 
 def _typed(frame: StoryFrame) -> Content:
-    """Draw the teacher's line, and the question about it in its place."""
+    """Format the teacher's command, or the question that replaces it."""
     if not frame.asked:
         return (
             Content.assemble("\n", ("> ", "$accent bold"), frame.typed)

@@ -32,7 +32,7 @@ from tangy_tui.ui.widgets.transcript import Transcript
 
 
 async def show_again(app: App[Any], library: Library, id: str, number: int) -> None:
-    """Show a demonstration again from a step on, if the teacher means it."""
+    """Demonstrate a game again from a step, if the teacher confirms."""
     dialog = ConfirmDialog(
         again_words(library.name(id), number),
         AGAIN_DETAIL,
@@ -45,7 +45,7 @@ async def show_again(app: App[Any], library: Library, id: str, number: int) -> N
 
 
 class DemonstrationScreen(TangyScreen[None]):
-    """The steps of a demonstration, the cursor on one of them, which is told in full."""
+    """The steps of a demonstration, with the step at the cursor in detail."""
 
     CSS_PATH = "demonstration.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
@@ -63,12 +63,12 @@ class DemonstrationScreen(TangyScreen[None]):
     ]
 
     def __init__(self, workspace: Workspace, id: str, number: int = 1) -> None:
-        """Make the screen.
+        """Create the screen.
 
         Args:
-            workspace: what it belongs to.
-            id: of the demonstration.
-            number: of the step that the cursor is on, from 1.
+            workspace: the workspace of the demonstration.
+            id: the id of the demonstration.
+            number: the step at the cursor, from 1.
         """
         super().__init__()
         self._workspace = workspace
@@ -95,7 +95,7 @@ class DemonstrationScreen(TangyScreen[None]):
         )
 
     def on_mount(self) -> None:
-        """Show the steps and point at the one that is wanted."""
+        """Show the steps, with the cursor on the wanted one."""
         steps = self.query_one(Transcript)
         workspace = self._workspace
         steps.fill([step_words(workspace.activity, s, workspace.name) for s in self.shown.steps])
@@ -103,18 +103,18 @@ class DemonstrationScreen(TangyScreen[None]):
         self._tell(min(max(1, self._number), len(self.shown.steps)))
 
     def on_transcript_moved(self, event: Transcript.Moved) -> None:
-        """Tell of the step that the cursor is on."""
+        """Describe the step at the cursor."""
         self._tell(event.number or len(self.shown.steps))
 
     def action_again(self) -> None:
-        """Show it again from the chosen step, if the teacher means it."""
+        """Demonstrate the game again from the chosen step, if the teacher confirms."""
         self.app.run_worker(self._again(self._number))
 
     async def _again(self, number: int) -> None:
         await show_again(self.app, self._library, self.shown.id, number)
 
     def action_leave(self) -> None:
-        """Go back."""
+        """Close the screen."""
         close(self, None)
 
     def _summary(self) -> str:

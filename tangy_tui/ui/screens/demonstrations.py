@@ -1,4 +1,4 @@
-"""The library of demonstrations: what there is, and everything that can be done to it."""
+"""The library of demonstrations: list, details, and edits."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
 TAKEN_BACK = "undone"
-"""The state of what an edit made that was taken back: it is not in the list."""
+"""The state of a demonstration whose creation was undone; it is not listed."""
 
 
 class DemonstrationsScreen(TangyScreen[None]):
-    """All demonstrations, and the steps of the one under the cursor."""
+    """All demonstrations, and the steps of the one at the cursor."""
 
     CSS_PATH = "demonstrations.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
@@ -63,7 +63,7 @@ class DemonstrationsScreen(TangyScreen[None]):
     ]
 
     def __init__(self, workspace: Workspace) -> None:
-        """Make the screen of a workspace's demonstrations."""
+        """Create the screen of a workspace's demonstrations."""
         super().__init__()
         self._workspace = workspace
         self._editor = Editor(workspace.store, workspace.activity)
@@ -74,7 +74,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self._refusal = ""
 
     def compose(self) -> ComposeResult:
-        """Lay out the list, the notes on the chosen one, and its steps."""
+        """Lay out the list, the notes on the chosen demonstration, and its steps."""
         yield StatusLine()
         yield panel(DemonstrationList())
         yield Static(id="notes", markup=False)
@@ -85,7 +85,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         )  # fmt: skip
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
-        """Read the library: something may have been shown, or settled, meanwhile."""
+        """Read the library again, which other screens may have changed."""
         self._read()
 
     # ---------------------------------------------------------------------------- the choice
@@ -96,11 +96,11 @@ class DemonstrationsScreen(TangyScreen[None]):
 
     @property
     def _step(self) -> int | None:
-        """The step that the cursor is on, if it is on one."""
+        """The step at the cursor, None if there is none."""
         return self.query_one(Transcript).chosen
 
     def on_choice_list_moved(self) -> None:
-        """Show the steps of another demonstration."""
+        """Show the steps of the demonstration at the cursor."""
         self._refusal, self._shown = "", ""
         self._show_chosen()
 
@@ -123,7 +123,7 @@ class DemonstrationsScreen(TangyScreen[None]):
     # --------------------------------------------------------------------------- the changes
 
     def action_delete(self) -> None:
-        """Put the chosen demonstration away, or take it into use again."""
+        """Delete the chosen demonstration, or restore it."""
         row = self._chosen
         if row is None:
             return
@@ -133,7 +133,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self._confirm(text.delete_words(row), "delete it", lambda: self._editor.delete(row.id))
 
     def action_mark(self) -> None:
-        """Mark the chosen demonstration, or take the mark off."""
+        """Mark the chosen demonstration, or unmark it."""
         row = self._chosen
         if row is not None:
             if row.id in self._marked:
@@ -143,7 +143,7 @@ class DemonstrationsScreen(TangyScreen[None]):
             self._show_list()
 
     def action_merge(self) -> None:
-        """Make one demonstration of those that are marked, in the order of their marks."""
+        """Merge the marked demonstrations, in the order of their marks."""
         ids = [id for id in self._marked if id in self._rows]
         if len(ids) < 2:
             self._say(text.MARK_FIRST)
@@ -154,7 +154,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self._confirm(asked, "merge them", lambda: self._editor.merge(*ids))
 
     def action_split(self) -> None:
-        """Make two demonstrations of the chosen one, after the chosen step."""
+        """Split the chosen demonstration after the chosen step."""
         row, step = self._chosen, self._step
         if row is None:
             return
@@ -170,7 +170,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self._confirm(asked, "split it", lambda: self._editor.split(row.id, step))
 
     def _refused(self, *ids: str) -> bool:
-        """Say of the first demonstration that cannot be merged or split why that is so."""
+        """Return whether a demonstration cannot be merged or split, and tell why."""
         for row in (self._rows[id] for id in ids):
             if not row.in_use:
                 self._say(text.refused_words(row), bad=True)
@@ -178,15 +178,15 @@ class DemonstrationsScreen(TangyScreen[None]):
         return False
 
     def action_undo(self) -> None:
-        """Take the last change back."""
+        """Undo the last change."""
         self._do(self._editor.undo, "Taken back")
 
     def action_redo(self) -> None:
-        """Make the change again that was taken back."""
+        """Redo the last undone change."""
         self._do(self._editor.redo, "Done again")
 
     def action_again(self) -> None:
-        """Show the chosen demonstration again from the chosen step."""
+        """Demonstrate the chosen game again from the chosen step."""
         row, step = self._chosen, self._step
         if row is None:
             return
@@ -198,7 +198,7 @@ class DemonstrationsScreen(TangyScreen[None]):
             self.app.run_worker(show_again(self.app, self._library, row.id, step))
 
     def action_conflicts(self) -> None:
-        """Show what the demonstrations disagree about."""
+        """Show the conflicts between demonstrations."""
         from tangy_tui.ui.screens.conflicts import ConflictsScreen
 
         if self._library.conflicts:
@@ -207,11 +207,11 @@ class DemonstrationsScreen(TangyScreen[None]):
             self._say(NONE_LEFT)
 
     async def action_learn(self) -> None:
-        """Learn from those that are in use."""
+        """Learn from the demonstrations in use."""
         await self.run_action("app.learn")
 
     def action_leave(self) -> None:
-        """Let go of a chosen step, or go back."""
+        """Take the cursor off the steps, or close the screen."""
         if self._step is not None:
             self.query_one(Transcript).release()
             self.query_one(DemonstrationList).focus()
@@ -219,7 +219,7 @@ class DemonstrationsScreen(TangyScreen[None]):
             close(self, None)
 
     def _confirm(self, asked: tuple[str, str], yes: str, change: Callable[[], Edit]) -> None:
-        """Ask a question, with what it means, and make the change if it is meant."""
+        """Ask for confirmation, and make the change."""
 
         async def ask() -> None:
             question, detail = asked[0], with_keys(asked[1], keymap_of(self.app))
@@ -229,7 +229,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self.run_worker(ask(), name="confirm")
 
     def _do(self, change: Callable[[], Edit], before: str = "") -> None:
-        """Make a change and say what it was, or why it cannot be made."""
+        """Make a change and describe it, or tell why it is not possible."""
         try:
             edit = change()
         except TangyError as error:
@@ -246,7 +246,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         app.clear_notifications()
         said = sentence[:1].upper() + sentence[1:]
         app.say(said, bad=bad)
-        if bad:  # a message goes by, and this line stays until the cursor moves
+        if bad:  # toasts disappear, but this line stays until the cursor moves
             self._refusal = said
             self._show_notes()
 
@@ -265,7 +265,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         shown, step = self._shown, self._step
         self._shown = ""
         self._show_list()
-        if step is not None and self._shown == shown:  # a dialog has gone, the step stays
+        if step is not None and self._shown == shown:  # the cursor stays on its step
             self.query_one(Transcript).point(step)
 
     def _show_list(self) -> None:
@@ -273,7 +273,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self._show_chosen()
 
     def _show_chosen(self) -> None:
-        """Show notes and steps of the demonstration under the cursor, if it is another one."""
+        """Show notes and steps of the demonstration at the cursor, if it has changed."""
         row = self._chosen
         if row is None or row.id == self._shown:
             return

@@ -1,4 +1,4 @@
-"""The drill: what staff see when something goes wrong, two questions, and in the end a score."""
+"""The drill: what staff see of a fault, two questions per round, and finally a score."""
 
 from __future__ import annotations
 
@@ -42,16 +42,16 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.wrapping import wrap
 
 LABEL = 11
-"""Columns of the labels beside what is seen."""
+"""The width of the labels in cells."""
 
 ON = ("enter",)
-"""The keys that go on."""
+"""The keys that continue."""
 
 
 class DrillScreen(TangyScreen[None]):
     """Rounds of observations, questions and corrections; then the score sheet.
 
-    Keys typed before a question was on the screen do not answer it.
+    A question ignores keys typed before it was visible.
     """
 
     TITLE = "Rehearse"
@@ -71,7 +71,7 @@ class DrillScreen(TangyScreen[None]):
     ]
 
     def __init__(self, drill: Drill) -> None:
-        """Make the screen of a drill that has not begun."""
+        """Create the screen of a drill that has not begun."""
         super().__init__()
         self.drill = drill
         self._from: float | None = None
@@ -85,7 +85,7 @@ class DrillScreen(TangyScreen[None]):
         yield key_line(("esc", "leave"), ("?", "help"))
 
     def on_mount(self) -> None:
-        """Say what it is, and wait for a key."""
+        """Explain the drill, and wait for a key."""
         page = self.query_one(Page)
         page.border_title = "Rehearse"
         note = self.drill.note
@@ -96,11 +96,11 @@ class DrillScreen(TangyScreen[None]):
         self._ask("Ready?", (("enter", "the first round"),))
 
     def on_unmount(self) -> None:
-        """Store the answers, however the screen is left."""
+        """Store the answers, however the screen is closed."""
         self.drill.leave()
 
     def on_key(self, event: events.Key) -> None:
-        """Answer, or go on; keys that were typed ahead do neither."""
+        """Handle an answer or Enter; ignore keys typed ahead."""
         question = self.drill.question
         keys = ON if question is None else question.keys
         if event.key not in (*keys, *ON):
@@ -118,10 +118,10 @@ class DrillScreen(TangyScreen[None]):
         self._show_told(shown, told_lines(self.drill.tabletop, shown, answered))
 
     def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+        """Do nothing: `on_key` handles the keys, to check each of them."""
 
     def action_leave(self) -> None:
-        """Leave; ask first if something was answered, and something is left."""
+        """Leave; ask first if the drill is unfinished and has answers."""
         if self._at_end or not self.drill.sheet.answered or self.drill.over:
             close(self, None)
             return
@@ -137,7 +137,7 @@ class DrillScreen(TangyScreen[None]):
 
     def _left(self, leaves: bool | None) -> None:
         if leaves:
-            self.drill.leave()  # kept before home looks at it
+            self.drill.leave()  # stored before home reads it
             self.call_later(close, self, None)
 
     def _go_on(self) -> None:
@@ -202,7 +202,7 @@ class DrillScreen(TangyScreen[None]):
         self.query_one(StatusLine).show(Status(mode="rehearse", note=note))
 
     def _ask(self, question: str, choices: tuple[tuple[str, str], ...]) -> None:
-        """Show a question; keys count from a moment after it can be seen."""
+        """Show a question; keys count from a moment after it is visible."""
         parts: list[str | tuple[str, str]] = [(clean(question), "bold")]
         for key, words in choices:
             parts += ["\n", (f" {key} ", "$warning bold"), f" {clean(words)}"]
@@ -220,7 +220,7 @@ class DrillScreen(TangyScreen[None]):
 
 
 def _seen(drill: Drill, shown: Round, width: int) -> list[PageLine]:
-    """Write what can be seen in a round, the labels beside it."""
+    """Format the observations of a round, with labels."""
     lines: list[PageLine] = []
     for label, text in round_parts(drill.tabletop, shown):
         for number, part in enumerate(wrap(clean(text), max(8, width - LABEL))):

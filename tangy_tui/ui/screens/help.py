@@ -1,4 +1,4 @@
-"""Help for where the user is: the screen, the widget that has the keys, and all keys there."""
+"""Context help: the screen, the focused widget, and all available keys."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from tangy_tui.ui.type_ahead_guard import draws_digit
 KEY = "$accent bold"
 
 Keys = tuple[tuple[str, str], ...]
-"""Pairs of a key and what it does."""
+"""Pairs of a key and its action."""
 
 
 @dataclass(frozen=True, slots=True)
 class Help:
-    """The help: a title, paragraphs, the keys here, and the keys everywhere."""
+    """The contents of help: a title, paragraphs, keys available here, and global keys."""
 
     title: str
     paragraphs: tuple[str, ...]
@@ -37,7 +37,7 @@ class Help:
 
 
 def help_for(screen: Screen[Any]) -> Help:
-    """Collect the help of a screen, of the widget that has the keys, and of the keys."""
+    """Collect the help of a screen and its focused widget, and their keys."""
     focused = screen.focused
     nodes: Iterable[Any] = (screen,) if focused is None else (screen, focused)
     keymap, typing = keymap_of(screen.app), bool(screen.query("#command-input"))
@@ -59,13 +59,13 @@ def help_for(screen: Screen[Any]) -> Help:
 
 
 def _yes(screen: Screen[Any]) -> str:
-    """Give the key that says yes: a question's own, or elsewhere that of the questions to come."""
+    """Return the key for yes: of this question, or of the next ones."""
     own: str = getattr(screen, "yes_key", "")
     return own or (DIGIT_SHOWN if draws_digit(screen.app) else "y")
 
 
 def _has_phrases(screen: Screen[Any]) -> bool:
-    """Say whether there is a page of what can be said on a screen."""
+    """Return whether the screen has a phrasebook."""
     return bool(screen.query("#command-input")) and hasattr(screen.app, "action_phrases")
 
 
@@ -74,9 +74,9 @@ def _pairs(keys: dict[str, str]) -> Keys:
 
 
 class HelpScreen(Dialog[None]):
-    """The help over a screen; any of esc, q and ? closes it.
+    """The help above a screen; esc, q and ? close it.
 
-    Enter does not: after "?", typed as a command with Enter, the help would be gone at once.
+    Enter does not: "?" may be typed as a command with Enter, which would close it at once.
     """
 
     DEFAULT_CSS = """
@@ -101,15 +101,15 @@ class HelpScreen(Dialog[None]):
         yield box
 
     def on_mount(self) -> None:
-        """Let the arrows scroll."""
+        """Focus the text."""
         self.query_one(VerticalScroll).focus()
 
     def action_close(self) -> None:
-        """Go back."""
+        """Close the dialog."""
         self.answer(None)
 
     async def action_phrases(self) -> None:
-        """Go on to all that can be said, where commands are given."""
+        """Open the phrasebook, if the screen takes commands."""
         app = self.app
         below = [screen for screen in app.screen_stack if screen is not self]
         if below and _has_phrases(below[-1]):
@@ -117,7 +117,7 @@ class HelpScreen(Dialog[None]):
             app.call_next(app.run_action, "app.phrases")
 
     def on_click(self, event: events.Click) -> None:
-        """Close when something else is clicked on."""
+        """Close on a click outside."""
         if event.widget is self:
             self.answer(None)
 

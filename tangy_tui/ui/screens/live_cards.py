@@ -1,4 +1,4 @@
-"""The owners of cards on the live screen: Tangy's doubts, and the answers of staff."""
+"""Owners of cards on the live screen: Tangy's doubts, and the answers of staff."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class LiveCards:
         world: LiveWorld,
         write: Callable[[str, Kind], None],
     ) -> None:
-        """Prepare; `write` shows a line in a colour by its name."""
+        """Follow the cards of a world; `write` shows a line with an ink."""
         self._workspace = workspace
         self._supervision = supervision
         self._cards, self._eyes, self._asks = world.cards, world.eyes, ""
@@ -39,7 +39,7 @@ class LiveCards:
         self._news = CardNews()
 
     def tell(self, events: Sequence[Event] = ()) -> None:
-        """Show and log news at once."""
+        """Show and log news."""
         for note in self._news.take(events, self._cards):
             self._supervision.note(note.did, BY, person=note.person, detail=note.detail)
             if words := note_words(note, self._workspace.name):
@@ -47,7 +47,7 @@ class LiveCards:
         self._ask()
 
     def _ask(self) -> None:
-        """Ask staff once how a card is, where the robot sees none."""
+        """Ask staff once for the state of a card, if the robot cannot read cards."""
         asks = "" if self._eyes is None else self._eyes.asks
         if asks and asks != self._asks:
             object = self._workspace.activity.object
@@ -56,9 +56,9 @@ class LiveCards:
         self._asks = asks
 
     async def say_whose(self, app: App[Any], control: GameController) -> None:
-        """Ask staff who has which card, and keep it.
+        """Ask staff who has which card, and store the answer.
 
-        The card is one of those that were in sight last, or Tangy is to learn it anew.
+        The card is one of those last in sight, or Tangy learns the person's card again.
         """
         dealt, name = self._cards.dealt, self._workspace.name
         people = []

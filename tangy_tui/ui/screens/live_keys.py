@@ -10,14 +10,14 @@ from tangy_tui.ui.keys import Key, bind
 from tangy_tui.ui.screens import play_keys
 
 NOT_LIVE = ("one_step", "skip")
-"""What can be done in a simulated game, and not to a robot among people."""
+"""Actions of simulated games that are not available with a robot among people."""
 
 DIAL: dict[Autonomy, str] = {
     "alone": "alone",
     "unsure": "asks when unsure",
     "each": "asks each time",
 }
-"""How much the robot does of itself, as the status line has it; a key turns the dial."""
+"""The levels of autonomy on the status line; a key cycles through them."""
 
 HELP = (
     "A game among people. The room shows where Tangy believes it is ([• •]), the way it means to "
@@ -52,13 +52,13 @@ BINDINGS: list[BindingType] = [
 
 
 CARDS_ONLY, FACTS_ONLY = ("call_again", "void_call", "whose_card"), ("tell",)
-"""Actions of an activity with cards, and of one that is declared by facts."""
+"""Actions only for activities with cards, and only for declared activities."""
 
 
 def keys(
     *, going: bool, over: bool = False, cards: bool = True, tells: bool = False
 ) -> tuple[str | Key, ...]:
-    """Return the keys and what they do while the game goes on, stands still, or is over."""
+    """Return the keys and their names while the game runs, is paused, or is over."""
     if over:
         return play_keys.keys(going=going, over=True)
     return (

@@ -1,4 +1,4 @@
-"""What a robot says of itself, as it is drawn over the room: its place, its way, what it sees."""
+"""Draws the robot's estimates over the room: pose, path, particles and obstacles."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from tangy_hw.robot_client.robot_state import RobotState
 from tangy_profiles.room import Point
 from tangy_tui.ui.widgets.room_view import Mark, RoomView
 
-ARROWS = "▸▾◂▴"  # by quarters of a turn; the people, whom it faces at one, are drawn below
+ARROWS = "▸▾◂▴"  # by quarter turns; people, whom it faces at pi / 2, are drawn below
 
 
 def track(room: RoomView, state: RobotState) -> None:
-    """Draw where the robot is, and what it knows of the floor."""
+    """Draw the robot's pose, and its estimates on the floor."""
     marks: list[Mark] = [(Point(x, y), "∴", "dim") for x, y in state.particles]
     marks += [(Point(x, y), "·", "robot") for x, y in state.path if state.going]
     marks += [(Point(x, y), "*", "warn") for x, y in state.obstacles]

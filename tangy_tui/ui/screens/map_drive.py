@@ -1,4 +1,4 @@
-"""Driving the robot by keys to draw a map, which grows on the screen meanwhile."""
+"""Driving the robot by keys to draw a map, which grows on the screen."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.client import RobotLink
     from tangy_tui.ui.app import TangyApp
 
-DRAWN_SECONDS = 2.0  # between two pictures of the map
+DRAWN_SECONDS = 2.0  # between two updates of the map
 
 
 class MapDriveScreen(HandDriving, TangyScreen[None]):
-    """The map so far, and the keys to drive. Enter ends the drive, ctrl+x stops the robot."""
+    """The map so far, and the driving keys. Enter ends the drive, ctrl+x stops the robot."""
 
     DEFAULT_CSS = """
     MapDriveScreen #map { height: 1fr; content-align: center middle; }
@@ -48,22 +48,22 @@ class MapDriveScreen(HandDriving, TangyScreen[None]):
     app: TangyApp
 
     def __init__(self, link: RobotLink, record: Path, title: str) -> None:
-        """Make the screen.
+        """Create the screen.
 
         Args:
-            link: to the robot, which is on.
-            record: the log that it writes.
-            title: the robot's.
+            link: the link to the robot, which is on.
+            record: the log that the robot writes.
+            title: the robot's title.
         """
         HandDriving.__init__(self, link)
         TangyScreen.__init__(self)
         self._record, self._title = record, title
         self._so_far: SoFar | None = None
         self.done = False
-        """Whether the map is to be drawn from this drive."""
+        """Whether to draw the map from this drive."""
 
     def compose(self) -> ComposeResult:
-        """Lay out the map, what was recorded, and the keys."""
+        """Lay out the map, the amount recorded, and the keys."""
         yield StatusLine(Status(mode=text.DRIVE_MODE, robot=self._title))
         yield Static("", id="map", markup=False)
         yield Static(text.recorded_words(0, 0.0), id="so-far")
@@ -71,12 +71,12 @@ class MapDriveScreen(HandDriving, TangyScreen[None]):
         yield KeyLine(("↑↓←→", text.DRIVES), "still", "open:draw the map", "stop", "help")
 
     def on_mount(self) -> None:
-        """Look all the time what the robot does, and draw now and then."""
+        """Poll the robot, and redraw the map from time to time."""
         self.set_interval(TELL_SECONDS, self._watch)
         self.set_interval(DRAWN_SECONDS, self._look)
 
     def _watch(self) -> None:
-        """Tell the robot that this screen lives, and say why it stands."""
+        """Send a heartbeat to the robot, and show why it stands still."""
         self.link.alive()
         stopped = self.link.state.stopped
         self.query_one(StatusLine).show(
@@ -93,7 +93,7 @@ class MapDriveScreen(HandDriving, TangyScreen[None]):
         self.run_worker(self._draw, thread=True, exclusive=True, group="map")
 
     def _draw(self) -> None:
-        """Draw what was recorded so far, on a thread: reading it takes a while."""
+        """Draw the map so far, in a thread: reading the record takes time."""
         if (found := map_so_far(self._record)) is not None:
             self.app.call_from_thread(self._show, found)
 
@@ -113,11 +113,11 @@ class MapDriveScreen(HandDriving, TangyScreen[None]):
         self.query_one("#so-far", Static).update(text.recorded_words(found.scans, found.metres))
 
     def show_words(self, words: str) -> None:
-        """Show them below the map."""
+        """Show the words below the map."""
         self.query_one("#hazard", Static).update(Content(words))
 
     def on_stop(self, message: Stop) -> None:
-        """Stop the robot, before anything is drawn."""
+        """Stop the robot first, then redraw."""
         self.link.stop(message.reason)
         self.show_words(text.STOPPED_HERE)
 
@@ -127,7 +127,7 @@ class MapDriveScreen(HandDriving, TangyScreen[None]):
         self.show_words("")
 
     def action_done(self) -> None:
-        """Ask whether the drive is over; the robot stands meanwhile."""
+        """Ask whether the drive is over, with the robot stopped."""
         self.drive(Twist())
         self.run_worker(self._ask_done(), group="done", exclusive=True)
 

@@ -1,4 +1,4 @@
-"""The people screen: what works with whom, how sure that is, and what staff say about it."""
+"""The people screen: what works with each person, with how much data, and corrections by staff."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ from tangy_tui.ui.widgets.choice_list import ChoiceList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 WHY = {True: "that was not compliance", False: "that was not a refusal"}
-"""Why a response is void, by whether it had counted as compliance."""
+"""The reason for voiding a response, by whether it counted as compliance."""
 
 
 class PeopleScreen(TangyScreen[None]):
-    """Everybody in a sentence; of the chosen person the strategies and the history."""
+    """Everybody in a sentence each; strategies and history of the chosen person."""
 
     CSS_PATH = "people.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
@@ -69,7 +69,7 @@ class PeopleScreen(TangyScreen[None]):
     ]
 
     def __init__(self, workspace: Workspace) -> None:
-        """Make the screen."""
+        """Create the screen."""
         super().__init__()
         self._workspace = workspace
         self._feedback = workspace.memory().feedback
@@ -108,21 +108,21 @@ class PeopleScreen(TangyScreen[None]):
         self._list("people").focus()
 
     def on_choice_list_moved(self, event: ChoiceList.Moved) -> None:
-        """Show another person, or what another strategy does."""
+        """Show the chosen person, or describe the chosen strategy."""
         if event.choices.id == "people":
             self._show_person()
         elif event.choices.id == "strategies":
             self._show_hint()
 
     def action_put_away(self) -> None:
-        """Leave the chosen response out, or switch the chosen strategy off or on."""
+        """Void the chosen response, or switch the chosen strategy off or on."""
         if self._list("history").has_focus:
             self._void()
         else:
             self._switch()
 
     def _void(self) -> None:
-        """Ask whether the chosen response is not to count."""
+        """Ask whether to void the chosen response."""
         entry = self._entry()
         if entry is None or not entry.counts:
             self._say(text.CHOOSE_COUNTING)
@@ -136,7 +136,7 @@ class PeopleScreen(TangyScreen[None]):
         )
 
     def action_feedback(self) -> None:
-        """Ask what the person did about the chosen request."""
+        """Ask for the person's response to the chosen request."""
         entry = self._entry()
         if entry is None or not entry.open:
             self._say(text.CHOOSE_OPEN)
@@ -152,7 +152,7 @@ class PeopleScreen(TangyScreen[None]):
         self.app.push_screen(AnswerDialog(*text.comply_words(entry, person.name)), answered)
 
     def _switch(self) -> None:
-        """Ask whether the chosen strategy is to be used with this person."""
+        """Ask whether to switch the chosen strategy for this person."""
         strategy, record = str(self._list("strategies").chosen), self._record
         on = strategy in record.known.off
         among = self._workspace.activity.strategies
@@ -175,7 +175,7 @@ class PeopleScreen(TangyScreen[None]):
         self.app.push_screen(MethodDialog(person.name, known.chosen, known.own, default), take)
 
     def action_join(self) -> None:
-        """Ask who joins the group, and let them take part."""
+        """Ask who joins the group, and add them."""
 
         async def join() -> None:
             if who := await ask_who_joins(self.app):
@@ -184,7 +184,7 @@ class PeopleScreen(TangyScreen[None]):
         self.run_worker(join(), name="join", exclusive=True)
 
     def action_rename(self) -> None:
-        """Ask what the chosen person is called from now on."""
+        """Ask for a new name of the chosen person."""
         person = self._workspace.find_person(self._record.person.id)
 
         async def rename() -> None:
@@ -194,7 +194,7 @@ class PeopleScreen(TangyScreen[None]):
         self.run_worker(rename(), name="rename", exclusive=True)
 
     def action_pronounce(self) -> None:
-        """Look at, hear or change how the person's name is said."""
+        """Show, speak or change the pronunciation of the person's name."""
         person = self._workspace.find_person(self._record.person.id)
 
         def take(new: NewPronunciation | None) -> None:
@@ -205,7 +205,7 @@ class PeopleScreen(TangyScreen[None]):
         self.app.push_screen(dialog, take)
 
     def _hear(self, phones: str) -> None:
-        """Have phones said aloud beside the screen."""
+        """Speak phones in the background."""
         self.run_worker(self._heard(phones), group="hear", exclusive=True)
 
     async def _heard(self, phones: str) -> None:
@@ -215,7 +215,7 @@ class PeopleScreen(TangyScreen[None]):
             self._say(str(error), bad=True)
 
     def action_undo(self) -> None:
-        """Ask whether the last change to this person is to be taken back."""
+        """Ask whether to undo the last change to this person."""
         person = self._record.person
         change = self._feedback.last_change(person.id)
         if change is None:
@@ -228,7 +228,7 @@ class PeopleScreen(TangyScreen[None]):
         )
 
     def action_leave(self) -> None:
-        """Go back."""
+        """Close the screen."""
         close(self, None)
 
     @property
@@ -242,7 +242,7 @@ class PeopleScreen(TangyScreen[None]):
         return self.query_one(f"#{id}", ChoiceList)
 
     def _entry(self) -> FeedbackEntry | None:
-        """Return the chosen line of the history."""
+        """Return the chosen entry of the history."""
         chosen = self._list("history").chosen
         return next((entry for entry in self._record.history if entry.seq == chosen), None)
 
@@ -270,7 +270,7 @@ class PeopleScreen(TangyScreen[None]):
         strategies.border_subtitle = hint.replace("[", "\\[")
 
     def _ask(self, asked: tuple[str, str], yes: str, change: Callable[[], object]) -> None:
-        """Make a change once it is confirmed."""
+        """Make a change after confirmation."""
 
         def answered(sure: bool | None) -> None:
             if sure:
@@ -280,7 +280,7 @@ class PeopleScreen(TangyScreen[None]):
         self.app.push_screen(dialog, answered)
 
     def _do(self, change: Callable[[], object]) -> None:
-        """Make a change and show what follows from it, or say why it cannot be made."""
+        """Make a change and show the result, or tell why it is not possible."""
         try:
             change()
         except TangyError as error:

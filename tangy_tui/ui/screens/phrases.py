@@ -1,4 +1,4 @@
-"""The phrasebook as a screen: what can be said for what, and how every word is said."""
+"""The phrasebook screen: the phrases of each behaviour, and the pronunciation of every word."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.wrapping import wrap
 
 LONGEST_SEARCH = 60
-ABOUT = 20  # columns of what an entry is about
+ABOUT = 20  # width of the subject of an entry
 
 Hear = Callable[[str], Awaitable[None]]
-"""Says phones aloud."""
+"""Speaks phones."""
 
 
 class SearchInput(Input):
@@ -56,7 +56,7 @@ class SearchInput(Input):
 
 
 class PhrasesScreen(TangyScreen[None]):
-    """Everything that can be said to the robot, to be read, searched and heard."""
+    """All phrases that Tangy understands, to read, search and listen to."""
 
     DEFAULT_CSS = """
     PhrasesScreen #phrases { height: 1fr; }
@@ -79,14 +79,14 @@ class PhrasesScreen(TangyScreen[None]):
     ]
 
     def __init__(self, workspace: Workspace, say: Hear = hear) -> None:
-        """Make the screen; `say` says phones aloud."""
+        """Create the screen; `say` speaks phones."""
         super().__init__()
         self._workspace = workspace
         self._aloud = say
         self._items: tuple[Item, ...] = ()
 
     def compose(self) -> ComposeResult:
-        """Lay out the list and the line to search with."""
+        """Lay out the list and the search line."""
         yield StatusLine(Status(mode="phrases", note=self._workspace.activity.title))
         yield panel(ChoiceList(text.LIST_TITLE, text.LIST_HELP, id="phrases"))
         search = SearchInput(
@@ -103,7 +103,7 @@ class PhrasesScreen(TangyScreen[None]):
         )
 
     def on_mount(self) -> None:
-        """Look the words up beside the screen."""
+        """Look up the words in the background."""
         self._list.focus()
         self._list.show(lambda width, height: [ChoiceLine(((text.LOOKING_UP, "dim"),))])
         self.run_worker(self._read(), group="read", exclusive=True)
@@ -113,7 +113,7 @@ class PhrasesScreen(TangyScreen[None]):
         self._show()
 
     def action_search(self) -> None:
-        """Open the line to search with."""
+        """Open the search line."""
         self.add_class("-searching")
         self.query_one(SearchInput).focus()
 
@@ -122,14 +122,14 @@ class PhrasesScreen(TangyScreen[None]):
         self._list.focus()
 
     def action_all(self) -> None:
-        """Show everything again."""
+        """Clear the search."""
         self.query_one(SearchInput).clear()
         self.remove_class("-searching")
         self._list.focus()
         self._show()
 
     def action_hear(self) -> None:
-        """Say the chosen entry aloud."""
+        """Speak the chosen entry."""
         item = self._chosen
         if item is None or not item.phones:
             self._say(text.CHOOSE_SAYABLE)
@@ -137,7 +137,7 @@ class PhrasesScreen(TangyScreen[None]):
             self._hear(item.phones)
 
     def action_edit(self) -> None:
-        """Change how the name of the chosen person is said."""
+        """Change the pronunciation of the chosen person's name."""
         item = self._chosen
         if item is None or item.person is None:
             self._say(text.CHOOSE_PERSON)
@@ -156,7 +156,7 @@ class PhrasesScreen(TangyScreen[None]):
         self.app.push_screen(dialog, take)
 
     def action_leave(self) -> None:
-        """Show everything again, or go back."""
+        """Clear the search, or close the screen."""
         if self.query_one(SearchInput).value:
             self.action_all()
         else:
@@ -168,7 +168,7 @@ class PhrasesScreen(TangyScreen[None]):
 
     @property
     def _chosen(self) -> Item | None:
-        """The entry that the cursor is on."""
+        """The entry at the cursor."""
         at = self._list.chosen
         return self._items[at] if isinstance(at, int) and at < len(self._items) else None
 
@@ -199,7 +199,7 @@ class PhrasesScreen(TangyScreen[None]):
 
 
 def phrase_lines(entries: tuple[Item, ...], wanted: str, width: int) -> list[ChoiceLine]:
-    """Write the entries that are searched for, under their headings; keys are their places."""
+    """Format the entries that match a search, with headings; their keys are indices."""
     about = min(ABOUT, width // 3)
     lines: list[ChoiceLine] = []
     found = [(place, item) for place, item in enumerate(entries) if item.has(wanted)]
