@@ -1,1 +1,1 @@
-"""Activities as declared data: what a file may say, how it is read, and the one interpreter."""
+"""Activities as declared data: the file format, its reader, and the interpreter."""

@@ -1,4 +1,4 @@
-"""A declared activity as the rest of the program knows activities."""
+"""A declared activity with the interface of an `Activity`."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ MOST_SITUATIONS = 3_000
 
 @dataclass(frozen=True)
 class DeclaredActivity(Activity):
-    """An activity whose facts, stages and behaviours its file declares."""
+    """An activity whose facts, stages and behaviours are declared in its file."""
 
     declaration: Declaration = field(kw_only=True)
 
     @cached_property
     def situations(self) -> tuple[Situation, ...]:
-        """The situations that the conditions of the stages do not rule out, in their order."""
+        """The situations that the conditions of the stages do not rule out, in order."""
         return tuple(situations(self.declaration))
 
     def need_cards(self) -> None:
-        """Refuse what can only be done with an activity that is played with cards.
+        """Raise an error, because the activity has no cards.
 
         Raises:
             ProfileError: always.
@@ -52,47 +52,47 @@ class DeclaredActivity(Activity):
 
     @property
     def teams(self) -> tuple[str, ...]:
-        """The teams that take turns, where people do not play each for themselves."""
+        """The teams that take turns; empty if people play individually."""
         return self.declaration.teams
 
     def imaginable(self) -> Iterable[Situation]:
-        """Yield every situation that the policy has an answer to."""
+        """Yield every situation for which a policy has a decision."""
         return self.situations
 
     def in_words(self, situation: Situation) -> str:
-        """Say what is going on in a situation, and what else is seen there."""
+        """Describe a situation: the stage, and the facts that it sees."""
         return situation_words(self.declaration, situation)
 
     def told_of(self, situation: Situation, who: str) -> str:
-        """Say the same with the person of the stage in it ("": anyone)."""
+        """Describe a situation with the person of the stage ("": anyone)."""
         return situation_words(self.declaration, situation, who)
 
     def in_names(self, situation: Situation) -> str:
-        """Write a situation as its author named it: the stage, and the facts that it sees."""
+        """Format a situation with the names in the file: the stage, and its facts."""
         facts = ", ".join(f"{fact} is {value}" for fact, value in seen_facts(situation).items())
         return f"{situation.stage} · {facts}" if facts else situation.stage
 
     def stage_words(self, stage: str) -> str:
-        """Say what is going on in a stage."""
+        """Describe a stage."""
         return stage_words(self.declaration, stage)
 
     def not_yet(self, situation: Situation) -> str:
-        """Name a situation that has not been shown yet."""
+        """Describe a situation that has not been shown yet."""
         return self.in_words(situation)
 
     def words_of(
         self, action: Action, outcome: Outcome, name: Callable[[str], str]
     ) -> tuple[str, str]:
-        """Return what the world said and showed, with people by their names."""
+        """Return the world's speech and picture text, with people's names."""
         return with_names(outcome.speech, name), with_names(outcome.image, name)
 
     def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
-        """Put a name into a text; "" if it needs what only a game knows."""
+        """Fill a name into a text; return "" if it has other slots."""
         text = template.replace("{name}", name)
         return "" if SLOT.search(text) else text
 
     def expectation(self, situation: Situation) -> Expectation | None:
-        """Return what a test expects of a facilitator in a situation."""
+        """Return the expectation that a test has in a situation, or None."""
         facts = seen_facts(situation)
         for one in self.declaration.expected:
             if one.stage == situation.stage and all(told(c, facts) for c in one.conditions):
@@ -100,7 +100,7 @@ class DeclaredActivity(Activity):
         return None
 
     def expected_selector(self, situation: Situation) -> Selector | None:
-        """Return whom a test expects the behaviour to be for, None if it is not said."""
+        """Return the expected selector of the behaviour's person, or None."""
         found = self.expectation(situation)
         return found.to if found is not None else None
 
@@ -109,16 +109,16 @@ def read_declared(path: Path) -> DeclaredActivity:
     """Read and check a declared activity.
 
     Raises:
-        ProfileError: the file has mistakes; says the first, and how many more there are.
+        ProfileError: the file has mistakes; the message has the first one, and how many more.
     """
     return build_activity(read_declaration(path))
 
 
 def build_activity(declaration: Declaration) -> DeclaredActivity:
-    """Make what the program plays of what a file declares.
+    """Make a playable activity from a declaration.
 
     Raises:
-        ProfileError: the stages see so many facts that nobody could show all situations.
+        ProfileError: the stages see too many facts to show all situations.
     """
     count = 1
     for stage in declaration.stages:

@@ -9,11 +9,11 @@ from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.model import Fact, Habit
 
 NO_IDEA = "no idea"
-"""A free answer that is wrong whatever is asked."""
+"""A free answer that is wrong for any question."""
 
 
 class Act(NamedTuple):
-    """One act of a person: the fact, the person (None: the group), and the new value."""
+    """An act of a person: the fact, the person (None: the group), and the new value."""
 
     fact: str
     who: str | None
@@ -21,12 +21,12 @@ class Act(NamedTuple):
 
 
 def acts(game: DeclaredGame, *, drawn: Callable[[], float] | None = None) -> Iterator[Act]:
-    """Yield what people may do now.
+    """Yield the possible acts of people.
 
     Args:
-        game: the game; it may observe each yielded act before the next is drawn.
-        drawn: draws from 0 to 1, so that each act comes with its chance, one value each
-            (default: every act that has a chance, with every value that has a weight).
+        game: the game; it may observe each act before the next is drawn.
+        drawn: draws from 0 to 1, so that each act occurs with its chance, and one value each
+            (default: every act with a chance, and every value with a weight).
     """
     if drawn is None:
         yield from _possible(game)
@@ -35,13 +35,13 @@ def acts(game: DeclaredGame, *, drawn: Callable[[], float] | None = None) -> Ite
         fact = game.declaration.facts[habit.fact]
         for who in game.here if fact.per_player else (None,):
             able = habit.chance > 0 and all(game.holds(one, who) for one in habit.when)
-            chance, share = drawn(), drawn()  # two numbers, whatever comes of them
+            chance, share = drawn(), drawn()  # always two numbers, for reproducibility
             if able and chance < habit.chance:
                 yield Act(fact.name, who, _chosen(habit, share))
 
 
 def _possible(game: DeclaredGame) -> Iterator[Act]:
-    """Yield every act that has a chance, with every value that has a weight."""
+    """Yield every act with a chance, and every value with a weight."""
     for habit, (group, own) in game.declaration.reasons:
         if habit.chance <= 0 or not all(game.holds(one, None) for one in group):
             continue
@@ -54,13 +54,13 @@ def _possible(game: DeclaredGame) -> Iterator[Act]:
 
 
 def take_in(game: DeclaredGame, act: Act, certainty: float = 1.0) -> bool:
-    """Let a game observe an act, as a device would tell it that is so sure (a probability)."""
+    """Apply an act to a game as an observation with a certainty (a probability)."""
     fact = game.declaration.facts[act.fact]
     return game.observe(act.fact, act.who, raw(game, fact, act.value), certainty)
 
 
 def raw(game: DeclaredGame, fact: Fact, value: str) -> str:
-    """Return what a person says or shows who brings a value about."""
+    """Return the raw observation (a value or an answer) that results in a fact's value."""
     if not fact.checks:
         return value
     items, row = game.declaration.items, game.row

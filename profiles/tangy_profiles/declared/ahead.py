@@ -1,4 +1,4 @@
-"""Looking ahead in a game: what has to happen so that something comes about that was not shown."""
+"""Look-ahead in a game: which events lead to a situation that was not shown yet."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from tangy_profiles.declared.state_keys import rough_key, state_key
 from tangy_profiles.state import Situation
 
 MOST_AHEAD = 1_200
-"""The most states that the search for the next situation looks at, for up to `FEW_PLAYERS`."""
+"""The most states to visit in a search, for up to `FEW_PLAYERS`."""
 MOST_TRIED = 4
-"""So many things that can happen are tried for each of them; most lead to a state that is known."""
+"""The most events to try per state; most lead to a known state."""
 FEW_PLAYERS = 4
-"""With more players a state costs more time, and fewer are looked at."""
+"""With more players a state takes longer, and fewer are visited."""
 
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """One thing that has to happen in a state, as the search has met it."""
+    """An event in a state, as visited by the search."""
 
     key: Hashable
     event: Event
@@ -31,7 +31,7 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """What has to happen from one of several moments on, and the situation that it leads to."""
+    """A path of events from one of several start states to a situation."""
 
     start: int
     legs: tuple[Leg, ...]
@@ -40,7 +40,7 @@ class Way:
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """Something that can happen in a game, and the step that led to that game."""
+    """An event in a game, with the step that led to that game."""
 
     game: DeclaredGame
     event: Event
@@ -59,20 +59,20 @@ class _Step:
 def nearest_way(
     moments: Sequence[DeclaredGame], taught: ShownMoves, most: int | None = None
 ) -> Way | None:
-    """Return a shortest way, along taught steps, to a situation not shown yet.
+    """Return a shortest path, along demonstrated moves, to a situation not shown yet.
 
-    What ends a game comes last: it is tried once nothing is found without it. Players whom no
-    selector names count as alike. The limits are numbers of states rather than times, so that the
-    same game is always guided in the same way.
+    Events that end a game are only tried if there is no path without them. Players whom no selector
+    names are interchangeable. The limits are numbers of states, not times, so that the guidance is
+    reproducible.
 
     Args:
-        moments: states right after a behaviour, from which the game may go on.
-        taught: what follows in which situation.
-        most: the states that are looked at without what ends a game, and again with it (default:
-            by the number of players).
+        moments: states right after a behaviour, from which the game may continue.
+        taught: the demonstrated moves.
+        most: the states to visit without events that end a game, and again with them (default: by
+            the number of players).
 
     Returns:
-        The way; None where none is found.
+        The path, or None.
     """
     if most is None:
         players = max((len(game.players) for game in moments), default=1)
@@ -84,12 +84,12 @@ def nearest_way(
 
 
 def moment_key(game: DeclaredGame) -> Hashable:
-    """Return all that a way goes by: the state, and which player it is about."""
+    """Return the key of a state in a path: its state key, and the players in their roles."""
     return state_key(game), game.turn, game.place, game.addressed, tuple(game.queue)
 
 
 class _Search:
-    """A breadth-first search: `late` begins with what ends a game, `soon` has none of it."""
+    """A breadth-first search of paths: in `late` with events that end a game, in `soon` without."""
 
     def __init__(self, taught: ShownMoves, most: int) -> None:
         self._taught = taught
@@ -99,7 +99,7 @@ class _Search:
         self.late: deque[_Step] = deque()
 
     def run(self, steps: deque[_Step]) -> Way | None:
-        """Follow steps until one reaches a situation not shown; None within a limit of steps."""
+        """Expand steps until one reaches a situation not shown; return None at the limit."""
         looked = tried = 0
         while steps and looked < self._most and tried < MOST_TRIED * self._most:
             step = steps.popleft()
@@ -122,7 +122,7 @@ class _Search:
     def expand(
         self, game: DeclaredGame, start: int, before: _Step | None, steps: deque[_Step]
     ) -> None:
-        """Add what can happen after a behaviour."""
+        """Add the events that are possible after a behaviour."""
         for event in events(game, last=True, few=True):
             late = ends_game(game.declaration, event)
             (self.late if late else steps).append(_Step(game, event, start, before))

@@ -33,7 +33,7 @@ LONGEST_PAUSE = 300.0  # s
 POSTURE = "rest"
 PHRASE = re.compile(r"[a-z']+( [a-z']+)*")
 OF_EACH = " of each"
-"""Behind the name of a count in a slot: the count of every player."""
+"""Suffix of a count's name in a slot: the counts of all players."""
 SPEECH_COLUMNS = ["behaviour", "strategy", "text"]
 Texts = dict[str, tuple[str, ...]]
 
@@ -105,7 +105,7 @@ def read_behaviours(
 
 
 def known_slots(facts: Facts, columns: Sequence[str]) -> list[str]:
-    """Return the slots that a speech or a screen of an activity can have."""
+    """Return the valid slots of speech and screen texts in an activity."""
     slots = ["name", "n", "turn", *columns]
     for fact in facts.values():
         if not fact.built_in:
@@ -162,7 +162,7 @@ def _read_phrases(section: Section, name: str, said: dict[str, str]) -> tuple[st
 
 
 def _read_wordings(section: Section, name: str, said: dict[str, str]) -> tuple[str, ...]:
-    """Read other ways to ask for a behaviour: none may mean two of them."""
+    """Read other wordings of a behaviour; each may belong to only one behaviour."""
     wordings = section.texts("wordings", single=True)
     for wording in wordings:
         if not PHRASE.fullmatch(wording):

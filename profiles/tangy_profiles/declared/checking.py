@@ -1,4 +1,4 @@
-"""A declared activity looked over by searching its games: what can never be, or never ends."""
+"""Check of a declared activity by a search of its games: unreachable parts, endless games."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ Flaw = Literal[
 ]
 PLAYERS = ("one", "other")
 LIMIT = Limit(states=12_000, seconds=10.0)
-"""How far each search goes, and for how many s of CPU all of them together."""
+"""Limit of each search, and of the CPU time (s) of all together."""
 SHARE = 0.6
-"""The share of the time that is left to a search while another one follows."""
+"""The share of the remaining time for a search if another one follows."""
 
 
 @dataclass(frozen=True, slots=True)
 class DeadEnd:
-    """Where a game of a number of players cannot end or cannot go on, and how it comes there."""
+    """A dead end in games of a number of players, and the path to it."""
 
     players: int
     as_expected: bool
@@ -46,7 +46,7 @@ class DeadEnd:
 
 @dataclass(frozen=True, slots=True)
 class ActivityFlaw:
-    """One flaw of an activity: of what, and (where it is a text) of which."""
+    """A flaw of an activity: the name concerned, and perhaps its text."""
 
     flaw: Flaw
     name: str
@@ -58,8 +58,8 @@ class ActivityFlaw:
 class SearchedGames:
     """How far games of a number of players were searched.
 
-    `as_expected` are games that go as the file expects, others have every possible behaviour.
-    `cut` says why the search ended early, and `shares` what made the most of its states.
+    `as_expected` are games with the expected behaviours, others have every possible one. `cut` says
+    why the search ended early, and `shares` which facts contribute most states.
     """
 
     players: int
@@ -71,10 +71,9 @@ class SearchedGames:
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """The flaws of an activity, the worst first, and how far its games were searched.
+    """The flaws of an activity, worst first, and how far its games were searched.
 
-    `not_met` are stages, situations and behaviours that no search met before one was cut: they
-    may come up later.
+    `not_met` are stages, situations and behaviours that an incomplete search did not reach.
     """
 
     flaws: tuple[ActivityFlaw, ...]
@@ -83,7 +82,7 @@ class Findings:
 
 
 def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
-    """Return the flaws of an activity that can be read, and how far it was searched.
+    """Search the games of an activity, and return its flaws.
 
     Args:
         activity: the activity.
@@ -125,10 +124,11 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
 def _dead_ends(
     activity: DeclaredActivity, found: Sequence[tuple[SearchedGames, Reach]]
 ) -> Iterator[ActivityFlaw]:
-    """Yield for each search where no game can end.
+    """Yield a flaw for each search with a dead end.
 
-    If every behaviour is possible, that is where the end is lost: there a condition is wrong. If
-    games go as expected, it is where they stay: there a line is wrong.
+    If every behaviour is possible, it is the state in which the end becomes unreachable, because a
+    condition is wrong there. In expected games it is the loop in which they stay, because an
+    expectation is wrong there.
     """
     for games, one in found:
         if one.lost is None or one.loop is None:
@@ -141,7 +141,7 @@ def _dead_ends(
 def _idle(
     activity: DeclaredActivity, found: Sequence[tuple[SearchedGames, Reach]]
 ) -> Iterator[ActivityFlaw]:
-    """Yield for each search with every behaviour where none of them is possible."""
+    """Yield a flaw for each search with a state in which no behaviour is possible."""
     for games, one in found:
         if one.idle is not None and not games.as_expected:
             end = DeadEnd(games.players, games.as_expected, one.idle)
@@ -150,7 +150,7 @@ def _idle(
 
 
 def _missing(activity: DeclaredActivity, found: Sequence[Reach]) -> Iterator[ActivityFlaw]:
-    """Yield the stages, situations and behaviours that no search came to."""
+    """Yield the stages, situations and behaviours that no search reached."""
     reached = {situation for one in found for situation in one.reached}
     stages = {situation.stage for situation in reached}
     for stage in activity.stages:
@@ -170,7 +170,7 @@ def _tried(
     slots: dict[tuple[str, str], bool],
     limit: Limit,
 ) -> Reach:
-    """Search with every behaviour, and note which texts lack a word whenever they are spoken."""
+    """Search with every behaviour, and record texts that always have an empty slot."""
     declaration = activity.declaration
     rounds = min(declaration.items.rounds, max(1, declaration.most_counted))
     situations = ShownMoves(activity.behaviours)
@@ -193,7 +193,7 @@ def _tried(
 def _played_as_expected(
     activity: DeclaredActivity, players: Sequence[str], limit: Limit
 ) -> tuple[dict[tuple[str, str], bool], Reach]:
-    """Search games that go as the file expects; return which texts lack a word at some time."""
+    """Search games with the expected behaviours; also return texts with slots that can be empty."""
     slots: dict[tuple[str, str], bool] = {}
     declaration = activity.declaration
     shown = expected_moves(activity)
@@ -211,7 +211,7 @@ def _played_as_expected(
 
 
 def expected_moves(activity: DeclaredActivity) -> ShownMoves:
-    """Return what an activity's file expects of a facilitator, as if it had been shown."""
+    """Return the expected behaviours of an activity as if they had been demonstrated."""
     shown = ShownMoves(activity.behaviours)
     for situation, behaviour in activity.expected.items():
         shown.shown[situation] = behaviour
@@ -231,12 +231,12 @@ def _note_slots(
     *,
     any_time: bool,
 ) -> None:
-    """Note which texts of a behaviour lack a word: at any time, or each time so far."""
+    """Record which texts of a behaviour have an empty slot: at any time, or always so far."""
     declared = game.declaration.behaviours[name]
     texts = [text for found in declared.says.values() for text in found] + [declared.image]
     wanted = [text for text in texts if "{" in text]
     if not wanted or all(slots.get((name, text)) is any_time for text in wanted):
-        return  # there is nothing to look at, or nothing that could change
+        return  # no slots, or nothing can change
     after = game.copy()
     after.execute(name, whom)
     for text in wanted:

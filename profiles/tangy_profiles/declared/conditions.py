@@ -1,4 +1,4 @@
-"""Conditions and effects as they are written, read into what the interpreter follows."""
+"""Parser of conditions and effects, as the interpreter uses them."""
 
 from __future__ import annotations
 
@@ -31,25 +31,25 @@ TAKES_FACT = ("set", "add", "clear", "start", "invite")
 
 
 class Phrasing:
-    """Reads conditions and effects of one file; mistakes go to the section they stand in."""
+    """Parses conditions and effects of one file; mistakes are recorded in their section."""
 
     def __init__(self, facts: Facts) -> None:
-        """Take the facts that the file declares, with those that are built in."""
+        """Use the facts that the file declares, and the built-in ones."""
         self.facts = facts
         self.whose: dict[Selector, FactCondition] = {}
         """The conditions of the selectors read so far that have one."""
 
     def conditions(self, section: Section, key: str) -> tuple[FactCondition, ...]:
-        """Read the conditions of a key, all of which have to hold."""
+        """Parse the conditions of a key, all of which must hold."""
         return self.all_of(section, key, section.texts(key))
 
     def all_of(self, section: Section, key: str, texts: Sequence[str]) -> tuple[FactCondition, ...]:
-        """Read conditions that are already taken from a key."""
+        """Parse conditions that were already read from a key."""
         found = (self.condition(section, key, text) for text in texts)
         return tuple(one for one in found if one is not None)
 
     def condition(self, section: Section, key: str, text: str) -> FactCondition | None:
-        """Read one condition, or record its problem."""
+        """Parse one condition, or record its problem."""
         match = _CONDITION.fullmatch(text)
         if match is None:
             section.wrong(key, f"{text!r} is no condition; write FACT is VALUE", text)
@@ -78,7 +78,7 @@ class Phrasing:
         )
 
     def fact(self, section: Section, key: str, name: str, text: str) -> Fact | None:
-        """Return a fact by its name, or note that there is none."""
+        """Return a fact by its name, or record that there is none."""
         fact = self.facts.get(name)
         if fact is None:
             section.wrong(key, f"{name!r} is not a fact; {nearest(name, self.facts)}", text)
@@ -112,12 +112,12 @@ class Phrasing:
         return words
 
     def effects(self, section: Section, key: str) -> tuple[Effect, ...]:
-        """Read what a behaviour does, in order."""
+        """Parse the effects of a behaviour, in order."""
         found = (self.effect(section, key, text) for text in section.texts(key))
         return tuple(one for one in found if one is not None)
 
     def effect(self, section: Section, key: str, text: str) -> Effect | None:
-        """Read one effect, or record its problem."""
+        """Parse one effect, or record its problem."""
         words, _, tail = " ".join(text.split()).partition(" if ")
         parts = tail.split(" and ") if tail else []
         conditions = self.all_of(section, key, parts)

@@ -1,4 +1,4 @@
-"""States of a search from which no game ends: where the end is lost, and where games then stay."""
+"""Dead ends of a search: states from which no game ends, and the loops in which games stay."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from tangy_profiles.declared.search_way import Node
 
 Earlier = Mapping[Node, Sequence[Node]]
-"""For each node of a search the nodes from which it can come next."""
+"""The predecessors of each node of a search."""
 
 
 def without_end(nodes: Iterable[Node], earlier: Earlier, ends: Iterable[Node]) -> list[Node]:
-    """Return the nodes from which no end can be reached, in the order of the search.
+    """Return the nodes from which no end is reachable, in the order of the search.
 
     Args:
         nodes: every node of the search.
-        earlier: the nodes before each.
+        earlier: the predecessors of each node.
         ends: the nodes in which a game is over.
     """
     can = set(ends)
@@ -30,14 +30,14 @@ def without_end(nodes: Iterable[Node], earlier: Earlier, ends: Iterable[Node]) -
 
 
 def loop_in(stuck: Sequence[Node], earlier: Earlier) -> list[Node]:
-    """Return nodes that a game can never leave, and all of which can come again and again.
+    """Return a set of nodes that a game can never leave, and in which each is reachable again.
 
-    They are the strongly connected component (by Kosaraju's algorithm) that nothing leaves, and to
-    which a search comes first.
+    It is the strongly connected component (by Kosaraju's algorithm) without outgoing edges that the
+    search reaches first.
 
     Args:
-        stuck: nodes from which no end can be reached, in the order of the search; at least one.
-        earlier: the nodes before each.
+        stuck: nodes from which no end is reachable, in the order of the search; at least one.
+        earlier: the predecessors of each node.
     """
     later: dict[Node, list[Node]] = {}
     for node in stuck:
@@ -65,7 +65,7 @@ def loop_in(stuck: Sequence[Node], earlier: Earlier) -> list[Node]:
 
 
 def _finished(stuck: Sequence[Node], earlier: Earlier) -> list[Node]:
-    """Return the nodes as a search depth first against their order has finished with them."""
+    """Return the nodes in the finishing order of a depth-first search on the reversed graph."""
     left, finished = set(stuck), list[Node]()
     for root in stuck:
         path = [(root, iter(earlier.get(root, ())))] if root in left else []

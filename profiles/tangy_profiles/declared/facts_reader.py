@@ -1,4 +1,4 @@
-"""The facts of an activity's file, read into what the interpreter keeps."""
+"""Reads the facts of an activity's file."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from tangy_profiles.reading import nearest
 KEYS = ("kind", "values", "per", "bands", "from", "options", "checks", "when", "steps")
 MOST_FACTS, MOST_VALUES = 60, 20
 JUDGED_VALUES = 3
-"""No answer, a right one, a wrong one."""
+"""The values of a judged fact: no answer, a right one, a wrong one."""
 
 
 def read_facts(top: Section, columns: Sequence[str]) -> dict[str, Fact]:
-    """Read the flags and the facts of a file, with those that are built in.
+    """Read the flags and the facts of a file, with the built-in ones.
 
     Args:
         top: the file.
@@ -57,7 +57,7 @@ def read_facts(top: Section, columns: Sequence[str]) -> dict[str, Fact]:
 
 
 def read_words(top: Section, facts: dict[str, Fact]) -> dict[str, Fact]:
-    """Read what people call the values of facts: for each fact a text for each of its values."""
+    """Read the words for the values of facts: for each fact one text per value."""
     section = top.table("words")
     named = dict(facts)
     for name in section:

@@ -1,4 +1,4 @@
-"""Which behaviours fit the present moment of a game best, by what they would change."""
+"""Ranks the behaviours that fit the current state of a game, by their effects."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from tangy_profiles.declared.vocabulary import ITEMS
 
 
 def fitting(game: DeclaredGame) -> list[str]:
-    """Return the behaviours that are possible now, those first after which the game goes on.
+    """Return the behaviours that are possible now, best first.
 
-    While a timer of the stage is in its first band, behaviours that change nothing come first:
-    people are given time. Then follow those that lead to another stage, those that change what the
-    stage sees (or end a game of which no items are left), those that change neither, and those that
-    end the game. Among equals, behaviours for the person of the stage come first, and then those
-    done least often.
+    While a timer of the stage is in its first band, behaviours without effects come first, to give
+    people time. Then follow those that lead to another stage, those that change what the stage sees
+    (or end a game without items left), those that change neither, and those that end the game. Ties
+    are broken by the person of the stage, then by the fewest executions.
     """
     about = game.stage()[1]
     ranked: list[tuple[int, bool, int, str]] = []
@@ -42,7 +41,7 @@ def _rank(game: DeclaredGame, name: str, whom: str | None) -> int:
 
 
 def _waits(game: DeclaredGame) -> bool:
-    """Say whether a timer that the stage sees is in its first band."""
+    """Return whether a timer that the stage sees is in its first band."""
     stage, about = game.stage()
     facts = [game.declaration.facts[name] for name in stage.sees]
     return any(

@@ -1,7 +1,7 @@
-"""The one interpreter of declared activities: the facts of a game, and what changes them.
+"""The interpreter of declared activities: the facts of a game, and how they change.
 
-`observe` and `execute` are the only ways in which a fact changes: simulated people, cameras,
-buttons, speech and staff use the first, the robot's behaviours the second.
+Facts change only by `observe` (simulated people, cameras, buttons, speech and staff) and `execute`
+(the robot's behaviours).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tangy_profiles.declared.vocabulary import (
 from tangy_profiles.state import FRONT
 
 Key = tuple[str, str]
-"""A fact and whose it is ("": the group's)."""
+"""A fact and its player ("": the group)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class DeclaredGame:
         Args:
             declaration: the activity.
             players: those who take turns: people, or teams.
-            order: the rows of the items in the order of the game (default: as they stand).
+            order: the order of the items, as row numbers (default: as in the file).
         """
         self.declaration = declaration
         self.players = tuple(players)
@@ -55,9 +55,9 @@ class DeclaredGame:
         self.values: dict[Key, str] = {}
         self.counts: dict[Key, float] = {}
         self.round = 0
-        """How many items have been put to the group."""
+        """The number of items presented so far."""
         self.here = self.players
-        """The players who have not left, in their order; at least one."""
+        """The players who have not left, in order; at least one."""
         self.turn = 0
         self.queue: list[str] = []
         """Those who ask, first come first."""
@@ -85,11 +85,11 @@ class DeclaredGame:
 
     @property
     def row(self) -> int:
-        """The row of the present item, -1 before the first."""
+        """The row of the current item, -1 before the first."""
         return self.order[self.round - 1] if 0 < self.round <= len(self.order) else -1
 
     def number(self, fact: Fact, player: str | None) -> float:
-        """Return a count, or how many s a timer runs."""
+        """Return a count, or for how many s a timer has been running."""
         if fact.per_player and player is None:
             return 0.0
         kept = self.counts.get(_key(fact, player))
@@ -98,9 +98,9 @@ class DeclaredGame:
         return 0.0 if kept is None else self.now - kept
 
     def value(self, name: str, player: str | None) -> str:
-        """Return the value of a fact as conditions and the policy see it, of a player or the group.
+        """Return the value of a fact for conditions and the policy, of a player or the group.
 
-        Of a fact that players have one by one, nobody has the first value.
+        A per-player fact without a player has its first value.
         """
         fact = self.declaration.facts[name]
         if fact.built_in:
@@ -133,7 +133,7 @@ class DeclaredGame:
         return YES if holds else NO
 
     def holds(self, condition: FactCondition, player: str | None) -> bool:
-        """Say whether a condition holds, of a player where it has no quantifier."""
+        """Return whether a condition holds, for a player if it has no quantifier."""
         match condition.quantifier:
             case "":
                 return self._holds_for(condition, player)
@@ -157,7 +157,7 @@ class DeclaredGame:
         return enough if condition.comparison == ">=" else not enough
 
     def whom(self, selector: Selector) -> str | None:
-        """Return whom a selector names now, None if that is nobody, or the group."""
+        """Return the person that a selector names now; None for nobody or the group."""
         match selector:
             case "group":
                 return None
@@ -187,7 +187,7 @@ class DeclaredGame:
         return min(able, key=lambda one: since.index(one) if one in since else -1, default=None)
 
     def stage(self) -> tuple[Stage, str | None]:
-        """Return the present stage, and whom it is about."""
+        """Return the current stage, and its person."""
         for stage in self.declaration.stages:
             about = self.whom(stage.about)
             if all(self.holds(one, about) for one in stage.when):
@@ -200,26 +200,26 @@ class DeclaredGame:
         return stage.name, tuple(self.value(name, about) for name in stage.sees)
 
     def allows(self, name: str, whom: str | None) -> bool:
-        """Say whether a behaviour can be done now, for a player or the group."""
+        """Return whether a behaviour is possible now, for a player or the group."""
         behaviour = self.declaration.behaviours[name]
         if not behaviour.needs:
             return True
         person = whom if whom is not None else self.stage()[1]
         return all(self.holds(one, person) for one in behaviour.needs)
 
-    # ------------------------------------------------------------------- what changes the facts
+    # ------------------------------------------------------------------- changes of the facts
 
     def observe(self, name: str, who: str | None, raw: str, certainty: float = 1.0) -> bool:
-        """Take in something that was observed.
+        """Apply an observation.
 
         Args:
-            name: the fact that it is about; `HERE` if a player leaves or comes back.
-            who: the player, None if it is of the group.
-            raw: a value, or the answer that a person gave.
-            certainty: how sure it is, as a probability.
+            name: the fact; `HERE` if a player leaves or comes back.
+            who: the player, None for the group.
+            raw: a value, or a person's answer.
+            certainty: the probability that it is right.
 
         Returns:
-            Whether it says anything that was not so.
+            Whether anything changed.
         """
         if name == HERE:
             return self._moved(who, raw)
@@ -251,7 +251,7 @@ class DeclaredGame:
         return True
 
     def _moved(self, who: str | None, raw: str) -> bool:
-        """Let a player leave or come back; the last one stays, and a turn goes to the next."""
+        """Let a player leave or come back; the last one stays, and a turn passes to the next."""
         if who not in self.players or (who in self.here) == (raw == YES):
             return False
         stay = {*self.here, who} if raw == YES else {*self.here} - {who}
@@ -265,13 +265,13 @@ class DeclaredGame:
         return True
 
     def _next_here(self, place: int) -> int:
-        """Return the place of the next player who is here, after a place in the circle."""
+        """Return the index of the next present player after an index."""
         count = len(self.players)
         after = ((place + n) % count for n in range(1, count + 1))
         return next(one for one in after if self.players[one] in self.here)
 
     def execute(self, name: str, whom: str | None) -> Execution:
-        """Do a behaviour, for a player or (None) the group."""
+        """Execute a behaviour, for a player or (None) the group."""
         self.closed = None
         self.step += 1
         if self.over or not self.allows(name, whom):
@@ -288,7 +288,7 @@ class DeclaredGame:
         return Execution(True, tuple(invited))
 
     def failed(self) -> None:
-        """Count a behaviour that was begun and could not be carried out: nothing is changed."""
+        """Count a behaviour that could not be carried out: nothing else changes."""
         self.closed = None
         self.step += 1
 
@@ -337,7 +337,7 @@ class DeclaredGame:
 
 
 def _keys(fact: Fact, whom: str | None, everybody: Sequence[str]) -> list[Key]:
-    """Return what a change is of: the group's fact, a player's, or that of everybody."""
+    """Return the keys that an effect changes: of the group, a player, or everybody."""
     if not fact.per_player:
         return [(fact.name, "")]
     return [(fact.name, one) for one in ([whom] if whom is not None else everybody)]

@@ -20,17 +20,17 @@ MOST_ROWS = 5_000
 
 
 def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[str]]:
-    """Read a CSV file that stands beside an activity's file; its mistakes are noted there.
+    """Read a CSV file beside an activity's file, and record its mistakes.
 
-    The text is UTF-8, with or without a mark of the byte order; blank lines are left out.
+    The text is UTF-8, with or without a byte order mark; blank lines are skipped.
 
     Args:
-        source: where mistakes are noted.
+        source: records the mistakes.
         key: the key of the activity's file that names it.
         path: the CSV file.
 
     Returns:
-        The rows as they are, the header first; none if it cannot be read.
+        The rows, the header first; empty if it cannot be read.
     """
     try:
         content = read_given(path, LARGEST_TABLE, ProfileError, called=plain(path.name))
@@ -67,10 +67,10 @@ def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[
 
 
 def with_right_options(top: Section, items: Items, facts: Iterable[Fact]) -> Items:
-    """Return items in which each right answer is the words of an option.
+    """Return items in which each right answer is the text of an option.
 
-    Authors may write its letter, or the name of its column, in place of its words. A right answer
-    that is no option is noted as a mistake: nobody could give it.
+    Authors may write its letter or column name instead. A right answer that is no option is a
+    mistake: nobody could give it.
     """
     for fact in facts:
         if fact.checks and fact.options:
@@ -80,7 +80,7 @@ def with_right_options(top: Section, items: Items, facts: Iterable[Fact]) -> Ite
 
 
 def _right_in(top: Section, items: Items, fact: Fact, number: int) -> tuple[str, ...]:
-    """Return a row whose right answer is the words of an option; note a mistake in it."""
+    """Return a row with the right answer as the text of an option; record a mistake in it."""
     row = items.rows[number]
     options = [items.value(number, column) for column in fact.options]
     known = [plain_words(option) for option in options if option]
@@ -101,10 +101,10 @@ def _right_in(top: Section, items: Items, fact: Fact, number: int) -> tuple[str,
 
 
 def order_of(items: Items, uniform: Callable[[], float]) -> list[int]:
-    """Return the rows of a game's items in their order (Fisher and Yates where shuffled).
+    """Return the rows of a game's items in order (Fisher-Yates if shuffled).
 
     Args:
-        items: the items, with how many rounds a game has.
+        items: the items, with the number of rounds of a game.
         uniform: draws from 0 to 1.
     """
     order = list(range(len(items.rows)))

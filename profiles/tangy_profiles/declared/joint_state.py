@@ -1,4 +1,4 @@
-"""The joint state of a game of a declared activity, as the policy, the log and screens have it."""
+"""The joint state of a game of a declared activity, for the policy, the log and screens."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tangy_profiles.state import FACTS, ActivityState, UserState
 
 
 def joint_state(game: DeclaredGame) -> ActivityState:
-    """Return the joint state s_a: situation, place, whom it is about, players, facts, selectors."""
+    """Return the joint state s_a: situation, place, person, players, facts, selectors."""
     declaration = game.declaration
     stage, about = game.stage()
     values = tuple(game.value(name, about) for name in stage.sees)
@@ -33,7 +33,7 @@ def joint_state(game: DeclaredGame) -> ActivityState:
 
 
 def _doing(game: DeclaredGame, facts: list[Fact], player: str) -> str:
-    """Return a player's facts that differ from their first values, in words of the file."""
+    """Return a player's facts that differ from their first values, with the names in the file."""
     values = [(fact, game.value(fact.name, player)) for fact in facts]
     return (
         FACTS.join(f"{fact.name}{IS}{value}" for fact, value in values if value != fact.values[0])

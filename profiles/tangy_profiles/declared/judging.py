@@ -1,4 +1,4 @@
-"""Judges raw observations: a person's answer is compared with the item."""
+"""Judges raw observations: compares a person's answer with the item."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from functools import lru_cache
 from tangy_profiles.declared.model import Fact, Items
 
 CERTAIN = 0.7
-"""Below this certainty nothing is judged: the person is asked again."""
+"""Below this certainty nothing is judged, and the question is repeated."""
 ALIKE = 0.85
-"""From this likeness on a free answer is taken for the right one, misspelt or misheard."""
+"""The similarity from which a free answer counts as the right one, misspelt or misheard."""
 LETTERS = "abcdefgh"
 
 
 @lru_cache(maxsize=4096)
 def plain_words(text: str) -> str:
-    """Return a text as answers are compared: small letters, no accents, no marks, no article."""
+    """Normalise an answer: lower case, without accents, punctuation and article."""
     folded = unicodedata.normalize("NFKD", text.casefold())
     kept = "".join(c if c.isalnum() else " " for c in folded if not unicodedata.combining(c))
     words = re.sub(r"^\s*(the|a|an)\s+(?=\S)", "", kept).split()
@@ -28,18 +28,17 @@ def plain_words(text: str) -> str:
 def judged(fact: Fact, items: Items, row: int, raw: str, certainty: float) -> str | None:
     """Return the value of a fact that an observation stands for.
 
-    An answer that is to be checked may be the letter of an option, its words, or the right answer
-    in any of its synonyms.
+    An answer to check may be the letter of an option, its text, or any synonym of the right answer.
 
     Args:
-        fact: what was observed.
+        fact: the observed fact.
         items: the items, with the columns of the options.
-        row: the row of the present item.
-        raw: a value of the fact, or what a person answered.
-        certainty: how sure the observation is, as a probability.
+        row: the row of the current item.
+        raw: a value of the fact, or a person's answer.
+        certainty: the probability that the observation is right.
 
     Returns:
-        The value, or None if the observation is not sure, or says nothing of the fact.
+        The value; None if the observation is uncertain, or not about the fact.
     """
     if certainty < CERTAIN:
         return None

@@ -18,12 +18,12 @@ LARGEST_PICTURE = 4_000_000  # bytes
 LARGEST_SOUND = 40_000_000  # bytes
 LONGEST_SOUND = 180.0  # s
 BEGINNING = 12
-"""So many bytes tell which kind of picture a file is."""
+"""The bytes that identify the kind of a picture file."""
 KINDS = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg", b"GIF8": "image/gif"}
 
 
 def picture_kind(content: bytes) -> str:
-    """Return the media type of a picture by how its file begins ("": it is none)."""
+    """Return the media type of a picture from its first bytes ("": not a picture)."""
     if content[:4] == b"RIFF" and content[8:12] == b"WEBP":
         return "image/webp"
     return next((kind for begin, kind in KINDS.items() if content.startswith(begin)), "")
@@ -45,16 +45,16 @@ def read_picture(path: str) -> tuple[bytes, str]:
 def read_media(
     top: Section, behaviours: Mapping[str, DeclaredBehaviour], items: Items, folder: Path
 ) -> dict[str, MediaFile]:
-    """Look at every picture and sound that a file names, and note those that cannot be used.
+    """Check every picture and sound that a file names, and record those that are unusable.
 
     Args:
         top: the activity's file.
         behaviours: its behaviours, which name them.
         items: its items, whose columns may name them.
-        folder: where all of them are.
+        folder: the folder of all these files.
 
     Returns:
-        What was found, by the name of each file.
+        The usable files, by name.
     """
     found: dict[str, MediaFile] = {}
     wrong: set[str] = set()
@@ -75,13 +75,13 @@ def read_media(
 
 
 def file_name(text: str, items: Items, row: int) -> str:
-    """Return the name of a file that a text stands for in a row ("": none)."""
+    """Return the file name that a text gives for a row ("": none)."""
     cells = [items.value(row, slot) for slot in SLOT.findall(text)]
     return SLOT.sub(lambda match: items.value(row, match.group(1)), text) if all(cells) else ""
 
 
 def _named(section: Section, key: str, text: str, items: Items) -> Iterator[tuple[int, str]]:
-    """Yield each row (-1: none in particular) with the file that a text stands for there."""
+    """Yield each row (-1: independent of rows) with its file name."""
     slots = SLOT.findall(text)
     wrong = [slot for slot in slots if slot not in items.columns]
     for slot in wrong:
@@ -95,7 +95,7 @@ def _named(section: Section, key: str, text: str, items: Items) -> Iterator[tupl
 
 
 def _media_file(folder: Path, name: str, key: str) -> MediaFile:
-    """Look at one file.
+    """Check one file.
 
     Raises:
         ProfileError: it is missing, too large, or not of its kind.

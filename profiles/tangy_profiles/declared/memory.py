@@ -1,7 +1,7 @@
-"""The facts of a declared game as the log keeps them after each step of a live game.
+"""The facts of a declared game, as logged after each step of a live game.
 
-In a live game the steps alone do not lead to its facts: people changed some of them. So the log
-keeps all of them, and a game that was interrupted goes on from there.
+In a live game the steps alone do not determine the facts, because people changed some of them. So
+the log has all of them, and an interrupted game continues from there.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class GameMemory:
-    """Everything that the interpreter knows of a game; persons by id, "" for the group."""
+    """The whole state of a game; persons by id, "" for the group."""
 
     values: tuple[tuple[str, str, str], ...]
-    """Fact, whose, and value, the last to change last; without facts that never changed."""
+    """Fact, player, and value, in order of their last change; only facts that ever changed."""
     counts: tuple[tuple[str, str, float], ...]
-    """Fact, whose, and the number, or for a timer when it was started (s in the game)."""
+    """Fact, player, and the number; for a timer its start (s in the game)."""
     order: tuple[Count, ...]
-    """The rows of the items in the order of the game."""
+    """The row numbers of the items in the order of the game."""
     round: Count
     turn: Count
     queue: tuple[str, ...]
@@ -39,13 +39,13 @@ class GameMemory:
     step: Count
     closed: str | None
     executed: tuple[tuple[str, Count], ...]
-    """How often each behaviour was carried out."""
+    """How often each behaviour was executed."""
     away: Sparse[tuple[str, ...]] = ()
     """The players who have left."""
 
 
 def memory_of(game: DeclaredGame) -> GameMemory:
-    """Return what has to be kept of a game, so that it can go on."""
+    """Return the state of a game, for the log."""
     return GameMemory(
         values=tuple((*key, value) for key, value in game.values.items()),
         counts=tuple((*key, number) for key, number in sorted(game.counts.items())),
@@ -68,7 +68,7 @@ def memory_of(game: DeclaredGame) -> GameMemory:
 def game_from(
     declaration: Declaration, players: tuple[str, ...], memory: GameMemory
 ) -> DeclaredGame | None:
-    """Return the game that was kept; None if it is of another activity, or of other players."""
+    """Restore a game; return None if its activity or its players are different now."""
     if not _fits(declaration, players, memory):
         return None
     from tangy_profiles.declared.game import DeclaredGame
@@ -87,7 +87,7 @@ def game_from(
 
 
 def _fits(declaration: Declaration, players: tuple[str, ...], memory: GameMemory) -> bool:
-    """Say whether the activity still has what a game needs: files can change in between."""
+    """Return whether a stored state fits the activity, whose file may have changed."""
     facts, own = declaration.facts, {"", *players}
     named = {memory.addressed, memory.actor, memory.closed, *memory.queue} - {None}
     return (

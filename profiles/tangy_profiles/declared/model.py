@@ -1,4 +1,4 @@
-"""An activity as its file declares it: facts, items, stages, behaviours, people, all checked."""
+"""A declared activity, parsed and checked: facts, items, stages, behaviours, people."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tangy_profiles.declared.vocabulary import (
 )
 
 PAUSE_SECONDS = 8.0
-"""After a behaviour, in which people can act."""
+"""The time (s) after a behaviour in which people can act."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,15 +31,15 @@ class FactCondition:
     comparison: Comparison
     value: str
     number: int = 0
-    """The number that >= or < compares with."""
+    """The operand of >= or <."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """Something that can be so or otherwise in a game.
+    """A variable of a game.
 
-    `values` are what conditions and the policy see: of a count or a timer its bands. `tests` gives
-    for each value of a test the conditions under which it is that one; the last that holds counts.
+    `values` are its values for conditions and the policy: for a count or a timer its bands. `tests`
+    has the conditions for each value of a test; the last one that holds counts.
     """
 
     name: str
@@ -49,23 +49,23 @@ class Fact:
     bands: tuple[int, ...] = ()
     sources: tuple[Source, ...] = ()
     options: tuple[str, ...] = ()
-    """The columns of the items that hold the answers to choose from."""
+    """The columns of the items with the answers to choose from."""
     checks: str = ""
-    """The column of the items that says which answer is right; synonyms stand between bars."""
+    """The column of the items with the right answer, with synonyms separated by bars."""
     tests: tuple[tuple[str, tuple[FactCondition, ...]], ...] = ()
     built_in: bool = False
     words: tuple[str, ...] = ()
-    """What people call each of the values (): words that follow from the names."""
+    """The words for each of the values (): made from the names."""
 
     def band(self, number: float) -> str:
-        """Return the band that a count, or a timer's number of s, is in."""
+        """Return the band of a count, or of a timer's number of s."""
         place = sum(number >= bound for bound in self.bands)
         return self.values[place]
 
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """One thing that a behaviour does, where its conditions hold."""
+    """One effect of a behaviour, if its conditions hold."""
 
     does: Does
     fact: str = ""
@@ -76,18 +76,18 @@ class Effect:
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """A stage: the first whose conditions hold is the present one."""
+    """A stage; the first one whose conditions hold is the current one."""
 
     name: str
     when: tuple[FactCondition, ...]
     about: Selector
     sees: tuple[str, ...]
     words: str = ""
-    """What is going on, for people; {name} is the person of the stage ("": the name tells it)."""
+    """A description for people; {name} is the person of the stage ("": made from the name)."""
 
 
 class MediaFile(NamedTuple):
-    """A picture, or a sound that lasts for so many s: the path of its file."""
+    """A picture, or a sound of this many s: the path of its file."""
 
     path: str
     seconds: float = 0.0
@@ -108,25 +108,25 @@ class DeclaredBehaviour:
     posture: str
     image: str
     wordings: tuple[str, ...] = ()
-    """Other ways to ask for it: the understanding learns from them, nothing listens for them."""
+    """Other wordings: training data for understanding, but not for speech recognition."""
     again: tuple[str, ...] = ()
-    """What a person is told, one text after another, who says nothing to it."""
+    """The texts that repeat the question, in order, if a person does not answer."""
     picture: str = ""
-    """The name of a picture's file, perhaps with columns of the items as slots ("": none)."""
+    """The name of a picture file, perhaps with columns of the items as slots ("": none)."""
     sound: str = ""
-    """The name of a sound's file, likewise."""
+    """The name of a sound file, likewise."""
     pause: float = PAUSE_SECONDS
-    """For how many s Tangy waits after it, unless people do something that counts."""
+    """For how many s Tangy waits after it, unless people act."""
 
     @property
     def invites(self) -> bool:
-        """Whether a person is asked to do something, and may not."""
+        """Whether it asks a person to do something that they may refuse."""
         return any(effect.does == "invite" for effect in self.effects)
 
 
 @dataclass(frozen=True, slots=True)
 class Habit:
-    """How simulated people bring a fact about: when, with which chance, and to which values."""
+    """A habit of simulated people: when, with which chance, and to which values they set a fact."""
 
     fact: str
     when: tuple[FactCondition, ...]
@@ -137,7 +137,7 @@ class Habit:
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """One line of what a test expects a facilitator to do; the first that fits counts."""
+    """One line of a test's expected behaviours; the first that matches counts."""
 
     stage: str
     conditions: tuple[FactCondition, ...]
@@ -147,7 +147,7 @@ class Expectation:
 
 @dataclass(frozen=True, slots=True)
 class Items:
-    """The rows of the items' file, and how many of them a game has, in which order."""
+    """The rows of the items file, and the number and order of those used in a game."""
 
     columns: tuple[str, ...] = ()
     rows: tuple[tuple[str, ...], ...] = ()
@@ -155,7 +155,7 @@ class Items:
     rounds: int = 0
 
     def value(self, row: int, column: str) -> str:
-        """Return what stands in a column of a row ("": there is no such row)."""
+        """Return the cell of a row and column ("": there is no such row)."""
         if not 0 <= row < len(self.rows):
             return ""
         return self.rows[row][self.columns.index(column)]
@@ -163,7 +163,7 @@ class Items:
 
 @dataclass(frozen=True)
 class Declaration:
-    """A whole activity as its file declares it."""
+    """A whole activity as declared in its file."""
 
     name: str
     title: str
@@ -179,9 +179,9 @@ class Declaration:
     plain_strategy: str = ""
     patience: float = 10.0
     summary: str = ""
-    """For how many people it is, how long it takes, and what they need."""
+    """For how many people it is, how long it takes, and what is needed."""
     media: Mapping[str, MediaFile] = field(default_factory=dict)
-    """The pictures and sounds, by the names of their files."""
+    """The pictures and sounds, by file name."""
     whose: Mapping[Selector, FactCondition] = field(default_factory=dict)
     """The conditions of the selectors that have one."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -197,13 +197,13 @@ class Declaration:
 
     @cached_property
     def most_counted(self) -> int:
-        """Return the highest number that a count is compared with."""
+        """The highest number that a count is compared with."""
         counts = [fact for fact in self.facts.values() if fact.kind == "count"]
         return max((bound for fact in counts for bound in self.bounds_of(fact)), default=0)
 
     @cached_property
     def looked_at(self) -> tuple[tuple[Fact, tuple[int, ...]], ...]:
-        """Return the facts that change and that anything looks at, with their bounds."""
+        """The facts that change and are used anywhere, with their bounds."""
         names = {one.fact for one in self.conditions}
         names.update(name for stage in self.stages for name in stage.sees)
         return tuple(
@@ -214,14 +214,14 @@ class Declaration:
 
     @cached_property
     def remembers_addressed(self) -> bool:
-        """Whether it matters who was spoken to last."""
+        """Whether the last addressed person matters."""
         looked = any(one.fact == ADDRESSED for one in self.conditions)
         seen = any(ADDRESSED in stage.sees for stage in self.stages)
         return looked or seen or bool(self.selectors & {"addressed", "next in circle"})
 
     @cached_property
     def conditions(self) -> tuple[FactCondition, ...]:
-        """Return every condition of the file, but for those that are only for tests."""
+        """Every condition of the file, except the expectations of tests."""
         found: list[FactCondition] = []
         for stage in self.stages:
             found += stage.when
@@ -240,7 +240,7 @@ class Declaration:
     def reasons(
         self,
     ) -> tuple[tuple[Habit, tuple[tuple[FactCondition, ...], tuple[FactCondition, ...]]], ...]:
-        """Return each habit with its conditions: those of the group, and those of each player."""
+        """Each habit with its conditions: those of the group, and those of each player."""
         found = []
         for habit in self.habits:
             own = tuple(
@@ -252,11 +252,11 @@ class Declaration:
 
     @cached_property
     def last_acts(self) -> frozenset[tuple[str, str]]:
-        """Return the facts with the values that end a game."""
+        """The facts with the values that end a game."""
         return frozenset((habit.fact, value) for habit in self.habits for value in habit.last)
 
     def _is_own(self, name: str, met: set[str]) -> bool:
-        """Say whether a fact may differ from player to player."""
+        """Return whether a fact may differ between players."""
         fact = self.facts[name]
         if fact.kind != "test" or fact.per_player:
             return fact.per_player
@@ -268,7 +268,7 @@ class Declaration:
 
     @cached_property
     def selectors(self) -> frozenset[Selector]:
-        """Return the selectors that the file uses anywhere."""
+        """The selectors that the file uses."""
         found = {stage.about for stage in self.stages}
         for behaviour in self.behaviours.values():
             found.update(behaviour.to)
@@ -278,7 +278,7 @@ class Declaration:
         """Return a stage by its name.
 
         Raises:
-            KeyError: there is none of that name.
+            KeyError: there is no such stage.
         """
         for stage in self.stages:
             if stage.name == name:

@@ -53,10 +53,10 @@ def read_declaration(path: Path) -> Declaration:
     """Read and check an activity's file and the CSV files beside it.
 
     Raises:
-        MistakesError: the file has mistakes; it names each with its line and column.
-        ProfileError: it cannot be read, or is no TOML.
+        MistakesError: the file has mistakes; it lists each with its line and column.
+        ProfileError: it cannot be read, or is not TOML.
     """
-    read_toml(path)  # tells what no TOML is in one line
+    read_toml(path)  # reports invalid TOML in one line
     text = lines_of(read_given(path, LARGEST_PROFILE, ProfileError))
     source = SourceText(plain(path.name), text)
     top = Section(source, tomllib.loads(text))

@@ -1,6 +1,6 @@
-"""Search through all possible games: the next situation to show, and the reachable ones.
+"""Search of all possible games: the next situation to show, and the reachable ones.
 
-A search follows the interpreter from state to state: a behaviour, then one thing that happens.
+A search uses the interpreter to step from state to state: a behaviour, then an event.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from tangy_profiles.state import Situation
 
 FEW = 2
 SOON = 1.0
-"""So many s pass where nothing in particular is to happen."""
+"""The s that pass if no particular event happens."""
 MOST_ASKING = 2
-"""More do not ask at once in a search."""
+"""The most people who ask at once in a search."""
 FEWEST_ROUNDS = 2
 Cut = Literal["", "states", "time"]
-"""Why a search ended before it had seen everything ("": it has)."""
+"""Why a search ended early ("": it is complete)."""
 LOOKS_AT_CLOCK = 32
-"""After so many states a search looks at the time."""
+"""A search checks the time after this many states."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """How far a search may go: in states, people's acts and the robot's moves apart, and CPU s."""
+    """The limits of a search: nodes (a state before an act or before a move), and CPU time in s."""
 
     states: int = 60_000
     seconds: float = 10.0
@@ -49,8 +49,8 @@ def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Eve
 
     Args:
         game: the game.
-        last: whether people may do what ends a game as well.
-        few: of those who may all do the same, only two, or most or all of them together.
+        last: include acts that end a game.
+        few: of people who can do the same act, only two alone, or most or all of them together.
     """
     yield SOON
     ends = game.declaration.last_acts
@@ -72,14 +72,14 @@ def events(game: DeclaredGame, *, last: bool, few: bool = False) -> Iterator[Eve
 
 
 def ends_game(declaration: Declaration, event: Event) -> bool:
-    """Say whether an event is one that ends a game."""
+    """Return whether an event is one that ends a game."""
     return not isinstance(event, float) and any(
         (act.fact, act.value) in declaration.last_acts for act in event
     )
 
 
 def happen(game: DeclaredGame, event: Event) -> None:
-    """Let something happen in a game."""
+    """Apply an event to a game."""
     if isinstance(event, float):
         game.now += event
         return
@@ -91,11 +91,11 @@ def happen(game: DeclaredGame, event: Event) -> None:
 class Reach:
     """The reachable situations, under the demonstrations or under any behaviour.
 
-    `open` are those reached in which nothing was shown, or in which selectors disagree. `cut`
-    says why the search ended early, if it did: then other situations may be reached as well.
-    If a game can come to where none ends, `lost` is where the end is lost first, and `loop` where
-    games then stay. `idle` is where first there is no move. `shares` says what makes the most
-    states of a search that was cut.
+    `open` are those reached that were not shown, or in which selectors disagree. `cut` says why the
+    search ended early, if it did: then other situations may be reachable too. If a game can reach a
+    dead end, `lost` is the first state without a reachable end, and `loop` the loop in which games
+    then stay. `idle` is the first state without a move. `shares` are the facts that contribute most
+    states to an incomplete search.
     """
 
     reached: dict[Situation, int] = field(default_factory=dict)
@@ -110,17 +110,17 @@ class Reach:
 
     @property
     def whole(self) -> bool:
-        """Whether the search came to its end, so that nothing else can be reached."""
+        """Whether the search is complete, so that nothing else is reachable."""
         return not self.cut
 
     @property
     def stuck(self) -> Situation | None:
-        """A situation from which no game ends, if there is one."""
+        """A situation from which no game ends, or None."""
         return None if self.lost is None else self.lost.situation
 
 
 def done_move(game: DeclaredGame, move: Move) -> DeclaredGame:
-    """Return the game after a behaviour, which people have followed."""
+    """Return the game after a behaviour whose invitations people followed."""
     done = game.copy()
     for person, fact, value in done.execute(*move).invited:
         for one in (person,) if person else done.players:
@@ -134,15 +134,15 @@ def explore(
     situation: Callable[[DeclaredGame], Situation],
     limit: Limit = USUAL,
 ) -> Reach:
-    """Search everything that can be reached from a game.
+    """Search everything that is reachable from a game.
 
     Between two behaviours any number of people may act, one after another, and time may pass.
 
     Args:
-        game: where the search begins.
-        moves: the behaviours that may be done in a state; none if nothing was shown.
-        situation: gives the situation of a state.
-        limit: how far the search may go.
+        game: the start.
+        moves: returns the possible behaviours of a state; empty if nothing was shown.
+        situation: returns the situation of a state.
+        limit: the limits of the search.
     """
     found = Reach()
     until, looked = thread_time() + limit.seconds, 0
@@ -201,7 +201,7 @@ def explore(
             found.open[here] = able[0][0] if able else ""
             if not able and found.idle is None:
                 found.idle = trap([node])
-            ends.append(node)  # the answer decides how it goes on
+            ends.append(node)  # how it continues depends on the answer
             continue
         for move in able:
             found.played[move[0]] = found.played.get(move[0], 0) + 1
@@ -221,14 +221,14 @@ def explore(
 
 
 def search_game(game: DeclaredGame) -> DeclaredGame:
-    """Return a game to search: it has no more rounds than conditions can tell apart."""
+    """Return a game to search, with no more rounds than conditions can distinguish."""
     most = max(FEWEST_ROUNDS, 1 + game.declaration.most_counted)
     rounds = min(len(game.order), most)
     return DeclaredGame(game.declaration, game.players, game.order[:rounds] or game.order)
 
 
 def _until_next_band(game: DeclaredGame) -> float | None:
-    """Return in how many s a timer comes into its next band, None if none runs to one."""
+    """Return in how many s the next timer reaches its next band; None if none does."""
     left: list[float] = []
     for (name, player), _ in game.counts.items():
         fact = game.declaration.facts[name]
@@ -246,9 +246,9 @@ def reach(
 
     Args:
         declaration: the activity.
-        players: those who take turns; states grow with every one of them.
-        taught: what to do in which situation.
-        limit: how far the search may go.
+        players: those who take turns; each multiplies the number of states.
+        taught: the demonstrated moves.
+        limit: the limits of the search.
     """
     game = DeclaredGame(declaration, players, range(declaration.items.rounds))
 

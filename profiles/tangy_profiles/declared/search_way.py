@@ -1,4 +1,4 @@
-"""The shortest way of a search to one of its states: behaviours, and what happens after each."""
+"""The shortest path of a search to a state: behaviours, and the events after each."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from tangy_profiles.state import Situation
 Node = tuple[bool, Hashable]
 """Whether it is the robot's move, and the state."""
 Event = tuple[Act, ...] | float
-"""An event after a behaviour: an act of a person, or a number of s without one."""
+"""An event after a behaviour: acts of people, or a number of s without any."""
 
 
 @dataclass(frozen=True, slots=True)
 class Came:
-    """How a search first came to a node: from which one, by a move, an event, or neither."""
+    """How a search first reached a node: the previous node, and a move, an event, or neither."""
 
     earlier: Node
     move: Move | None
@@ -26,7 +26,7 @@ class Came:
 
 @dataclass(frozen=True, slots=True)
 class WayStep:
-    """A behaviour, the situation in which it is done, and what happens after it, in order."""
+    """A behaviour, its situation, and the events after it, in order."""
 
     situation: Situation
     behaviour: str
@@ -36,10 +36,7 @@ class WayStep:
 
 @dataclass(frozen=True, slots=True)
 class Trap:
-    """Situations from which no game ends, with the behaviours possible there, and the way there.
-
-    The way leads to the first of them.
-    """
+    """Situations from which no game ends, with the possible behaviours, and the path there."""
 
     way: tuple[WayStep, ...]
     possible: Mapping[Situation, tuple[str, ...]]
@@ -53,12 +50,12 @@ class Trap:
 def way_to(
     node: Node, came: Mapping[Node, Came], situation: Callable[[Node], Situation]
 ) -> tuple[WayStep, ...]:
-    """Return the way on which a search first came to a node.
+    """Return the path on which a search first reached a node.
 
     Args:
-        node: where the way ends.
-        came: how the search came to each node but the first.
-        situation: gives the situation of a node.
+        node: the end of the path.
+        came: how the search reached each node except the first.
+        situation: returns the situation of a node.
     """
     steps: list[WayStep] = []
     then: list[Event] = []

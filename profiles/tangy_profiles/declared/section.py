@@ -1,4 +1,4 @@
-"""Values of an activity's file, taken key by key; every mistake is noted and reading goes on."""
+"""Values of an activity's file, read key by key; mistakes are recorded and reading continues."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from tangy_profiles.reading import nearest
 
 
 class Section:
-    """A table of the file. Mistakes are collected, and a harmless value is read instead."""
+    """A table of the file. Mistakes are recorded, and a harmless default is returned instead."""
 
     def __init__(self, source: SourceText, values: Any, path: Path = ()) -> None:
-        """Take a value that should be a table, and the keys that led to it."""
+        """Wrap a value that should be a table, with the keys that led to it."""
         self.source, self.path = source, path
         self._values: dict[str, Any] = {}
         if isinstance(values, dict):
@@ -30,18 +30,18 @@ class Section:
         return iter(self._values)
 
     def wrong(self, key: str | int, problem: str, quoted: str = "") -> None:
-        """Note a mistake at a key."""
+        """Record a mistake at a key."""
         self.source.wrong((*self.path, key), problem, quoted)
 
     def only(self, *known: str) -> None:
-        """Refuse keys that are not known here."""
+        """Record the keys that are not known here as mistakes."""
         for key in self._values:
             if key not in known:
                 problem = f"is not a key here; {nearest(key, known)}"
                 self.source.wrong((*self.path, key), problem, cause=True)
 
     def text(self, key: str, default: str | None = None) -> str:
-        """Take a text; without a default it has to be there."""
+        """Read a text; without a default it is required."""
         value = self._values.get(key, default)
         if value is None:
             self.source.wrong((*self.path, key), "is missing; it must be a text")
@@ -55,7 +55,7 @@ class Section:
         return value
 
     def word(self, key: str, known: Collection[str], default: str | None = None) -> str:
-        """Take one of the known words."""
+        """Read one of the known words."""
         value = self.text(key, default)
         if value not in known and value != default:
             if value:
@@ -64,7 +64,7 @@ class Section:
         return value
 
     def texts(self, key: str, *, single: bool = False) -> tuple[str, ...]:
-        """Take a list of texts (none: empty); `single`: one text stands for a list of it."""
+        """Read a list of texts (default: empty); `single`: one text stands for a list of one."""
         value = self._values.get(key, [])
         if single and isinstance(value, str):
             value = [value]
@@ -77,7 +77,7 @@ class Section:
         return tuple(value)
 
     def number(self, key: str, low: float, high: float, default: float) -> float:
-        """Take a number within [low, high]."""
+        """Read a number within [low, high]."""
         value = self._values.get(key, default)
         right = isinstance(value, int | float) and not isinstance(value, bool)
         if not right or not low <= value <= high:
@@ -86,7 +86,7 @@ class Section:
         return float(value)
 
     def whole(self, key: str, low: int, high: int, default: int) -> int:
-        """Take a whole number within [low, high]."""
+        """Read a whole number within [low, high]."""
         value = self._values.get(key, default)
         if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
             self.wrong(key, f"must be a whole number from {low} to {high}, not {short(value)}")
@@ -94,7 +94,7 @@ class Section:
         return value
 
     def wholes(self, key: str, low: int, high: int) -> tuple[int, ...]:
-        """Take a list of rising whole numbers within [low, high] (none: empty)."""
+        """Read a list of rising whole numbers within [low, high] (default: empty)."""
         value = self._values.get(key, [])
         good = isinstance(value, list) and all(
             isinstance(one, int) and not isinstance(one, bool) and low <= one <= high
@@ -106,11 +106,11 @@ class Section:
         return tuple(value)
 
     def table(self, key: str) -> Section:
-        """Take a table (none: empty)."""
+        """Read a table (default: empty)."""
         return Section(self.source, self._values.get(key, {}), (*self.path, key))
 
     def tables(self, key: str) -> list[Section]:
-        """Take a list of tables (none: empty)."""
+        """Read a list of tables (default: empty)."""
         value = self._values.get(key, [])
         if not isinstance(value, list):
             self.wrong(key, "must be a list of tables")
@@ -118,5 +118,5 @@ class Section:
         return [Section(self.source, one, (*self.path, key, n)) for n, one in enumerate(value)]
 
     def raw(self, key: str) -> Any:
-        """Take whatever stands there (none: None)."""
+        """Read any value (default: None)."""
         return self._values.get(key)

@@ -1,4 +1,4 @@
-"""Moves shown so far in a declared activity, for the interpreter to follow."""
+"""Moves demonstrated so far in a declared activity, for searches."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tangy_profiles.declared.whom import named_by
 from tangy_profiles.state import EVERYBODY, ActivityState, Situation
 
 Move = tuple[str, str | None]
-"""A behaviour, and whom it is for (None: the group)."""
+"""A behaviour, and its person (None: the group)."""
 UNDECIDED = "?"
 
 
@@ -19,10 +19,10 @@ class ShownMoves:
     """The last behaviour shown in each situation; selectors for each stage and behaviour."""
 
     def __init__(self, behaviours: Mapping[str, Behaviour]) -> None:
-        """Begin with nothing shown.
+        """Start without demonstrations.
 
         Args:
-            behaviours: of the activity.
+            behaviours: the behaviours of the activity.
         """
         self.shown: dict[Situation, str] = {}
         self.whom: dict[tuple[str, str], tuple[str, ...]] = {}
@@ -36,7 +36,7 @@ class ShownMoves:
         return other
 
     def show(self, state: ActivityState, behaviour: str, target: str | None) -> None:
-        """Take in one step of a demonstration."""
+        """Add one step of a demonstration."""
         self.shown[state.situation] = behaviour
         known = self._behaviours.get(behaviour)
         if known is None or len(known.to) < 2:
@@ -48,14 +48,14 @@ class ShownMoves:
             self.whom[key] = left or named
 
     def situation(self, game: DeclaredGame) -> Situation:
-        """Return the situation that a game is in."""
+        """Return the situation of a game."""
         seen = game.seen()
         if seen not in self._situations:
             self._situations[seen] = situation_of(game.declaration, *seen)
         return self._situations[seen]
 
     def move(self, game: DeclaredGame) -> Move | None:
-        """Return the demonstrated move of a situation, None if there is none.
+        """Return the demonstrated move of a game's situation, or None.
 
         A behaviour whose selectors name different people is (UNDECIDED, None).
         """

@@ -1,4 +1,4 @@
-"""Situations of a declared activity in words: those of its file, or what its names tell."""
+"""Situations of a declared activity in words: those of its file, or made from its names."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ ANYONE: dict[Selector, str] = {
     "addressed": "the person",
     "beside": "the person",
 }
-"""The person of a stage, where it is not said who it is."""
+"""The person of a stage without a name."""
 
 BUILT_IN_WORDS: dict[tuple[str, str], str] = {
     (ITEMS, "left"): "some are left",
@@ -47,12 +47,12 @@ BUILT_IN_WORDS: dict[tuple[str, str], str] = {
 
 
 def situation_words(declaration: Declaration, situation: Situation, who: str = "") -> str:
-    """Say what is going on, then what else Tangy goes by in this situation.
+    """Describe a situation: the stage, then the facts that it sees.
 
     Args:
         declaration: the activity.
         situation: one of its situations.
-        who: the person of the stage; "" for words that fit anyone.
+        who: the person of the stage; "" for anyone.
     """
     facts = seen_words(declaration, situation)
     words = stage_words(declaration, situation.stage, who)
@@ -60,7 +60,7 @@ def situation_words(declaration: Declaration, situation: Situation, who: str = "
 
 
 def seen_words(declaration: Declaration, situation: Situation) -> str:
-    """Say what the facts are that a stage sees ("": it sees none)."""
+    """Describe the facts that a stage sees ("": none)."""
     facts = declaration.facts
     seen = seen_facts(situation).items()
     return ", ".join(
@@ -70,7 +70,7 @@ def seen_words(declaration: Declaration, situation: Situation) -> str:
 
 
 def stage_words(declaration: Declaration, name: str, who: str = "") -> str:
-    """Say what is going on in a stage; a stage that the file does not know keeps its name."""
+    """Describe a stage; an unknown stage keeps its name."""
     stage = next((one for one in declaration.stages if one.name == name), None)
     if stage is None:
         return name
@@ -78,7 +78,7 @@ def stage_words(declaration: Declaration, name: str, who: str = "") -> str:
 
 
 def value_words(fact: Fact, value: str) -> str:
-    """Say that a fact has a value."""
+    """Describe a value of a fact."""
     if fact.words and value in fact.values:
         return fact.words[fact.values.index(value)]
     if (fact.name, value) in BUILT_IN_WORDS:
@@ -96,12 +96,12 @@ def value_words(fact: Fact, value: str) -> str:
 
 
 def plain_name(name: str) -> str:
-    """Write the name of a stage or fact as words."""
+    """Format the name of a stage or fact as words."""
     return " ".join(name.replace("_", " ").replace("-", " ").split()) or name
 
 
 def _by_name(stage: Stage) -> str:
-    """Say by its name and conditions what a stage without words is."""
+    """Describe a stage without words by its name and conditions."""
     conditions = [
         f"{one.quantifier} {plain_name(one.fact)} {one.comparison} {one.value}".strip()
         for one in stage.when
@@ -111,7 +111,7 @@ def _by_name(stage: Stage) -> str:
 
 
 def _range(band: str, unit: str = "") -> str:
-    """Write a band of numbers, with their unit (s, or none)."""
+    """Format a band of numbers, with their unit (s, or none)."""
     if band.startswith("<"):
         return f"under {band[1:]}{unit}"
     if band.startswith(">="):

@@ -15,18 +15,18 @@ IS = " is "
 
 
 def label(sees: Sequence[str], values: Sequence[str]) -> str:
-    """Write what a stage sees as one word of a situation."""
+    """Format what a stage sees as the user state of a situation."""
     pairs = zip(sees, values, strict=True)
     return FACTS.join(f"{fact}{IS}{value}" for fact, value in pairs) or NOTHING_SEEN
 
 
 def request_of(stage: Stage) -> Request:
-    """Return whether a stage is one in which a person asks."""
+    """Return the request state of a stage."""
     return "AR" if stage.about == "first asking" else "ANR"
 
 
 def situation_of(declaration: Declaration, stage: str, values: Sequence[str]) -> Situation:
-    """Return what the policy sees: a stage, and the values of its facts."""
+    """Return the situation that the policy sees: a stage, and the values of its facts."""
     found = declaration.stage(stage)
     return Situation(stage, request_of(found), label(found.sees, values))
 
@@ -40,7 +40,7 @@ def seen_facts(situation: Situation) -> dict[str, str]:
 
 
 def situations(declaration: Declaration) -> Iterator[Situation]:
-    """Yield every situation, but for those that the conditions of the stages rule out."""
+    """Yield every situation that the conditions of the stages do not rule out."""
     earlier: list[Stage] = []
     for stage in declaration.stages:
         known = {
@@ -61,7 +61,7 @@ def situations(declaration: Declaration) -> Iterator[Situation]:
 
 
 def told(condition: FactCondition, facts: Mapping[str, str]) -> bool | None:
-    """Say whether a condition holds by the facts that are known, None if they do not tell."""
+    """Return whether a condition holds for the known facts; None if they do not determine it."""
     if condition.quantifier or condition.comparison in (">=", "<"):
         return None
     value = facts.get(condition.fact)
@@ -73,7 +73,7 @@ def told(condition: FactCondition, facts: Mapping[str, str]) -> bool | None:
 def _rules_out(
     declaration: Declaration, earlier: Stage, stage: Stage, facts: Mapping[str, str]
 ) -> bool:
-    """Say whether the known facts select an earlier stage."""
+    """Return whether the known facts select an earlier stage."""
     same = earlier.about == stage.about
     own = {
         name: value

@@ -1,4 +1,4 @@
-"""The text of an activity's file: where a key or a value stands, and the mistakes found in it."""
+"""The text of an activity's file: locations of keys and values, and the mistakes found."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from tangy_profiles.errors import ProfileError
 from tangy_profiles.plain_text import plain
 
 MOST_MISTAKES = 50
-"""More are not told at once."""
+"""The most mistakes to report at once."""
 LONGEST = 60
-"""Characters of a word from the file that a mistake quotes."""
+"""The most characters of the file that a mistake quotes."""
 Path = tuple[str | int, ...]
 
 
 class MistakesError(ProfileError):
-    """An activity's file has mistakes; `lines` names each, with its line and column."""
+    """An activity's file has mistakes; `lines` has each, with its line and column."""
 
     def __init__(self, lines: list[str], cause: str = "") -> None:
-        """Take the mistakes, of which there is at least one.
+        """Create the error for one or more mistakes.
 
         Args:
-            lines: all of them.
-            cause: the one from which others can follow (default: the first).
+            lines: all mistakes.
+            cause: the mistake that may cause others (default: the first).
         """
         more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
         super().__init__((cause or lines[0]) + more)
@@ -34,20 +34,20 @@ class SourceText:
     """A file's text and its mistakes."""
 
     def __init__(self, file: str, text: str) -> None:
-        """Take the file's name, and its text as it stands there."""
+        """Use a file's name and its text."""
         self.file = file
         self._text = text
         self._found: list[tuple[int, int, str]] = []
         self._causes: set[str] = set()
 
     def wrong(self, path: Path, problem: str, quoted: str = "", *, cause: bool = False) -> None:
-        """Note a mistake.
+        """Record a mistake.
 
         Args:
-            path: the keys that lead to it; a number is a place in a list, from 0.
+            path: the keys that lead to it; a number is an index of a list, from 0.
             problem: the problem, without a full stop.
-            quoted: the wrong text, if it is only a part of the value.
-            cause: other mistakes can follow from it, as from a key that is misspelt.
+            quoted: the wrong text, if it is only part of the value.
+            cause: other mistakes may follow from it, as from a misspelt key.
         """
         offset = self._offset(path, quoted)
         line = self._text.count("\n", 0, offset) + 1
@@ -59,10 +59,10 @@ class SourceText:
             self._causes |= {told} if cause else set()
 
     def close(self) -> None:
-        """Refuse the file if it has mistakes.
+        """Raise an error if the file has mistakes.
 
         Raises:
-            MistakesError: naming all of them, in the order of the file.
+            MistakesError: lists all of them, in the order of the file.
         """
         if self._found:
             found = [told for _, _, told in sorted(self._found)]
@@ -71,11 +71,11 @@ class SourceText:
 
     @property
     def sound(self) -> bool:
-        """Whether no mistake was noted so far."""
+        """Whether no mistake was recorded so far."""
         return not self._found
 
     def _offset(self, path: Path, quoted: str) -> int:
-        """Return where a key stands, or the nearest place before it that can be found."""
+        """Return the offset of a key, or the nearest one before it."""
         text, rest = self._text, list(path)
         begin, end = 0, len(text)
         for length in range(len(path), 0, -1):
@@ -112,7 +112,7 @@ class SourceText:
 
 
 def dotted(path: Path) -> str:
-    """Return the keys that lead somewhere as a person reads them."""
+    """Format a path of keys for people."""
     words = ""
     for key in path:
         if isinstance(key, int):
@@ -124,6 +124,6 @@ def dotted(path: Path) -> str:
 
 
 def short(value: Any) -> str:
-    """Return a value of a file as a mistake quotes it."""
+    """Return a value of a file, shortened for a mistake."""
     text = repr(value)
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}\N{HORIZONTAL ELLIPSIS}"

@@ -1,4 +1,4 @@
-"""Texts for voice and screen in a declared activity, with their slots filled in."""
+"""Texts for speech and screen in a declared activity, with their slots filled in."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tangy_profiles.declared.model import MediaFile
 from tangy_profiles.declared.vocabulary import SLOT
 
 PERSON = re.compile(r"\x02([^\x03]*)\x03")
-"""A person in a filled text, by the id: the worlds do not know what people are called."""
+"""A person's id in a filled text, because the worlds do not know names."""
 OF_EACH = " of each"
 
 
@@ -19,13 +19,12 @@ def filled(game: DeclaredGame, template: str, whom: str | None) -> str:
     """Fill the slots of a text.
 
     Args:
-        game: the game, with its present item.
+        game: the game, with its current item.
         template: the text.
-        whom: the player who is spoken to, None for the group.
+        whom: the player who is addressed, None for the group.
 
     Returns:
-        The text, in which people stand by their ids (see `with_names`); "" if a slot that it
-        needs is empty.
+        The text, with people as ids (see `with_names`); "" if a slot is empty.
     """
     empty = False
 
@@ -42,14 +41,14 @@ def filled(game: DeclaredGame, template: str, whom: str | None) -> str:
 def words(
     game: DeclaredGame, before: DeclaredGame, behaviour: str, strategy: str, whom: str | None
 ) -> tuple[str, str]:
-    """Return what a behaviour says and shows, by the facts that it leaves.
+    """Return the speech and screen text of a behaviour, by the facts after it.
 
     Args:
         game: the game after the behaviour.
         before: the game before it.
         behaviour: its name.
-        strategy: the way of asking.
-        whom: the player whom it is for, None for the group.
+        strategy: the persuasive strategy.
+        whom: the player addressed, None for the group.
     """
     declared = game.declaration.behaviours[behaviour]
     texts = declared.says.get(strategy) or next(iter(declared.says.values()), ())
@@ -60,7 +59,7 @@ def words(
 
 
 def media(game: DeclaredGame, behaviour: str) -> tuple[MediaFile | None, MediaFile | None]:
-    """Return the picture and the sound of a behaviour, by the facts that it leaves."""
+    """Return the picture and the sound of a behaviour, by the facts after it."""
     declaration = game.declaration
     declared = declaration.behaviours[behaviour]
     names = (
@@ -71,7 +70,7 @@ def media(game: DeclaredGame, behaviour: str) -> tuple[MediaFile | None, MediaFi
 
 
 def again(game: DeclaredGame, behaviour: str, whom: str) -> list[str]:
-    """Return what a person is told, one text after another, who says nothing to a behaviour."""
+    """Return the texts that repeat the question, in order, if a person does not answer."""
     texts = game.declaration.behaviours[behaviour].again
     return [text for one in texts if (text := filled(game, one, whom))]
 
@@ -82,7 +81,7 @@ def empty_slots(game: DeclaredGame, template: str, whom: str | None) -> list[str
 
 
 def with_names(text: str, name: Callable[[str], str]) -> str:
-    """Put the names of people into a filled text."""
+    """Replace the ids of people in a filled text by names."""
     return PERSON.sub(lambda match: name(match.group(1)), text)
 
 

@@ -1,6 +1,6 @@
-"""Keys of a game's states, for searches: equal where nothing that follows can differ.
+"""Keys of game states for searches; states with equal keys are equivalent.
 
-States that differ in nothing that any condition, selector or stage looks at count as one.
+States that differ only in what no condition, selector or stage uses have equal keys.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from tangy_profiles.declared.vocabulary import ADDRESSED, ASKING, ITEMS, PLACE, 
 from tangy_profiles.state import FRONT
 
 TELLING = 1.5
-"""From so many times as many states on, what makes them is worth telling."""
+"""The lowest factor of states that is reported."""
 PARTS = (ITEMS, TURN, ASKING, PLACE, ADDRESSED, "last to act", "quietest")
-"""What a key holds after the facts of the file: built-in facts, and two selectors' memory."""
+"""The parts of a key after the facts of the file: built-in facts, and two selectors' memory."""
 
 
 def rough_key(game: DeclaredGame) -> Hashable:
-    """Return a game's state as if all players were alike whom no selector names, and their order.
+    """Return a key that also ignores which player is which, except for those in a role.
 
-    Two states with the same key may differ in who comes when. A search that skips one of them can
-    miss a way, and still every way that it finds is one.
+    States with the same key may differ in the order of players. A search that skips one of them can
+    miss paths, but every path it finds is valid.
     """
     group: list[object] = []
     own: list[list[object]] = [[] for _ in game.players]
@@ -58,7 +58,7 @@ def rough_key(game: DeclaredGame) -> Hashable:
 def _kept(
     game: DeclaredGame, fact: Fact, bounds: tuple[int, ...], player: str
 ) -> str | int | float | None:
-    """Return as much of a fact as conditions can tell apart."""
+    """Return the part of a fact that conditions can distinguish."""
     if fact.kind in ("flag", "choice"):
         value = game.values.get((fact.name, player))
         return None if value == fact.values[0] else value
@@ -72,7 +72,7 @@ def _kept(
 
 
 def state_key(game: DeclaredGame) -> Hashable:
-    """Return all of a game's state that can matter to how it goes on."""
+    """Return a key of everything that can influence the rest of the game."""
     declaration, turn, order = game.declaration, game.turn, game.players
     if not declaration.selectors & {"quietest", "next in circle"}:
         order, turn = (*order[turn:], *order[:turn]), 0
@@ -106,19 +106,19 @@ def state_key(game: DeclaredGame) -> Hashable:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """How many times as many states there are because of one fact (or part of `PARTS`)."""
+    """The factor by which one fact (or part of `PARTS`) multiplies the number of states."""
 
     name: str
     times: float
 
 
 def shares(declaration: Declaration, keys: Sequence[Hashable], players: int) -> tuple[Share, ...]:
-    """Return what makes the most states, the largest share first.
+    """Return what multiplies the states most, the largest factor first.
 
     Args:
         declaration: the activity.
-        keys: of different states, as `state_key` gives them.
-        players: how many there are.
+        keys: distinct keys, as returned by `state_key`.
+        players: the number of players.
     """
     found: list[Share] = []
     flat = [(*key[0], *key[1:-1]) for key in keys if isinstance(key, tuple)]

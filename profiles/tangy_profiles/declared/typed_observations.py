@@ -1,7 +1,7 @@
 """Observations that staff type or say during a game: a fact, its player and its value.
 
-They use the words of the activity's file: an answer ("B", "honey"), a value ("match"),
-a fact ("tired", "not tired"), or a fact with its value ("mood sad").
+They use the words of the activity's file: an answer ("B", "honey"), a value ("match"), a fact
+("tired", "not tired"), or a fact with its value ("mood sad").
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tangy_profiles.declared.vocabulary import ASKING, NO, YES
 ASKS = ("asks", "asks for help", "asking", "help")
 NEGATIONS = ("not", "no", "does not", "is not", "no longer")
 BETWEEN = ("is", "has", "gives")
-"""Words that may stand before a fact or a value, and add nothing."""
+"""Words before a fact or a value without a meaning."""
 
 
 class TypedObservation(NamedTuple):
@@ -29,20 +29,20 @@ class TypedObservation(NamedTuple):
 
 
 def can_be_told(game: DeclaredGame) -> tuple[Fact, ...]:
-    """Return the facts that people bring about, in the order of the file."""
+    """Return the facts that people can change, in the order of the file."""
     return tuple(one for one in game.declaration.facts.values() if one.sources)
 
 
 def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation | None:
     """Parse words about a player, or about the group (None).
 
-    An option of the present item goes before a value, a value before a fact, and all of them before
-    a free answer, which may be any words.
+    An option of the current item has priority over a value, a value over a fact, and all of them
+    over a free answer, which may be any words.
 
     Args:
-        game: the game, with its present item.
-        who: the player they are about, None if nobody is named.
-        words: what was typed or heard.
+        game: the game, with its current item.
+        who: the player concerned, None if nobody is named.
+        words: the typed or recognised words.
 
     Returns:
         The observation; None if the words mention no fact.
@@ -63,7 +63,7 @@ def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation |
 
 
 def sayable(game: DeclaredGame) -> list[str]:
-    """Return words that say something now: the options, and values or names of facts."""
+    """Return words that can be observed now: the options, and values or names of facts."""
     found: list[str] = []
     for fact in can_be_told(game):
         if fact.checks:
@@ -99,7 +99,7 @@ def _values(facts: tuple[Fact, ...], said: str) -> Iterator[tuple[Fact, str]]:
 
 
 def _value_of(fact: Fact, said: str) -> str | None:
-    """Return the value of a fact that words name, with the fact's name or without it."""
+    """Return the value of a fact that words name, with or without the fact's name."""
     words, negated = said.split(), False
     while words and words[0] in (*BETWEEN, *NEGATIONS):
         negated |= words.pop(0) in NEGATIONS

@@ -1,4 +1,4 @@
-"""The closed vocabularies of an activity's file, each a type that mypy follows."""
+"""The closed vocabularies of an activity's file, as types that mypy checks."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Does = Literal[
     "go to front",
     "go to whom",
     "close request",
-    "invite",  # FACT VALUE: a person is asked to bring it about
+    "invite",  # FACT VALUE: a person is asked to set it
     "finish",
 ]
 """Effects of a behaviour on the game."""
@@ -62,20 +62,20 @@ BUILT_IN: dict[str, tuple[str, ...]] = {
     ADDRESSED: ("no", "yes"),
     PLACE: ("elsewhere", "front", "beside"),
 }
-"""The facts that every activity has, with their values; all but the items are a player's."""
+"""The built-in facts with their values; all except the items are per player."""
 
 NO, YES = "no", "yes"
 
 HERE = "here"
-"""What is observed of a player who leaves (no) or comes back (yes); no condition looks at it."""
+"""The observation that a player leaves (no) or comes back (yes); not usable in conditions."""
 
 SLOT = re.compile(r"\{([^{}]*)\}")
-"""A slot of a text, as `{name}`."""
+"""A slot of a text, such as `{name}`."""
 
 MARKS = ("facts", "flags", "items", "people")
-"""Keys by which the file of an activity declared by facts is known."""
+"""Keys that identify the file of an activity declared by facts."""
 
 
 def declares(keys: Iterable[str]) -> bool:
-    """Say whether a file's keys are those of an activity declared by facts."""
+    """Return whether a file's keys are those of an activity declared by facts."""
     return any(key in MARKS for key in keys)

@@ -1,7 +1,7 @@
 """The person of a behaviour, learnt with it: selectors that named the demonstrated person.
 
-For each stage and behaviour those selectors are kept that named that person every time. If the
-ones that are left name different people now, Tangy asks.
+For each stage and behaviour, the selectors that named that person every time are kept. If they name
+different people now, Tangy asks.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import EVERYBODY, ActivityState
 
 Whom = Mapping[tuple[str, str], tuple[str, ...]]
-"""The selectors that are left, by stage and behaviour, in the order of the activity's file."""
+"""The remaining selectors, by stage and behaviour, in the order of the activity's file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Addressee:
     """The current person of a behaviour (None: the group), and the selectors that name them.
 
-    `others` are whom the selectors name instead, if they disagree: then nothing is sure.
+    `others` are the people named by the selectors if they disagree.
     """
 
     person: str | None
@@ -30,7 +30,7 @@ class Addressee:
 
     @property
     def sure(self) -> bool:
-        """Whether all selectors that are left name the same."""
+        """Whether all remaining selectors name the same person."""
         return not self.others
 
 
@@ -45,7 +45,7 @@ def named_by(behaviour: Behaviour, state: ActivityState, person: str | None) -> 
 
 
 def first_addressee(behaviour: Behaviour, state: ActivityState) -> str | None:
-    """Return whom a behaviour is for where nothing else is said: by its first selector."""
+    """Return the default person of a behaviour: that of its first selector."""
     names = dict(state.whom)
     for one in behaviour.to:
         if one == EVERYBODY:
@@ -58,9 +58,9 @@ def first_addressee(behaviour: Behaviour, state: ActivityState) -> str | None:
 def learn_whom(
     demonstrations: Iterable[Demonstration], behaviours: Mapping[str, Behaviour]
 ) -> dict[tuple[str, str], tuple[str, ...]]:
-    """Learn from demonstrations which selectors named the person shown, each time.
+    """Learn which selectors named the demonstrated person in every step.
 
-    Where no selector did so each time, those of the last step count.
+    If no selector did, those of the last step count.
     """
     left: dict[tuple[str, str], tuple[str, ...]] = {}
     for demonstration in demonstrations:
@@ -96,7 +96,7 @@ def addressee(whom: Whom, behaviour: Behaviour, state: ActivityState) -> Address
 
 
 def target_of(whom: Whom, behaviour: Behaviour | None, state: ActivityState) -> str | None:
-    """Return whom a behaviour is for in a state, where nobody says otherwise (None: the group)."""
+    """Return the default person of a behaviour in a state (None: the group)."""
     if behaviour is None or not behaviour.attends:
         return None
     return addressee(whom, behaviour, state).person if behaviour.to else state.attended
