@@ -1,7 +1,7 @@
 """Cards and their deck: geometry, labels, and how a card is judged.
 
 Cells are bits of an integer, row by row (bit = row x columns + column), so a line is tested with
-one `and`. Both worlds use `Deck.judge`: the simulated one with what people marked, the real one
+one `and`. Both worlds use `judge`: the simulated one with what people marked, the real one
 with what the camera saw.
 """
 

@@ -88,7 +88,7 @@ def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
     """Play games on a bench: a case is (seed, first game, games, games in all).
 
     Returns:
-        As `experiments.recovering.play`, and the `score` of the cards read and people found.
+        As `experiments.recovering.play`, and the `score` of perception against the ground truth.
     """
     seed, first, some, games = case
     plan = plan_of(games, seed, GAMES_A_PIECE)[first : first + some]

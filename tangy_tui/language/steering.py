@@ -75,18 +75,18 @@ WAYS: dict[Steering, tuple[str, ...]] = {
     ),
 }
 WHILE_TEACHING: tuple[Steering, ...] = ("undo", "redo", "phrases", "help")
-"""Requests of a teacher to the program while showing a game."""
+"""A teacher's requests to the program while showing a game."""
 IN_GAMES: tuple[Steering, ...] = ("pause", "go on", "call again", "faster", "slower")
-"""Requests of staff to the program while Tangy plays."""
+"""Staff's requests to the program while Tangy plays."""
 
 
 def steering_texts(ways: Collection[Steering]) -> tuple[str, ...]:
-    """Return the sentences by which people ask for some ways of steering."""
+    """Return the sentences for some steering requests."""
     return tuple(text for way in ways for text in WAYS[way])
 
 
 def steering_of(text: str) -> Steering | None:
-    """Return what a sentence asks of the program, None if it asks for nothing of that."""
+    """Return the steering request of a sentence, or None."""
     return _ways().get(bare(words_of(text)))
 
 

@@ -23,7 +23,7 @@ from tangy_tui.learning.policy import Forest, ForestSettings, grown
 
 FOLDER = "forests"
 MOST = 64
-"""The number of forests to keep, the most recently used ones."""
+"""The number of forests to keep, the newest ones."""
 LARGEST = 1_000_000
 """The largest file to read (bytes); a forest of Bingo has 3,000."""
 

@@ -24,7 +24,7 @@ class NotAsBefore(Exception):
 
 @dataclass(frozen=True, slots=True)
 class ReplayedGame:
-    """The world after a demonstration, and the numbers drawn or called in each step."""
+    """The world after a demonstration, and the numbers of each step (see `Outcome.numbers`)."""
 
     world: World
     numbers: tuple[tuple[int, ...], ...]

@@ -189,7 +189,7 @@ def _stepped(
 def _step_undone(
     entry: LibraryEntry, number: int | None, at: int, aside: Collection[int]
 ) -> LibraryEntry:
-    """Undo the step that event `at` refers to; `number` counts steps that may be set aside."""
+    """Undo step `number` by event `at`, even if some events between them were set aside."""
     steps = entry.demonstration.steps
     number = len(steps) if number is None else number
     newest = steps[-1].id if steps else 0

@@ -110,7 +110,7 @@ class TeachingSession:
         self.demonstration: Demonstration
         self.world: World
         self.numbers: tuple[tuple[int, ...], ...] = ()
-        """The numbers drawn or called in each step of the demonstration."""
+        """The numbers of each step (see `Outcome.numbers`)."""
         self.guided, self._first = guided, again
         self._verifier: Verifier
         self._undone: list[Step] = []

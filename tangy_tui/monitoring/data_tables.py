@@ -40,7 +40,7 @@ HEAD = ("robot", "game", "world")
 
 
 def _cell(value: Any) -> Cell:
-    """Format a cell: join lists, and round numbers to ms."""
+    """Format a cell: join lists, and round numbers to three decimals."""
     if isinstance(value, float):
         return round(value, 3)
     if isinstance(value, list | tuple):

@@ -235,7 +235,7 @@ class Detector:
         """Count refused requests, and behaviours that changed nothing."""
         before, after, outcome = acted.state, acted.after, acted.outcome
         if outcome.response is not None:
-            person = before.attended or outcome.response.person  # the seat belongs to them
+            person = before.attended or outcome.response.person  # the person at this place
             if outcome.response.followed:
                 self._refusals.pop(person, None)
             else:

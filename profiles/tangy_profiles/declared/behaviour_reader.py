@@ -47,16 +47,16 @@ def read_behaviours(
     columns: Sequence[str],
     title: str,
 ) -> dict[str, DeclaredBehaviour]:
-    """Read all behaviours of a file, and the CSV file of their speech where it names one.
+    """Read all behaviours of a file, and the CSV file of their speech if it names one.
 
     Args:
         top: the file.
-        phrasing: reads conditions and effects.
+        phrasing: parses conditions and effects.
         strategies: the names of the persuasive strategies.
-        plain: the one of them that is used where nobody is asked to do anything.
-        folder: where the files beside it are.
+        plain: the strategy for behaviours that ask nobody to do anything.
+        folder: the folder of the CSV files.
         columns: the columns of the items.
-        title: what the chest screen shows where a behaviour does not say.
+        title: the default text of the chest screen.
     """
     slots = known_slots(phrasing.facts, columns)
     spoken = _read_speech(top, folder, strategies, slots)

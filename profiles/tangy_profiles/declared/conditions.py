@@ -26,7 +26,7 @@ _CONDITION = re.compile(
 )
 LARGEST = 9_999
 ALIKE = 0.8
-"""From this likeness on, a selector is one that is misspelt."""
+"""The similarity from which a word counts as a misspelt selector."""
 TAKES_FACT = ("set", "add", "clear", "start", "invite")
 
 
@@ -85,13 +85,13 @@ class Phrasing:
         return fact
 
     def selector(self, section: Section, key: str, text: str, quoted: str = "") -> Selector:
-        """Read the selector of a person; "" if it is none, and its problem is recorded.
+        """Parse the selector of a person; return "" and record the problem if it is invalid.
 
         Args:
-            section: where it stands.
-            key: the key there.
+            section: the section that contains it.
+            key: its key.
             text: the selector.
-            quoted: the text that holds it, if it is only a part.
+            quoted: the text that contains it, if it is only a part.
         """
         words = " ".join(text.split())
         if words in SELECTORS:

@@ -180,7 +180,7 @@ class DeclaredGame:
                 return self._whose(self.declaration.whose[selector])
 
     def _whose(self, condition: FactCondition) -> str | None:
-        """Return the player for whom a condition holds, the first for whom it came to hold."""
+        """Return the player for whom a condition has held longest, or None."""
         fact = condition.fact
         since = [player for name, player in self.values if name == fact]  # in order of change
         able = [one for one in self.here if self._holds_for(condition, one)]
@@ -320,7 +320,7 @@ class DeclaredGame:
                 self.over = True
 
     def _assign_value(self, key: Key, value: str) -> None:
-        """Set a value; what has changed last stands last."""
+        """Set a value, and move it to the end of the order of changes."""
         self.values.pop(key, None)
         self.values[key] = value
 

@@ -49,7 +49,7 @@ SELECTORS: tuple[Named, ...] = get_args(Named)
 Selector = str
 """Selects the person of a behaviour or a stage: one of `SELECTORS`, or `whose CONDITION`."""
 WHOSE = "whose "
-"""Before the condition of a selector; of several persons, the first for whom it came to hold."""
+"""Precedes the condition of a selector, which names the first person for whom it became true."""
 
 Order = Literal["given", "shuffled"]
 ORDERS: tuple[Order, ...] = get_args(Order)
