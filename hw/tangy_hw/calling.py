@@ -42,7 +42,7 @@ Told = Callable[[CallNews], None]
 
 
 def call(contact: Contact, message: Mapping[str, Any], seconds: float, told: Told) -> None:
-    """Send a message to a person, and wait up to so many s for an answer.
+    """Send a message to a person, and wait up to `seconds` s for an answer.
 
     `told` receives the outcome, at the latest at the timeout; nothing is raised.
     """

@@ -98,7 +98,7 @@ class Clock(Protocol):
         ...
 
     async def sleep(self, seconds: float) -> None:
-        """Sleep for so many s of this clock."""
+        """Sleep for a time in s of this clock."""
         ...
 
 
@@ -110,7 +110,7 @@ class MachineClock:
         return time.monotonic()
 
     async def sleep(self, seconds: float) -> None:
-        """Sleep for so many s."""
+        """Sleep for a time in s."""
         await asyncio.sleep(seconds)
 
 
@@ -175,7 +175,7 @@ class Arms(Device, Protocol):
     """Limbs that take poses; the head is one of them."""
 
     async def pose(self, angles: Mapping[str, Sequence[float]], seconds: float) -> None:
-        """Move limbs to joint angles (degrees, by limb) within so many s, and wait for it.
+        """Move limbs to joint angles (degrees, by limb) within `seconds` s, and wait.
 
         Raises:
             DeviceError: a servo reports an error, or a joint does not arrive in time.

@@ -128,7 +128,7 @@ class WorkerProcess:
         """Id of its process and process group; None if it has ended."""
         return self.process.pid if self.process.poll() is None else None
 
-    # ------------------------------------------------------------------------- what it is told
+    # ------------------------------------------------------------------------- requests
 
     def tell(self, what: Mapping[str, Any] | str) -> Future[None] | None:
         """Queue a line; the future is done when it is written, or never will be.
@@ -184,7 +184,7 @@ class WorkerProcess:
                 os.killpg(self.process.pid, signal.SIGKILL)
 
     def stop(self, patience: float) -> None:
-        """Let it exit by itself, and kill it after so many s."""
+        """Let it exit by itself, and kill it after `patience` s."""
         self.close()
         with suppress(TooLate):
             self.over.result(patience)
@@ -197,7 +197,7 @@ class WorkerProcess:
                 thread.join(LAST_SECONDS)
 
     async def stopped(self, patience: float) -> None:
-        """Do as `stop` does, in an event loop, within so many s; kill it at once if cancelled."""
+        """Do as `stop` does, in an event loop, after `patience` s; kill at once if cancelled."""
         self.close()
         over = asyncio.wrap_future(self.over)
         try:
@@ -207,7 +207,7 @@ class WorkerProcess:
                 self.kill()
         await asyncio.wait({over}, timeout=LAST_SECONDS)
 
-    # ------------------------------------------------------------------------- what it says
+    # ------------------------------------------------------------------------- messages
 
     def _listen(self) -> None:
         with suppress(OSError, ValueError):

@@ -156,7 +156,7 @@ class Camera:
         Args:
             after: return a frame with a higher number than this instead.
             wait: timeout in s; None: no timeout.
-            fit: scale the frame to fit into so many columns and rows of pixels.
+            fit: scale the frame to fit into this width and height in pixels.
 
         Returns:
             None if no frame came in time, or the stream has ended.

@@ -10,9 +10,9 @@ Run as `python -m tangy_hw.drivers.camera_child`; speaks JSON lines:
     {"lost": "it stopped sending"}               it cannot be read, and will be opened again
     {"over": "", "sound": true}                  end of the source; sound: without an error
     {"frame": 3, "after": 16}                    request for the newest frame above number 16
-    {"frame": 4, "after": 16, "fit": [80, 45]}   scaled to fit into so many columns and rows
+    {"frame": 4, "after": 16, "fit": [80, 45]}   scaled to fit into 80 x 45 pixels
     {"frame": 3, "seq": 18, "stamp": 9.1, "width": 1280, "height": 720, "bytes": 2764800}
-                                                 answer, followed by so many bytes of BGR
+                                                 answer, followed by these bytes of BGR
     {"failed": "That line is no JSON object."}   instead of any answer
 
 It exits when its input closes. Output of C libraries goes to standard error.

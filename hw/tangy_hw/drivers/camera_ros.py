@@ -40,7 +40,7 @@ class RosPictures:
     rate = 0.0
 
     def __init__(self, source: CameraSource) -> None:
-        """Prepare a source with such a target."""
+        """Prepare a source."""
         parts = urlsplit(source.target)
         self._type = TYPES[parts.scheme.lower()]
         host = f"[{parts.hostname}]" if ":" in str(parts.hostname) else parts.hostname
@@ -74,7 +74,7 @@ class RosPictures:
         raise Gone("it sends no pictures")
 
     def _newest(self, seconds: float) -> str | bytes | None:
-        """Return the newest message within so many s; None after this timeout."""
+        """Return the newest message; None after a timeout in s."""
         if self._link is None:
             raise Gone("it is not open")
         newest: str | bytes | None = None

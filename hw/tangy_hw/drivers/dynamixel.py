@@ -161,7 +161,7 @@ class DynamixelArms:
         return "" if self.bus is not None else plain(f"{self.name}: {self._port} is not there.")
 
     async def pose(self, angles: Mapping[str, Sequence[float]], seconds: float) -> None:
-        """Move limbs to joint angles (degrees, by limb) within so many s, and wait for it.
+        """Move limbs to joint angles (degrees, by limb) within `seconds` s, and wait.
 
         Raises:
             DeviceError: there is no such limb, a servo reports an error or cannot reach the angle,

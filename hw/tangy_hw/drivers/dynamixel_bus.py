@@ -149,7 +149,7 @@ class Bus:
         raise BusError(f"servo {otherwise[0]} does not {'hold' if on else 'let go'}.")
 
     def move(self, goals: Mapping[int, float], seconds: float) -> None:
-        """Move servos to angles in degrees, so that they arrive after so many s.
+        """Move servos to angles in degrees, with a duration in s.
 
         Raises:
             BusError: the port is gone, or a servo does not answer.

@@ -94,7 +94,7 @@ class RosArms:
         return self._newest.reading(self.name, state, {"hardware_error": state == ERROR})
 
     async def pose(self, angles: Mapping[str, Sequence[float]], seconds: float) -> None:
-        """Move limbs to joint angles (degrees, by limb) within so many s, and wait for it.
+        """Move limbs to joint angles (degrees, by limb) within `seconds` s, and wait.
 
         Raises:
             DeviceError: there is no such limb or no link, a servo reports an error, another pose

@@ -185,7 +185,7 @@ def joined_names(text: str) -> dict[str, str]:
 
 
 def near_share(raw: NDArray[np.float64], near: float) -> float:
-    """Return the share of beams (n,) that end within so many m; a range of 0 is no return."""
+    """Return the share of beams (n,) that end within `near` m; a range of 0 is no return."""
     with np.errstate(invalid="ignore"):
         return float(np.mean((raw > 0) & (raw < near)))
 

@@ -169,7 +169,7 @@ class RosNavigator:
         self._bridge.publish(self._initial, {"header": head, "pose": there})
 
     async def go(self, goal: Pose, seconds: float = DRIVE_SECONDS) -> None:
-        """Drive to a pose, and wait for at most so many s; cancelling the wait cancels the goal.
+        """Drive to a pose, and wait, with a timeout in s; cancelling the wait cancels the goal.
 
         Raises:
             DeviceError: no server accepts goals, there is no path, a timeout, a new goal, or a lost

@@ -122,7 +122,7 @@ class RosVoice:
         await self._acknowledged(self._play, str(sound), wav_seconds(sound))
 
     async def _acknowledged(self, topic: str, text: str, seconds: float) -> None:
-        """Send a text, and wait for its acknowledgement; it should take so many s."""
+        """Send a text with an expected duration in s, and wait for its acknowledgement."""
         key = str(next(self._numbers)) if self._with_id else text
         data = json.dumps({"id": int(key), "text": text}) if self._with_id else text
         self._bridge.publish(topic, {"data": data})

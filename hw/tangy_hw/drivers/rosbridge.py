@@ -119,7 +119,7 @@ class Rosbridge:
             await asyncio.gather(task, return_exceptions=True)
 
     async def wait_connected(self, seconds: float) -> bool:
-        """Wait up to so many s for a connection; return whether there is one."""
+        """Wait for a connection, with a timeout in s; return whether there is one."""
         with suppress(TimeoutError):
             await asyncio.wait_for(self._connected.wait(), seconds)
         return self.connected
@@ -192,7 +192,7 @@ class Rosbridge:
         """Call a service and return its values.
 
         Raises:
-            DeviceError: it refused, did not answer within so many s, or the connection was lost.
+            DeviceError: it refused, did not answer within `seconds` s, or the connection was lost.
         """
         name = _full(service)
         if not self.connected:

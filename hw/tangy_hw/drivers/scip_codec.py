@@ -58,7 +58,7 @@ class Optics:
 
 
 def encode(value: int, length: int) -> bytes:
-    """Encode a number in so many characters.
+    """Encode a number in `length` characters.
 
     Raises:
         ValueError: it is negative, or too large.

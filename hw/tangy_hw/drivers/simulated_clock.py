@@ -44,7 +44,7 @@ class SteppedClock:
         return self._now
 
     async def sleep(self, seconds: float) -> None:
-        """Advance the bench by so many s, and wait for the resulting messages."""
+        """Advance the bench by a time in s, and wait for the resulting messages."""
         if self._link is None or not await self._link.wait_connected(CONNECT_SECONDS):
             await asyncio.sleep(seconds)
             return

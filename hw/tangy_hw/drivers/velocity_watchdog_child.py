@@ -5,7 +5,7 @@ Run as `python -m tangy_hw.drivers.velocity_watchdog_child`; speaks JSON lines:
     {"at": "ws://HOST:9090", "ros": 1, "drive": "/cmd_vel", "stamped": false, "lives": 0.2}
                                the base, and a command's time to live in s; once
     {"drives": true}           the base was commanded to drive; false: to stop
-    {"stopped": 0.21}          it stopped the base so many s after the last command
+    {"stopped": 0.21}          it stopped the base; s since the last command
     {"failed": "..."}          an invalid line was ignored
 
 When its input closes, it stops the base and exits.

@@ -22,7 +22,7 @@ TORN = 0.15
 
 Chosen on simulated rooms and corridors with matched scans: maps that closed had at most .03, maps
 that did not close at least .23. On Freiburg's building 079, which was not used for choosing, the
-corrected log has .07, and its scans matched anew, which tears the map, .30.
+corrected log has .07, and newly matched scans, which tear the map, .30.
 """
 
 UNSURE = 0.025

@@ -20,7 +20,7 @@ from tangy_hw.navigation.scan_matching import Reference
 NEAR = 3.0  # metres within which earlier scans are matched
 JOINED = 6  # earlier scans to match with: half the oldest, half the newest
 FITS, GOOD = 0.5, 0.75  # shares of points: a match needs FITS; below GOOD, turned guesses are tried
-TRIED = (-0.4, -0.2, 0.2, 0.4)  # radians by which those guesses are turned
+TRIED = (-0.4, -0.2, 0.2, 0.4)  # radians, rotations of those guesses
 FARTHEST, TURNED = 0.5, 0.6  # metres and radians that a match may differ from odometry
 
 

@@ -1,4 +1,4 @@
-"""Computes the clearance along an arc from laser points, whatever they belong to.
+"""Computes the clearance along an arc from laser points.
 
 `people_guard` decides how much of a command may be driven past people.
 """
@@ -61,7 +61,7 @@ def room_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
 
 
 def speed_in(room: float, limits: MotionLimits) -> float:
-    """Return the speed in m/s from which a robot can stop within so many metres."""
+    """Return the speed in m/s from which a robot can stop within `room` m."""
     return sqrt(2 * limits.brake * max(0.0, min(room, REACH)))
 
 

@@ -37,7 +37,7 @@ class Placed:
 
 
 def sparse(scans: Iterable[Placed], metres: float = 0.1, radians: float = 0.1) -> list[Placed]:
-    """Drop scans taken within so many m and rad of the last kept one."""
+    """Drop scans within `metres` m and `radians` rad of the last kept one."""
     kept: list[Placed] = []
     for one in scans:
         if kept:

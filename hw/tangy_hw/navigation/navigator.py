@@ -43,15 +43,15 @@ PATIENCE = 1.0  # seconds that something may block the path before replanning
 PATIENCE_WALKING = 3.0  # the same for a person who walks
 AGAIN = 1.0  # seconds between two attempts to plan while there is no path
 NO_WAY = 2.0  # seconds without a path before it is reported
-PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres of progress required in so many seconds
+PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres of progress required per period in s
 SPIN = 0.5  # rad/s while it turns to localise itself
 LOOKS_ROUND = 2  # full turns without a pose before it gives up
 ASTRAY = 0.5  # metres off the path at which it replans
-INTO = 0.05  # metres by which a path may violate the distance to an obstacle
+INTO = 0.05  # metres that a path may be too near to an obstacle
 LOOK_AHEAD = 50  # points of the path checked for obstacles: 2.5 m
 TAKEN = 0.6  # metres driven on another path before it is reported: it may end as well
 SLOW = 0.1  # m/s: above this the robot stops before it takes another path
-SLIPS = 0.3  # metres of disagreement with the scans from which on the wheels slip
+SLIPS = 0.3  # metres of disagreement with the scans that mean slip
 
 
 class Navigator:
@@ -134,7 +134,7 @@ class Navigator:
         self._turned, self._turn_to = 0.0, angle
 
     def replan(self) -> None:
-        """Plan a new path to the goal, whatever blocks the current one."""
+        """Plan a new path to the goal, even if the current one is not blocked."""
         if self.goal is not None and self.state not in ("arrived", "failed"):
             self._since_plan = AGAIN
             self._pursuit = None
@@ -146,7 +146,7 @@ class Navigator:
         self._way = "clear"
 
     def held(self) -> None:
-        """Record that the robot must stop now, whatever the last command was."""
+        """Record that the robot must stop now, despite the last command."""
         self._told = STILL
 
     def place(self, pose: Pose | None) -> None:
@@ -375,6 +375,6 @@ class Navigator:
 
 
 def _leaves(path: Floats, other: Floats, by: float = 0.3) -> bool:
-    """Return whether a path leaves another one by more than so many m."""
+    """Return whether a path leaves another one by more than `by` m."""
     apart = ((path[::4, None] - other[None, ::2]) ** 2).sum(axis=2)
     return bool(apart.min(axis=1).max() > by**2)

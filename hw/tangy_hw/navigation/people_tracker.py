@@ -2,8 +2,8 @@
 
 Each track is a constant-velocity Kalman filter (Y. Bar-Shalom et al., "Estimation with applications
 to tracking and navigation", 2001, ch. 6) in the odometry frame, which does not jump as the map
-frame does. A scan cannot tell a standing person from a chair, so all objects are tracked; `person`
-is only used for what staff are told.
+frame does. A scan cannot tell a standing person from a chair, so all objects are tracked;
+`person` only affects messages to staff.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ STRIDE, BETWEEN = 0.9, 0.3  # metres: between two legs; from their centre to the
 SURE = 3  # sightings that confirm a track
 DROPPED, DROPPED_HIDDEN = 0.5, 1.5  # seconds unseen until a track is dropped: visible, occluded
 SETTLED, SETTLED_WAY, SETTLED_SECONDS = 1.0, 0.15, 0.9  # standing: age in s; less than m in s
-RUNS = 0.5  # m/s from which on a track does not count as standing
-SLOWS = 1.0  # m/s^2 by which the remembered pace of a walker decreases
+RUNS = 0.5  # m/s above which a track does not count as standing
+SLOWS = 1.0  # m/s^2, decrease of a walker's remembered pace
 WALKED, WALKED_SECONDS = 0.8, 0.8  # metres and seconds of walking that make a track a person
-LEGS_SHARE, LEGS_SECONDS = 0.7, 2.0  # share of so many s with a pair of legs that makes a person
+LEGS_SHARE, LEGS_SECONDS = 0.7, 2.0  # share of a window in s with two legs that makes a person
 
 
 @dataclass(frozen=True)

@@ -134,7 +134,7 @@ def nearest_free(costs: Costs, x: float, y: float, within: float = inf) -> tuple
     """Return the nearest point to (x, y) at which the robot can stand; all in m.
 
     Raises:
-        PlanError: there is none within so many m.
+        PlanError: there is none within `within` m.
     """
     rows, columns = np.nonzero(np.isfinite(costs.cost))
     if len(rows):

@@ -65,9 +65,9 @@ def endpoints(
 
     Args:
         scan: the scan.
-        farthest: metres from which on returns are ignored.
+        farthest: range in m beyond which returns are ignored.
         laser: pose of the scanner on the robot.
-        nearest: metres up to which returns are ignored.
+        nearest: range in m below which returns are ignored.
     """
     met = (scan.ranges > nearest) & (scan.ranges < min(farthest, scan.farthest))
     angles, ranges = bearings(scan)[met], scan.ranges[met]

@@ -30,7 +30,7 @@ CREEP = 0.03  # m/s below which it stands still
 
 
 class Pursuit:
-    """Follows one path to its end, and turns to the final heading there."""
+    """Follows one path, and turns to the final heading at its end."""
 
     def __init__(
         self,

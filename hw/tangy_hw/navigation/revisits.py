@@ -9,7 +9,7 @@ The limits were chosen on simulated corridors, rooms and rows of rooms (6 seeds 
 with and without wheels that slip for 6% of the way). Together with those of `agreement`, they
 accept 35 of 36 maps of other seeds that close, and reject 33 of 36 that are torn; the one wrongly
 rejected is a building whose parts look alike. On Freiburg's building 079, 43 scans agree and none
-disagrees in the corrected log; matched anew, 9 agree and 13 disagree.
+disagrees in the corrected log; newly matched, 9 agree and 13 disagree.
 """
 
 from __future__ import annotations

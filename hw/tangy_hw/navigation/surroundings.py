@@ -21,7 +21,7 @@ Held = Literal["", "walking", "standing"]
 """Kind of person that the robot waits for: nobody, a walking one, a standing one."""
 
 SURE = 0.3  # metres of pose spread up to which points become obstacles
-WALKS = 0.25  # m/s from which on a track walks
+WALKS = 0.25  # m/s above which a track counts as walking
 WALKERS = 0.5  # metres around a walking person within which points belong to them
 AHEAD = (0.0, 0.7, 1.4, 2.1)  # seconds ahead for which paths avoid walkers
 

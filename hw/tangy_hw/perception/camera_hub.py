@@ -190,14 +190,14 @@ class CameraHub:
         return tuple(camera.reading() for camera in self.streams.values())
 
     async def settled(self, seconds: float) -> None:
-        """Wait up to so many s until each camera has delivered its first frame, or failed."""
+        """Wait until each camera has delivered a frame or failed, with a timeout in s."""
         with suppress(TimeoutError):
             async with asyncio.timeout(seconds):
                 while any(c.sight.state == "OPENING" for c in self.streams.values()):  # noqa: ASYNC110
                     await asyncio.sleep(0.05)
 
     async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Frame | None:
-        """Return a camera's newest frame, scaled to fit into so many columns and rows.
+        """Return a camera's newest frame, scaled to fit into a width and height.
 
         Args:
             device: name of the camera.

@@ -144,7 +144,7 @@ class CardAndFacePerception:
         return deck if wins is None else replace(deck, patterns=wins[0], together=wins[1])
 
     async def who(self, most: int = 2 * FRAMES) -> Vote:
-        """Identify the face before the robot by a vote over at most so many frames."""
+        """Identify the face before the robot by a vote over at most `most` frames."""
         matches: list[FaceMatch] = []
         async for frame in _fresh(self.sensors, most):
             match = await self._in_thread(self._match, frame)
@@ -187,7 +187,7 @@ class CardAndFacePerception:
 
 
 async def _fresh(sensors: CameraHub, most: int, apart: float = 0.0) -> AsyncIterator[Frame]:
-    """Yield up to so many frames taken from now on, until two timeouts.
+    """Yield up to `most` frames taken from now on, until two timeouts.
 
     Each was taken at least `apart` s after the previous one.
     """

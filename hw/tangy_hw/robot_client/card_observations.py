@@ -56,7 +56,7 @@ class CardObservations:
     def look(
         self, place: str, called: list[int], after: float = 0.0, *, person: str = ""
     ) -> dict[str, Any]:
-        """Read the card at a place, after so many s; return the reading.
+        """Read the card at a place, `after` s from now; return the reading.
 
         `person` is who sits there, if not the place's owner. Several cards, or a card that is not
         known to be theirs, count as unread.

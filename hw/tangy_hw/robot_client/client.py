@@ -170,7 +170,7 @@ class RobotLink:
         if self.beating is not threading.current_thread():
             self.beating.join()
 
-    # ------------------------------------------------------------------------- what it says
+    # ------------------------------------------------------------------------- its state
 
     @property
     def tablet_page(self) -> str:
@@ -231,7 +231,7 @@ class RobotLink:
             return health
         return tuple(r._replace(age=r.age + quiet) for r in health)
 
-    # ------------------------------------------------------------------------- what it is told
+    # ------------------------------------------------------------------------- requests
 
     def ask(self, do: Request, **what: Any) -> Future[dict[str, Any]]:
         """Send a request; the future has the answer, or raises DeviceError or Preempted."""
@@ -245,7 +245,7 @@ class RobotLink:
         return asked
 
     def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.05) -> bool:
-        """Wait up to so many s for an answer; return whether it is there."""
+        """Wait for an answer, with a timeout in s; return whether it is there."""
         with suppress(TooLate):
             asked.exception(seconds)
         return asked.done()

@@ -127,7 +127,7 @@ class DeclaredLiveWorld(LiveWorld):
         """Everything known about the game now, for the log."""
         return memory_of(self.game)
 
-    # ------------------------------------------------------------------------ what is observed
+    # ------------------------------------------------------------------------ observations
 
     def tell(
         self, who: str | None, said: str, certainty: float = 1.0, source: str = "staff"
@@ -376,7 +376,7 @@ class DeclaredLiveWorld(LiveWorld):
         self._take_in()
         self.requests.tell(self.tracker)
 
-    # ------------------------------------------------------------------------ what is there
+    # ------------------------------------------------------------------------ scene
 
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""

@@ -306,7 +306,7 @@ class LiveWorld(LivePlan):
         return self._room.stand(place, self.people)
 
     def read_card(self, person: str, after: float = 0.0) -> None:
-        """Read the card beside the robot, after so many s, and keep the reading.
+        """Read the card beside the robot, `after` s from now, and keep the reading.
 
         A robot without a camera for cards asks staff.
 
@@ -343,7 +343,7 @@ class LiveWorld(LivePlan):
             tracker.queue.insert(0, closed)
             tracker.closed, tracker.seen = None, seen
 
-    # ------------------------------------------------------------------------ what is there
+    # ------------------------------------------------------------------------ scene
 
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
 SLIPPED = "wheels-slip"  # fault code of slipping wheels, after which the robot may be lost
-AWAY = 0.5  # metres from its place in the game from which on it drives back
+AWAY = 0.5  # metres from its place in the game above which it drives back
 BACK_SECONDS = 3.0  # of real time, for devices that come back later than a lost link
 HELP_SECONDS = 25.0  # for people to do what the robot asks for in a fault
 

@@ -77,7 +77,7 @@ class ControlLoop:
                     await asyncio.sleep(0)
 
     async def until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Let time pass until a condition holds, for at most so many s; return whether it does."""
+        """Let time pass until a condition holds, with a timeout in s; return whether it does."""
         if self._failed is not None:
             raise DeviceError(f"The robot's time stands still ({self._failed!r}).")
         deadline = self.clock.now() + seconds
@@ -95,5 +95,5 @@ class ControlLoop:
             self.waiting -= 1
 
     async def sleep(self, seconds: float) -> None:
-        """Let so many s pass."""
+        """Let a time in s pass."""
         await self.until(lambda: False, seconds)

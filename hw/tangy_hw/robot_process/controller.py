@@ -153,7 +153,7 @@ class LiveRobot:
             with suppress(Exception):  # the others must be closed as well
                 await device.close()
 
-    # ------------------------------------------------------------------------ what it knows
+    # ------------------------------------------------------------------------ state
 
     def health(self) -> Health:
         """Return the newest reading of every device."""
@@ -190,7 +190,7 @@ class LiveRobot:
         """Why it stands still, "" if it may drive."""
         return self.stopped or self.alone() or self.watchdogs.hazard() or self.pauses.why
 
-    # ------------------------------------------------------------------------ what it does
+    # ------------------------------------------------------------------------ tasks
 
     async def go(self, goal: Pose, name: str = "") -> bool:
         """Drive to a pose; return whether it has arrived (False: no path, or stuck).

@@ -73,12 +73,12 @@ class DriveMonitor:
         self._lost, self._slipped = {}, 0.0
 
     def localisation(self, age: float) -> Reading:
-        """Return the reading of localisation, last updated so many s ago."""
+        """Return the reading of localisation, last updated `age` s ago."""
         reading = self._navigator.readings(age)[0]
         return reading._replace(facts={**reading.facts, **self._lost})
 
     def navigator(self, age: float) -> Reading:
-        """Return the reading of navigation, last updated so many s ago."""
+        """Return the reading of navigation, last updated `age` s ago."""
         reading = self._navigator.readings(age)[1]
         told: dict[str, Fact] = {"path": "none"} if self.blocked else self._of("path")
         return reading._replace(facts={**reading.facts, **told})

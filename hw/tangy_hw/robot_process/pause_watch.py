@@ -14,7 +14,7 @@ CONTROL = "control"
 """Name of the robot's own control, if it was delayed."""
 
 LATE_LOOK = 0.25
-"""s between two looks from which on control was delayed."""
+"""Maximum time between two looks in s; control was delayed if it is exceeded."""
 
 GIVES_UP_SECONDS = 0.5
 """Time after which a pause counts as a fault; the diagnosis aborts a drive before."""

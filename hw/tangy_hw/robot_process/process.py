@@ -253,7 +253,7 @@ class RobotProcess:
         for task in self._doing.values():
             task.cancel()
 
-    # ---------------------------------------------------------------------- what it does
+    # ---------------------------------------------------------------------- tasks
 
     async def _perform(self, asked: Asked) -> Answer:
         picture, sound = asked.get("picture"), text_of(asked, "sound", "")
@@ -309,7 +309,7 @@ class RobotProcess:
             raise LineError(f"There is no state {asked['state']!r:.100} of a device.")
         self.robot.fail(str(asked["device"]), state)
 
-    # ---------------------------------------------------------------------- what it tells
+    # ---------------------------------------------------------------------- heartbeats
 
     def _why_alone(self) -> str:
         """Return why the program counts as absent, "" if it does not."""

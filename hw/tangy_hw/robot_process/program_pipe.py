@@ -13,7 +13,7 @@ END_SECONDS = 4.0  # after the program's end: limit for devices that do not answ
 
 
 async def end_with(program: int, lines: asyncio.StreamReader) -> None:
-    """Exit some seconds after the program has ended, whatever is in progress."""
+    """Exit some seconds after the program has ended, even with tasks in progress."""
     while os.getppid() == program and not lines.at_eof():  # noqa: ASYNC110 - no notification
         await asyncio.sleep(LOOK_SECONDS)
     await asyncio.sleep(END_SECONDS)

@@ -128,7 +128,7 @@ class SimulatedWheels:
 
 
 def moved(pose: FloorPose, gone: float, turned: float) -> FloorPose:
-    """Return a pose after a short arc: so many m, turning by so many rad."""
+    """Return a pose after a short arc with a length in m and a turn in rad."""
     middle = pose.heading + turned / 2
     heading = (pose.heading + turned + pi) % (2 * pi) - pi
     return FloorPose(pose.x + gone * cos(middle), pose.y + gone * sin(middle), heading)

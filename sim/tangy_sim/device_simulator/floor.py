@@ -95,7 +95,7 @@ class Floor:
         self.circles: Real = np.array([*self._still, *self._legs, *self.dropped], float)
 
     def step(self, seconds: float) -> None:
-        """Let people move their legs now and then, for so many s."""
+        """Advance by a time in s, in which people may move their legs."""
         self._still_for -= seconds
         while self._still_for <= 0:
             self._still_for += self._waiting()
@@ -126,7 +126,7 @@ class Floor:
         self._drop(Circle(pose.x + RING * cos(way), pose.y + RING * sin(way), 0.2) for way in ways)
 
     def drop_ahead(self, pose: FloorPose, ahead: float) -> bool:
-        """Put a chair so many m ahead of the robot; return whether there was room for it."""
+        """Put a chair `ahead` m before the robot; return whether there was room for it."""
         x, y = pose.x + ahead * cos(pose.heading), pose.y + ahead * sin(pose.heading)
         if not self.clear(x, y, 0.9):  # leave a way round
             return False

@@ -27,7 +27,7 @@ class Joints:
         self._goals: dict[str, tuple[float, float]] = {}
 
     def move(self, names: Sequence[str], positions: Sequence[float], seconds: float) -> None:
-        """Set goals in rad, to be reached within so many s; unknown names are ignored.
+        """Set goals in rad, to be reached within `seconds` s; unknown names are ignored.
 
         Goals are clipped to the joint's limits.
         """
@@ -47,7 +47,7 @@ class Joints:
                 self.speeds[name] = 0.0
 
     def step(self, seconds: float, broken: Iterable[str] = ()) -> None:
-        """Move for so many s; joints of `broken` limbs stay where they are."""
+        """Move for a time in s; joints of `broken` limbs stay where they are."""
         out = tuple(f"{limb}/" for limb in broken)
         for name, (goal, speed) in list(self._goals.items()):
             if out and name.startswith(out):

@@ -120,7 +120,7 @@ class BenchWorld:
         return {person: card for person, card in cards.items() if card}
 
     def step(self, seconds: float) -> None:
-        """Advance the time by so many s."""
+        """Advance the time by `seconds` s."""
         left = seconds
         while left > 1e-9:
             part = min(left, PHYSICS)

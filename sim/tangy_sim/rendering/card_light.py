@@ -58,7 +58,7 @@ def lit_scene(scene: Real, plane: NDArray[Any], view: View, random: np.random.Ge
 
 
 def moved(scene: Real, length: float, random: np.random.Generator) -> Real:
-    """Blur along a line of so many pixels, as a moving camera does."""
+    """Blur along a line of `length` pixels, as a moving camera does."""
     import cv2
     import numpy as np
 

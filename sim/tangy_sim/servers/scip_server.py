@@ -123,7 +123,7 @@ class ScipServer:
         return got
 
     async def somebody(self, count: int = 1) -> None:
-        """Wait until so many clients measure."""
+        """Wait until `count` clients measure."""
         while self.measuring < count:
             self._ready.clear()
             await self._ready.wait()

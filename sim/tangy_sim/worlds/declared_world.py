@@ -191,7 +191,7 @@ class DeclaredWorld:
         self.game.now += seconds
 
     def _let_people_act(self, pause: float) -> None:
-        """Let people act in a pause of so many s."""
+        """Let people act in a pause of a length in s."""
         self.game.now += pause
         for act in acts(self.game, drawn=self._people_draw):
             if self._understood(act):

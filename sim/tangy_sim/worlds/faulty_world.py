@@ -36,8 +36,8 @@ SECONDS = {"ask": 25.0, "call expert": 300.0, "spin": 10.0, "restart": 5.0, "oth
 """Duration of remedies in s; others take no time."""
 
 NOTICED = 2.0
-"""s in which a fault that devices show at once is noticed: its data is stale by then, and a robot
-that stops by itself has stopped. A manually injected fault starts that long ago."""
+"""Time in s after which a fault that devices show at once is noticed: its data is stale by then,
+and a robot that stops by itself has stopped. A manually injected fault starts that long ago."""
 
 
 class FaultyWorld(OccasionWorld):

@@ -29,7 +29,7 @@ FEWEST, MOST = 2, 6
 
 @dataclass
 class Cue:
-    """A person's cue: the state that their card is to show, and the call from which on they ask.
+    """A person's cue: the state that their card is to show, and the earliest call for asking.
 
     `hidden` says that the card is out of view when the robot arrives. Mistakes are made from the
     call of the cue on.

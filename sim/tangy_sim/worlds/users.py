@@ -72,7 +72,7 @@ class SimulatedUser:
         self.cell = {number: place for place, number in enumerate(numbers)}
         self.marked = self.called = deck.free
         self.slips_at = 0  # call after which the next uncalled number is marked
-        self.asks_at = 0.0  # time in calls from which on help may be asked for
+        self.asks_at = 0.0  # earliest time of the next request, in calls
         self.did: tuple[int, str, int] = (-1, "", 0)  # step, action, number
 
     @property

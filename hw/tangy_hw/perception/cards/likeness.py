@@ -35,7 +35,7 @@ BARE = 0.55
 """Correlation with its number above which the number of a colourless mark is bare: 95 in 100 of
 such chips and coins had less."""
 MUDDLED = 6
-"""Undecided visible cells from which on the rule applies. Cards with bare cells classified as
+"""Minimum of undecided visible cells for this rule. Cards with bare cells classified as
 marked had 10 or more, cards with coins or white chips mostly none."""
 BESIDE = 0.3
 """Probability of hidden cells beside which a finger may end."""

@@ -113,7 +113,7 @@ def _searches(grey: Grey) -> Iterator[list[Box]]:
 
 
 def _sized(grey: Grey, largest: int) -> tuple[Any, float]:
-    """Scale an image down to so many pixels of its longer side, or enlarge a small one."""
+    """Limit the longer side of an image to `largest` pixels, and enlarge small images."""
     import cv2
 
     height, width = grey.shape

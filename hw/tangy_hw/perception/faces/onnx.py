@@ -31,7 +31,7 @@ class OnnxReader:
         """Load both models.
 
         Raises:
-            FaceError: a file is missing, or not such a model.
+            FaceError: a file is missing, or not a model of this kind.
         """
         import cv2
 
