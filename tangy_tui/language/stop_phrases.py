@@ -1,7 +1,7 @@
-"""Sentences that stop a robot or a game, and sentences about stopping other things.
+"""Ways to stop a robot or a game, and sentences that stop nothing: stopping is learnt from them.
 
-The stop decoder's language model is trained on them. Most are generated from `stopping.toml` with a
-fixed seed.
+Some were written for this (`stop_sentences.toml`), many more are put together by chance, the same
+ones each time, from the texts of `stopping.toml`. Activities add what else Tangy is asked for.
 """
 
 from __future__ import annotations
@@ -9,43 +9,69 @@ from __future__ import annotations
 import random
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
+from tangy_tui.language.examples import templates
 from tangy_tui.language.stop_sentence import STOPS
+from tangy_tui.language.words import spoken, words_of
 
 EACH = 40
-"""The number of sentences generated from each template."""
+"""How many sentences are made of each form."""
 PLAIN = 3
-"""The repetitions of each plain sentence."""
+"""How many times each of the plain ones counts."""
+WRITTEN = 6
+"""How many times each of `stop_sentences.toml` counts."""
 SEED = 1
+OTHERS = ("others", "talk", "ends")
 _SLOT = re.compile(r"{(\w+)}")
 
 
 @cache
-def stop_texts() -> tuple[str, ...]:
-    """Return sentences that stop the robot, in lower case; common ones are repeated."""
-    return (*STOPS * PLAIN, *_made("said", "stops"))
+def stop_texts(without: str = "") -> tuple[str, ...]:
+    """Return sentences that stop, in lower case; common ones come several times.
+
+    Args:
+        without: the name of a written set that is left out, for figures that are quoted on it.
+    """
+    return (*STOPS * PLAIN, *_made("said", "stops"), *_written(("stops",), without))
 
 
 @cache
-def other_stop_texts() -> tuple[str, ...]:
-    """Return sentences about stopping other things, in lower case."""
-    return _made("said_of_others", "others")
-
-
-def _made(plain: str, forms: str) -> tuple[str, ...]:
-    texts, chance = _texts(), random.Random(SEED)
-    made = (_filled(form, texts, chance) for form in texts[forms] for _ in range(EACH))
-    return (*tuple(texts[plain]) * PLAIN, *made)
-
-
-def _filled(form: str, texts: Mapping[str, Sequence[str]], chance: random.Random) -> str:
-    return " ".join(_SLOT.sub(lambda slot: chance.choice(texts[slot[1]]), form).split())
+def other_stop_texts(without: str = "") -> tuple[str, ...]:
+    """Return sentences that stop nothing, most with words of stopping, in lower case."""
+    talk = (spoken(words_of(text)) for text in templates()["talk"]["other"])
+    return (*_made("said_of_others", "others"), *talk, *_written(OTHERS, without))
 
 
 @cache
-def _texts() -> Mapping[str, Sequence[str]]:
-    content = files("tangy_tui.language").joinpath("stopping.toml").read_text(encoding="utf-8")
+def stop_sets() -> Mapping[str, Mapping[str, Sequence[str]]]:
+    """Return the written sets by name, each with `stops`, `others` and most with `talk`."""
+    return _read("stop_sentences.toml")
+
+
+def _written(kinds: Collection[str], without: str) -> tuple[str, ...]:
+    texts = (
+        spoken(words_of(text))
+        for name, told in stop_sets().items()
+        if name != without
+        for kind in kinds
+        for text in told.get(kind, ())
+    )
+    return tuple(texts) * WRITTEN
+
+
+def _made(plain: str, forms: str) -> Iterator[str]:
+    texts, chance = _read("stopping.toml"), random.Random(SEED)
+    yield from tuple(texts[plain]) * PLAIN
+    for form in texts[forms]:
+        for _ in range(EACH):
+            yield " ".join(_SLOT.sub(lambda slot: chance.choice(texts[slot[1]]), form).split())
+
+
+@cache
+def _read(name: str) -> Mapping[str, Any]:
+    content = files("tangy_tui.language").joinpath(name).read_text(encoding="utf-8")
     return tomllib.loads(content)

@@ -1,9 +1,9 @@
-"""The stop decoder: it decodes every utterance, whatever else is expected.
+"""Ears for stopping alone: every utterance goes through them, whatever else is listened for.
 
-An n-gram model covers sentences that stop a robot or a game and sentences about stopping other
-things, with everyday words in between. If its best path stops the robot, it is sure. If only one of
-the next best sentences does, it is not: a synthetic or foreign voice is often recognised as "tell
-the robot" before "stop the robot".
+One n-gram model knows how people stop a robot or a game and how they talk of stopping other things,
+with everyday words between them. Where its likeliest words stop the robot, it was a stop for sure.
+Where only one of the next likely sentences does, it may have been one: a synthetic or foreign voice
+is often heard as "tell the robot" before it is heard as "stop the robot".
 """
 
 from __future__ import annotations
@@ -17,29 +17,29 @@ from tangy_tui.speech.language import dictionary, open_model, words_of
 from tangy_tui.speech.noise_reduction import cleared
 from tangy_tui.speech.pocketsphinx_search import add_model, best_path, make_search, next_best
 
-SHARE = 0.05  # of everyday words
-DOUBTED = 5  # n-best sentences to check
-SEGMENTATIONS = 60  # n-best paths to search for them
+SHARE = 0.05  # of everyday words between those of stopping
+DOUBTED = 5  # different sentences, the likeliest ones, of which one may be a stop
+SEGMENTATIONS = 60  # of the likeliest paths that are looked through for them
 ACTIVE = 1500
 ACCENTS = {
     "stop": ("S T AO P", "S T AH P"),
     "stopped": ("S T AO P T",),
     "robot": ("R OW B AO T", "R OW B AH T"),
 }
-"""Pronunciations of British and other voices that the American dictionary lacks."""
+"""How British and other voices say what the American dictionary has in one way alone."""
 
 Known = Mapping[str, Sequence[str]]
 
 
 class HeardStop(NamedTuple):
-    """The sentence that stops the robot ("" if none), and whether it is certain."""
+    """The sentence that stops the robot, "" if there was none, and whether it is beyond doubt."""
 
     sentence: str = ""
     sure: bool = False
 
 
 class StopDecoder:
-    """Finds cries to stop. Its limits were tuned on `bench/stop_sayings.toml`."""
+    """Finds cries to stop. Its limits were set on sets of `stop_sentences.toml`."""
 
     def __init__(
         self,
@@ -49,14 +49,14 @@ class StopDecoder:
         known: Known,
         game: Sequence[str] = (),
     ) -> None:
-        """Build the decoder; without a text that has pronunciations it finds nothing.
+        """Make it; without any text that can be pronounced it finds nothing.
 
         Args:
-            texts: sentences that stop the robot, common ones repeated.
+            texts: ways to stop, common ones several times.
             others: sentences about stopping other things.
             everyday: the probabilities of everyday words.
-            known: the pronunciations of words.
-            game: the words of the activity's title.
+            known: how words are pronounced.
+            game: the words that the game is called by.
         """
         self._game = frozenset(game)
         texts, others = _sayable(texts, known), _sayable(others, known)

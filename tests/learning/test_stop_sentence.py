@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import pytest
@@ -12,6 +11,7 @@ from hypothesis import strategies as st
 from tangy_profiles.activity import load_activity, read_activity
 from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.stop_phrases import stop_sets
 from tangy_tui.language.stop_sentence import (
     STOPS,
     ends_in_stop,
@@ -29,7 +29,7 @@ from tests.learning.stop_sentences import (
 )
 
 ROOT = Path(__file__).parents[1]
-EVERYDAY = ROOT / "bench" / "stop_everyday.toml"
+
 WORD = st.sampled_from(sorted({w for s in (*STOPPING, *MENTIONING) for w in s.lower().split()}))
 DOORS = (
     *("help", "?", "undo", "redo", "again 5", "again", "where", "seen", "why", "next", "quit"),
@@ -58,7 +58,7 @@ def test_the_sentences_that_were_written_apart_from_the_rules_are_told_apart_too
 
 
 def test_most_everyday_commands_stop_and_other_talk_does_not() -> None:
-    said = tomllib.loads(EVERYDAY.read_text(encoding="utf-8"))
+    said = stop_sets()["everyday"]
     stopped = {kind: [s for s in texts if stops(s, {"bingo"})] for kind, texts in said.items()}
     assert len(stopped["stops"]) >= 0.8 * len(said["stops"])
     assert len(stopped["others"]) <= 1 and stopped["talk"] == []

@@ -1,0 +1,71 @@
+"""Learning which sentences stop the robot, with scikit-learn.
+
+`python -m tangy_tui.language.stop_training` learns them anew, and puts the model beside this
+module: run it after `stopping.toml`, `stop_sentences.toml` or an activity's phrases have changed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from tangy_profiles.activity import load_activity, shipped_activities
+from tangy_tui.language.answers import NO, YES
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.examples import Example, examples_of
+from tangy_tui.language.intent_training import train
+from tangy_tui.language.steering import IN_GAMES, WHILE_TEACHING, steering_texts
+from tangy_tui.language.stop_likelihood import MODEL, STOP
+from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
+from tangy_tui.language.words import Words, words_of
+
+TOLERANCE = 1e-5
+OFTEN = 6  # how many times a sentence counts at most
+OWN = 4  # how many times each phrase of an activity counts
+EVERY = 6  # every so many sentences are taken that ask for an activity's behaviours
+GAMES = frozenset(("bingo",))
+"""What the games are called in the sentences."""
+
+
+def stop_examples(without: str = "") -> tuple[Example, ...]:
+    """Return the sentences, in a fixed order; `without` is a written set that is left out."""
+    found: list[Example] = []
+    for texts, meant in ((stop_texts(without), STOP), (other_stop_texts(without), "")):
+        for text, times in Counter(texts).items():
+            found += [Example(_plain(words_of(text)), meant)] * min(times, OFTEN)
+    for text in (*YES, *NO, *steering_texts(WHILE_TEACHING), *steering_texts(IN_GAMES)):
+        found += [Example(_plain(words_of(text)), "")] * OWN
+    for activity in map(load_activity, shipped_activities()):
+        phrases = Phrasebook(activity, ()).phrases
+        found += [Example(_plain(words_of(phrase)), "") for phrase in phrases] * OWN
+        found += [Example(_plain(e.words), "") for e in examples_of(activity)[::EVERY]]
+    return tuple(found)
+
+
+def digest_of(examples: Iterable[Example]) -> str:
+    """Return the digest that says which sentences a model was learnt from."""
+    return hashlib.sha256(json.dumps(list(examples)).encode()).hexdigest()[:32]
+
+
+def main() -> None:
+    """Learn the stops anew."""
+    examples = stop_examples()
+    model = json.loads(train(examples, TOLERANCE).to_json())
+    told = json.dumps({"made_of": digest_of(examples), **model}, separators=(",", ":"))
+    Path(__file__).with_name(MODEL).write_text(told, encoding="utf-8")
+
+
+def _plain(words: Iterable[str]) -> Words:
+    return tuple(_each(words))
+
+
+def _each(words: Iterable[str]) -> Iterator[str]:
+    for word in words:
+        yield "game" if word in GAMES else word.replace("'", "")
+
+
+if __name__ == "__main__":
+    main()

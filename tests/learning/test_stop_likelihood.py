@@ -1,0 +1,51 @@
+"""What was learnt of sentences that stop the robot without a verb of stopping."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+
+import pytest
+
+from tangy_tui.language.stop_likelihood import MODEL, stop_likelihood
+from tangy_tui.language.stop_phrases import stop_sets, stop_texts
+from tangy_tui.language.stop_sentence import stops
+from tangy_tui.language.stop_training import digest_of, stop_examples
+
+
+@pytest.mark.parametrize(
+    "said", ["that'll do now", "don't you come any closer", "get away from my foot", "not so fast"]
+)
+def test_everyday_words_stop_without_a_verb_of_stopping(said: str) -> None:
+    assert stops(said)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "that'll do for the sugar",
+        "come a bit closer",
+        "get away for the weekend",
+        "hold on i have that one",
+        "undo that",
+        "call the next number",
+    ],
+)
+def test_other_words_like_these_stop_nothing(said: str) -> None:
+    assert not stops(said)
+
+
+def test_an_unknown_sentence_has_a_likelihood_between_none_and_all() -> None:
+    assert 0 < stop_likelihood(("zyxt", "qwv")) < 0.6
+
+
+def test_a_set_that_is_left_out_teaches_nothing() -> None:
+    own = set(stop_sets()["everyday"]["stops"])
+    assert own <= set(stop_texts())
+    assert not {"let's call it a day tangy", "brakes tangy brakes"} & set(stop_texts("everyday"))
+
+
+@pytest.mark.slow
+def test_the_model_that_comes_with_tangy_is_of_the_sentences_as_they_are() -> None:
+    kept = json.loads(files("tangy_tui.language").joinpath(MODEL).read_text(encoding="utf-8"))
+    assert kept["made_of"] == digest_of(stop_examples())
