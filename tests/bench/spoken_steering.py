@@ -15,14 +15,16 @@ from collections import Counter
 from pathlib import Path
 
 from tangy_tui.language.steering import IN_GAMES, WAYS, steering_of
+from tangy_tui.language.stop_phrases import stop_sets
 from tangy_tui.learning.verification import Say
 from tangy_tui.speech.decoder import make_decoder
 from tangy_tui.speech.evidence import USUAL
 from tangy_tui.speech.understanding import replied, wanted
 from tests.bench.speech import BOOK
-from tests.bench.spoken_stops import QUOTES, VOICES, Said, Voices, sayings
+from tests.bench.spoken_stops import VOICES, Said, Voices, sayings
 
 TALK = "talk"
+OTHERS = "third"  # the set whose other sentences are said
 
 
 def main() -> None:
@@ -40,7 +42,7 @@ def main() -> None:
         for place, (way, text) in enumerate(texts)
         for number in range(chosen.voices)
     ]
-    others = [one for one in sayings(QUOTES, 1) if one.kind != "stops"]
+    others = [one for one in sayings(stop_sets()[OTHERS], 1) if one.kind != "stops"]
     with tempfile.TemporaryDirectory() as folder:
         voices = Voices(Path(folder))
         voices.say([*said, *others])
