@@ -1,7 +1,7 @@
-"""Learning which behaviour a sentence asks for, from an activity's examples, with scikit-learn.
+"""Training of the intent model on an activity's examples, with scikit-learn.
 
-`python -m tangy_tui.language.intent_training` learns the activities that come with Tangy anew, and
-puts what was learnt beside this module: run it after `asking.toml` or a phrase has changed.
+`python -m tangy_tui.language.intent_training` trains the models of Tangy's activities, which are
+stored beside this module: run it after a change of `asking.toml` or of a phrase.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from tangy_tui.language.examples import Example
 from tangy_tui.language.intent_model import IntentModel, features
 
-FEWEST = 3  # examples that a feature is in; rarer ones tell nothing of other sentences
+FEWEST = 3  # examples with a feature; rarer features do not generalise
 INVERSE_REGULARISATION = 10.0  # scikit-learn's C
 MOST_STEPS = 120
 TOLERANCE = 1e-3
@@ -20,7 +20,7 @@ DIGITS = 2
 
 
 def train(examples: Sequence[Example], tolerance: float = TOLERANCE) -> IntentModel:
-    """Fit a model to examples. It takes a few seconds, and is the same each time.
+    """Fit a model to examples. It takes a few seconds, and is deterministic.
 
     A lower `tolerance` fits them more closely, and takes longer.
     """
@@ -37,7 +37,7 @@ def train(examples: Sequence[Example], tolerance: float = TOLERANCE) -> IntentMo
     classifier.fit(table, [example.behaviour for example in examples])
     weights = np.round(classifier.coef_, DIGITS)
     offsets = classifier.intercept_
-    if len(classifier.classes_) == 2:  # then scikit-learn keeps one row for both
+    if len(classifier.classes_) == 2:  # binary: scikit-learn has one row for both classes
         weights, offsets = np.vstack([0 * weights, weights]), np.array([0.0, offsets[0]])
     names = vectorizer.get_feature_names_out()
     return IntentModel(
@@ -52,7 +52,7 @@ def train(examples: Sequence[Example], tolerance: float = TOLERANCE) -> IntentMo
 
 
 def main() -> None:
-    """Learn the activities that come with Tangy anew."""
+    """Train the models of the activities that come with Tangy."""
     from tangy_profiles.activity import load_activity, shipped_activities
     from tangy_tui.language.intents import SHIPPED, Intents
 

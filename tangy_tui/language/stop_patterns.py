@@ -344,11 +344,6 @@ ENDS_A_THOUGHT = frozenset(("this", "that", "and"))
 FORBIDS = re.compile(
     r"\b(?:not|never|nobody|(?:do|does|did|wo|would|could|should|need|must)nt)\b|.* to \w+ and$"
 )
-NEEDLESS = re.compile(
-    r"\b(?:no|any|little|hardly a|hardly any) (?:need|reason|point|cause|use|hurry|time|wish) to\b"
-    r"|\b(?:too (?:early|soon|late)|silly|a pity|a shame|nothing|no one) (?:\w+ )?to\b"
-)
-"""Words that deny a reason or wish to stop."""
 NO_CRY_AFTER = frozenset(
     (
         *("to", "dont", "not", "never", "cant", "cannot", "couldnt", "wont", "wouldnt", "shouldnt"),
@@ -366,8 +361,6 @@ NO_CRY_AFTER = frozenset(
 """Words after which stopping is a noun, or the action of somebody."""
 NO_COMMAND_AFTER = NO_CRY_AFTER | set(f"{_FINITE}|be|been|were|get|got|let|just".split("|"))
 """Words after which the rest belongs to their clause."""
-MAY_BE_MISHEARD = frozenset(("to", "you", "i", "the", "at", "and", "a"))
-"""Those that are short and unstressed, so that other words are often misheard as them."""
 REPORTS_OR_ASKS = re.compile(
     r"(?:where|when|what|who|which|how|why|does|do|did|is|are|was|has|have|he|she|they|my|his|her)"
     r"\b"

@@ -1,7 +1,7 @@
-"""Ways to stop a robot or a game, and sentences that stop nothing: stopping is learnt from them.
+"""Sentences that stop a robot or a game, and sentences that do not.
 
-Some were written for this (`stop_sentences.toml`), many more are put together by chance, the same
-ones each time, from the texts of `stopping.toml`. Activities add what else Tangy is asked for.
+The stop decoder's language model and the stop model are trained on them. Some were written for it
+(`stop_sentences.toml`); most are generated from `stopping.toml` with a fixed seed.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from tangy_tui.language.stop_sentence import STOPS
 from tangy_tui.language.words import spoken, words_of
 
 EACH = 40
-"""How many sentences are made of each form."""
+"""The number of sentences generated from each template."""
 PLAIN = 3
-"""How many times each of the plain ones counts."""
+"""The repetitions of each plain sentence."""
 WRITTEN = 6
-"""How many times each of `stop_sentences.toml` counts."""
+"""The repetitions of each sentence of `stop_sentences.toml`."""
 SEED = 1
 OTHERS = ("others", "talk", "ends")
 _SLOT = re.compile(r"{(\w+)}")
@@ -31,7 +31,7 @@ _SLOT = re.compile(r"{(\w+)}")
 
 @cache
 def stop_texts(without: str = "") -> tuple[str, ...]:
-    """Return sentences that stop, in lower case; common ones come several times.
+    """Return sentences that stop the robot, in lower case; common ones are repeated.
 
     Args:
         without: the name of a written set that is left out, for figures that are quoted on it.
@@ -41,7 +41,7 @@ def stop_texts(without: str = "") -> tuple[str, ...]:
 
 @cache
 def other_stop_texts(without: str = "") -> tuple[str, ...]:
-    """Return sentences that stop nothing, most with words of stopping, in lower case."""
+    """Return sentences that do not stop the robot, in lower case."""
     talk = (spoken(words_of(text)) for text in templates()["talk"]["other"])
     return (*_made("said_of_others", "others"), *talk, *_written(OTHERS, without))
 
@@ -50,6 +50,12 @@ def other_stop_texts(without: str = "") -> tuple[str, ...]:
 def stop_sets() -> Mapping[str, Mapping[str, Sequence[str]]]:
     """Return the written sets by name, each with `stops`, `others` and most with `talk`."""
     return _read("stop_sentences.toml")
+
+
+@cache
+def game_words() -> frozenset[str]:
+    """Return what the game is called in the sentences."""
+    return frozenset(_read("stopping.toml")["called"])
 
 
 def _written(kinds: Collection[str], without: str) -> tuple[str, ...]:

@@ -1,11 +1,11 @@
-"""Sentences with which people stop the robot or the game, told from those that mention stopping.
+"""Detection of sentences that stop the robot or the game, as opposed to mentions of stopping.
 
 The rules know the verbs of stopping, and look at their objects. These stop the robot: no object
 ("stop"), the robot, its movements, the game, and how quickly ("stop right away"). These do not:
 actions of people ("stop teasing her"), other things ("stop the music"), places ("stop at the
 table"), negations ("don't stop") and reports ("the rain has stopped"). Sentences without such a
 verb ("that'll do now") are judged by what was learnt (`stop_likelihood`). If in doubt the robot
-stops: a robot that stands hurts nobody.
+stops, because a stopped robot hurts nobody.
 """
 
 from __future__ import annotations
@@ -22,8 +22,6 @@ from tangy_tui.language.stop_patterns import (
     CRIES,
     ENDS_A_THOUGHT,
     FORBIDS,
-    MAY_BE_MISHEARD,
-    NEEDLESS,
     NO_COMMAND_AFTER,
     NO_CRY_AFTER,
     NO_CRY_BEFORE,
@@ -56,11 +54,11 @@ STOPS = (
     *("switch it off", "switch the robot off", "turn it off", "turn the robot off"),
     *("do not move", "do not come closer", "emergency stop now", "tangy stand still"),
 )
-"""The most usual stop commands, with the words they take; recognition listens for these first."""
+"""The most usual stop commands, which speech recognition listens for first."""
 
 TELLING = ("the", "robot", "machine", "game", "emergency", "everything", "immediately")
-"""Words that are looked for in what was typed in a hurry."""
-SAME_WORD = 0.7  # likeness from which an unknown word is taken for a slip of one of them
+"""Words whose misspellings are corrected."""
+SAME_WORD = 0.7  # similarity from which an unknown word counts as a misspelling
 LIKELY = 0.6  # likelihood from which words without a verb of stopping stop the robot
 FEWEST = 3  # words that such a sentence has; fewer are mostly commands to the program
 _VERB = re.compile(r"\b(?:stop|halt)")  # what the rules judge alone
@@ -75,8 +73,8 @@ def stops(text: str, game: Collection[str] = ()) -> bool:
     """Return whether a typed or spoken sentence stops the robot.
 
     Args:
-        text: what was typed or heard.
-        game: the words that the game is called by, in lower case: they are no other things.
+        text: the sentence.
+        game: the words of the activity's title, in lower case, which mean the game.
     """
     whole = _joined(words_of(text))
     parts = (_joined(words_of(part)) for part in _PAUSES.split(text[:LONGEST_TEXT]))
@@ -84,12 +82,14 @@ def stops(text: str, game: Collection[str] = ()) -> bool:
     aimed = any(_is_aimed(_mended(clause, game)) for clause in clauses if clause)
     if aimed or whole.replace(" ", "") in _run_together():
         return True
-    means_else = steering_of(text) is not None or yes_or_no(text) is not None
-    return not means_else and _is_likely(_mended(whole, game))
+    judged_by_rules = _VERB.search(whole) or len(whole.split(" ")) < FEWEST
+    if judged_by_rules or steering_of(text) is not None or yes_or_no(text) is not None:
+        return False
+    return likelihood(text, game) >= LIKELY
 
 
 def prepare() -> None:
-    """Make ready for the first sentence, which takes a tenth of a second, before somebody waits."""
+    """Compile the patterns in advance, which takes a tenth of a second."""
     stops(STOPS[0])
 
 
@@ -98,24 +98,13 @@ def stops_whatever_follows(words: str) -> bool:
     return bool(_CLEAR.search(words)) and stops(words)
 
 
-def ends_in_stop(words: str) -> bool:
-    """Say whether words that may have been misheard end in a cry to stop, whatever came before."""
-    *before, last = words.split(" ")
-    cried = last in CRIES and bool(before) and before[-1] not in NO_CRY_AFTER - MAY_BE_MISHEARD
-    if not cried or REPORTS_OR_ASKS.match(words):
-        return False
-    needless = before[-1] == "to" and (FORBIDS.search(words) or NEEDLESS.search(words))
-    return not needless
-
-
-def _is_likely(sentence: str) -> bool:
-    """Say whether a sentence without a verb of stopping is likely to stop the robot."""
-    words = tuple(sentence.split(" "))
-    return len(words) >= FEWEST and not _VERB.search(sentence) and stop_likelihood(words) >= LIKELY
+def likelihood(text: str, game: Collection[str] = ()) -> float:
+    """Return the probability, from 0 to 1, that words stop the robot, by what was learnt alone."""
+    return stop_likelihood(tuple(_mended(_joined(words_of(text)), game).split(" ")))
 
 
 def _is_aimed(clause: str) -> bool:
-    """Say whether a clause stops the robot, after any calls and askings."""
+    """Return whether a clause stops the robot, after any calls and requests."""
     seen, reached = {0}, [0]
     while reached:
         at = reached.pop()
@@ -123,14 +112,14 @@ def _is_aimed(clause: str) -> bool:
             return True
         ends = {found.end() for found in (p.match(clause, at) for p in before()) if found}
         if (said := command().match(clause, at)) and clause[said.end() :].startswith(" "):
-            ends.add(said.end() + 1)  # it is said twice
+            ends.add(said.end() + 1)  # it may be repeated
         reached += ends - seen
         seen |= ends
     return _is_two_words(clause) or _ends_in_a_cry(clause) or _ends_in_a_command(clause)
 
 
 def _is_two_words(clause: str) -> bool:
-    """Say whether a clause is a cry and its object, or a name that is called and a cry."""
+    """Return whether a clause is a cry with its object, or a name with a cry."""
     first, _, last = clause.partition(" ")
     if not last or " " in last:
         return False
@@ -140,7 +129,7 @@ def _is_two_words(clause: str) -> bool:
 
 
 def _ends_in_a_cry(clause: str) -> bool:
-    """Say whether a clause ends in a cry to stop, of which what comes before says nothing."""
+    """Return whether a clause ends in a cry to stop that is independent of the words before."""
     found = cry().fullmatch(clause)
     if found is None or ASKS_FIRST.match(clause):
         return False
@@ -155,7 +144,7 @@ def _ends_in_a_cry(clause: str) -> bool:
 
 
 def _ends_in_a_command(clause: str) -> bool:
-    """Say whether an alarmed person ends in a command to stop, as in "my foot hold it"."""
+    """Return whether an alarmed clause ends in a stop command, as in "my foot hold it"."""
     if ASKS_FIRST.match(clause) or REPORTS_OR_ASKS.match(clause):
         return False
     words = clause.split(" ")
@@ -173,7 +162,7 @@ def _joined(words: Iterable[str]) -> str:
 
 
 def _mended(clause: str, game: Collection[str]) -> str:
-    """Write words as the patterns have them: slips of a hurry, and what the game is called."""
+    """Correct misspellings, and replace the words of the activity's title by "game"."""
     return " ".join(_mend(word, game) for word in clause.split(" "))
 
 

@@ -19,15 +19,13 @@ from tangy_tui.language.examples import Example, examples_of
 from tangy_tui.language.intent_training import train
 from tangy_tui.language.steering import IN_GAMES, WHILE_TEACHING, steering_texts
 from tangy_tui.language.stop_likelihood import MODEL, STOP
-from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
+from tangy_tui.language.stop_phrases import game_words, other_stop_texts, stop_texts
 from tangy_tui.language.words import Words, words_of
 
 TOLERANCE = 1e-5
 OFTEN = 6  # how many times a sentence counts at most
 OWN = 4  # how many times each phrase of an activity counts
 EVERY = 6  # every so many sentences are taken that ask for an activity's behaviours
-GAMES = frozenset(("bingo",))
-"""What the games are called in the sentences."""
 
 
 def stop_examples(without: str = "") -> tuple[Example, ...]:
@@ -64,7 +62,7 @@ def _plain(words: Iterable[str]) -> Words:
 
 def _each(words: Iterable[str]) -> Iterator[str]:
     for word in words:
-        yield "game" if word in GAMES else word.replace("'", "")
+        yield "game" if word in game_words() else word.replace("'", "")
 
 
 if __name__ == "__main__":

@@ -33,8 +33,6 @@ from tangy_tui.speech.stop_decoder import StopDecoder
 SHORTEST = 0.1  # s; less cannot hold a word, and an empty buffer raises IndexError
 MODEL = "en-us/"
 AMONG_STOPS = 1_500  # everyday words of the stop decoder
-HINTS = frozenset(("stop", "stops", "stopped", "halt", "freeze", "emergency"))
-"""Words of which both decoders must hear one if the stop decoder is not sure."""
 UNKNOWN_MARGIN = -0.5  # the margin of most speech that is no command
 
 # Confidence of the paper's n-gram model: a logistic regression over two scores of the best path,
@@ -122,8 +120,6 @@ class TwoDecoders:
             return AcousticEvidence(stop, "", UNKNOWN_MARGIN, 1.0, seconds, stop)
         phrase, garbage, _ = best_path(self._grammar, pcm, expecting)
         words, score = self._beside.answer()
-        if HINTS.isdisjoint(words.split()):
-            stop = ""  # only one of the decoders heard it, and was not sure
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or an unfinished phrase

@@ -1,9 +1,9 @@
-"""Ears for stopping alone: every utterance goes through them, whatever else is listened for.
+"""The stop decoder: it decodes every utterance, whatever else is expected.
 
-One n-gram model knows how people stop a robot or a game and how they talk of stopping other things,
-with everyday words between them. Where its likeliest words stop the robot, it was a stop for sure.
-Where only one of the next likely sentences does, it may have been one: a synthetic or foreign voice
-is often heard as "tell the robot" before it is heard as "stop the robot".
+An n-gram model covers sentences that stop a robot or a game and others, with everyday words in
+between. If its best path stops the robot, it is sure. If the mean likelihood of the next best
+sentences is high, it is not, and a command that the other decoders hear has priority: a synthetic
+or foreign voice is often recognised as "tell the robot" before "stop the robot".
 """
 
 from __future__ import annotations
@@ -12,34 +12,35 @@ from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
-from tangy_tui.language.stop_sentence import ends_in_stop, stops
+from tangy_tui.language.stop_sentence import likelihood, stops
 from tangy_tui.speech.language import dictionary, open_model, words_of
 from tangy_tui.speech.noise_reduction import cleared
 from tangy_tui.speech.pocketsphinx_search import add_model, best_path, make_search, next_best
 
-SHARE = 0.05  # of everyday words between those of stopping
-DOUBTED = 5  # different sentences, the likeliest ones, of which one may be a stop
-SEGMENTATIONS = 60  # of the likeliest paths that are looked through for them
+SHARE = 0.05  # of everyday words
+GUESSES = 5  # n-best sentences to judge
+SEGMENTATIONS = 60  # n-best paths to search for them
+LIKELY = 0.5  # mean likelihood of these sentences from which it is a stop
 ACTIVE = 1500
 ACCENTS = {
     "stop": ("S T AO P", "S T AH P"),
     "stopped": ("S T AO P T",),
     "robot": ("R OW B AO T", "R OW B AH T"),
 }
-"""How British and other voices say what the American dictionary has in one way alone."""
+"""Pronunciations of British and other voices that the American dictionary lacks."""
 
 Known = Mapping[str, Sequence[str]]
 
 
 class HeardStop(NamedTuple):
-    """The sentence that stops the robot, "" if there was none, and whether it is beyond doubt."""
+    """The sentence that stops the robot ("" if none), and whether it is certain."""
 
     sentence: str = ""
     sure: bool = False
 
 
 class StopDecoder:
-    """Finds cries to stop. Its limits were set on sets of `stop_sentences.toml`."""
+    """Finds stops. Its limit was tuned on `stop_sentences.toml`, leaving one set out at a time."""
 
     def __init__(
         self,
@@ -49,14 +50,14 @@ class StopDecoder:
         known: Known,
         game: Sequence[str] = (),
     ) -> None:
-        """Make it; without any text that can be pronounced it finds nothing.
+        """Build the decoder; without a text that has pronunciations it finds nothing.
 
         Args:
-            texts: ways to stop, common ones several times.
+            texts: sentences that stop the robot, common ones repeated.
             others: sentences about stopping other things.
             everyday: the probabilities of everyday words.
-            known: how words are pronounced.
-            game: the words that the game is called by.
+            known: the pronunciations of words.
+            game: the words of the activity's title.
         """
         self._game = frozenset(game)
         texts, others = _sayable(texts, known), _sayable(others, known)
@@ -75,11 +76,9 @@ class StopDecoder:
         words, _, _ = best_path(self._search, cleared(pcm), "all")
         if stops(words, self._game):
             return HeardStop(words, sure=True)
-        guesses = dict.fromkeys(next_best(self._search, SEGMENTATIONS))
-        for guess in islice(guesses, DOUBTED):
-            if stops(guess, self._game):
-                return HeardStop(guess)
-        return HeardStop(words) if ends_in_stop(words) else HeardStop()
+        guesses = dict.fromkeys((words, *next_best(self._search, SEGMENTATIONS)))
+        judged = [likelihood(guess, self._game) for guess in islice(guesses, GUESSES)]
+        return HeardStop(words) if sum(judged) >= LIKELY * len(judged) else HeardStop()
 
 
 def _sayable(texts: Sequence[str], known: Known) -> list[str]:

@@ -78,14 +78,15 @@ def wanted(
     )
     given = tuple(phrasebook.table.answers) if learnt else ()
     answers = (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions)
+    said = tuple(phrasebook.spoken() if phrases is None else phrases)
     return Wanted(
-        (*(phrasebook.spoken() if phrases is None else phrases), *STOPS, *teaching),
+        (*said, *STOPS, *teaching),
         (*answers, *STOPS, *games, *given),
         STOPS,
         {**OWN_NAME, **phrasebook.pronunciations()},
         settings,
         stop_texts(),
-        other_stop_texts(),
+        (*other_stop_texts(), *said),
         tuple(sorted(phrasebook.game)),
     )
 

@@ -148,7 +148,8 @@ def main() -> None:
     if chosen.set:
         use_model(train(stop_examples(chosen.set), TOLERANCE))
     listened = wanted(BOOK, USUAL)
-    texts, other_texts = stop_texts(chosen.set), other_stop_texts(chosen.set)
+    texts = stop_texts(chosen.set)
+    other_texts = (*other_stop_texts(chosen.set), *BOOK.spoken())
     decoder = make_decoder(replace(listened, stops=texts, no_stops=other_texts))
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
     read = stop_sets()[chosen.set] if chosen.set else tomllib.loads(QUOTES.read_text("utf-8"))

@@ -14,7 +14,13 @@ from tangy_tui.language.stop_training import digest_of, stop_examples
 
 
 @pytest.mark.parametrize(
-    "said", ["that'll do now", "don't you come any closer", "get away from my foot", "not so fast"]
+    "said",
+    [
+        "that'll do now",
+        "don't you come any closer",
+        "get away from my foot",
+        "please keep away from me",
+    ],
 )
 def test_everyday_words_stop_without_a_verb_of_stopping(said: str) -> None:
     assert stops(said)

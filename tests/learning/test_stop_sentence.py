@@ -14,7 +14,6 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.stop_phrases import stop_sets
 from tangy_tui.language.stop_sentence import (
     STOPS,
-    ends_in_stop,
     stops,
     stops_whatever_follows,
 )
@@ -176,27 +175,3 @@ def test_a_long_line_is_judged_at_once(once: str) -> None:
 )
 def test_what_names_the_robot_stops_it_whatever_follows(words: str, clear: bool) -> None:
     assert stops_whatever_follows(words) is clear
-
-
-@pytest.mark.parametrize(
-    ("heard", "meant"),
-    [
-        ("kill that robot to stop", True),
-        ("we you stop", True),
-        ("stop", False),
-        ("the bus stop", False),
-        ("where does the bus stop", False),
-        ("she wants to stop", False),
-        ("we will never stop", False),
-        ("stop the kettle", False),
-        ("there is no reason to stop", False),
-        ("no need to stop", False),
-        ("you do not have to stop", False),
-        ("it is too early to stop", False),
-        ("no no to stop", True),
-    ],
-)
-def test_words_that_may_be_misheard_end_in_a_cry_unless_they_tell_or_ask(
-    heard: str, meant: bool
-) -> None:
-    assert ends_in_stop(heard) == meant
