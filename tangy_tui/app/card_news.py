@@ -17,9 +17,9 @@ BY = "tangy"
 
 @dataclass(frozen=True, slots=True)
 class CardNote:
-    """What there is to tell of cards: to staff, and to the log (see `StaffAction`).
+    """News about cards for staff and for the log (see `StaffAction`).
 
-    `news` is what Tangy learnt or doubts; None if staff know it already.
+    `news` is what Tangy learnt or doubts; None: staff already know it.
     """
 
     did: StaffDeed

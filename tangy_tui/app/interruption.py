@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class TakenUp:
-    """A game that goes on, and the ids of those who came meanwhile and cannot join it."""
+    """A resumed game, and the ids of people who came meanwhile and cannot join it."""
 
     past: PastGame
     waiting: tuple[str, ...] = ()
@@ -33,21 +33,21 @@ def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
 
 
 def can_join(workspace: Workspace, past: PastGame) -> bool:
-    """Say whether people can join a game that goes on.
+    """Return whether people can join an interrupted game that is resumed.
 
-    Simulated people cannot, and not where the game keeps facts of each person.
+    Simulated people cannot, nor can people join an activity that keeps facts of each person.
     """
     return past.world != SIMULATED and bool(workspace.activity.deck.columns)
 
 
 def take_up(workspace: Workspace, past: PastGame) -> TakenUp:
-    """Let people sit as they sat in a game that is to go on, in the same room.
+    """Restore the seats and the room of an interrupted game that is resumed.
 
-    Who came meanwhile joins it, on the seats after the others, if that can be. Who takes part no
-    more is on the list for this game.
+    People who came meanwhile join it on the next seats if possible. People who no longer take part
+    count as participants of this game.
 
     Raises:
-        TangyError: its room cannot be had, or is too small.
+        TangyError: its room is not available, or is too small.
     """
     if not workspace.room_is_given:
         room = past.beginning.room

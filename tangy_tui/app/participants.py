@@ -71,7 +71,7 @@ class Participants:
         self.read_people()
 
     def gather(self, ids: Sequence[str]) -> None:
-        """Let exactly these people take part, in this order, whoever else is registered."""
+        """Make exactly these people the participants, in this order."""
         there = {person.id: person for person in self._sample}
         self._sample = tuple(there.get(id, Person(id, id)) for id in ids)
         self._place()

@@ -55,12 +55,12 @@ class SwitchingOn(Generic[Opened]):
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """What was started so far; the last one is being started."""
+        """The parts started so far; the last one is being started."""
         return self._cancellation.parts
 
     @property
     def done(self) -> tuple[int, int] | None:
-        """How many pieces of the last part are done, of how many; None: it has none."""
+        """The progress of the last part: pieces done and in total; None: it has no pieces."""
         return self._cancellation.done
 
     def cancel(self) -> None:
@@ -80,8 +80,8 @@ def switched_on(
 
     Args:
         opening: opens the robot, or its bench.
-        stepped: in a hurry, where that can be.
-        tell: is told what is being started.
+        stepped: run simulated time as fast as possible, on a bench.
+        tell: called with the name of each part when it is started.
 
     Raises:
         TangyError: it cannot be switched on.

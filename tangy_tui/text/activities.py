@@ -105,7 +105,7 @@ def stage_words(activity: Activity | None, stage: str) -> str:
 
 
 def selector_words(selector: str) -> str:
-    """Say what a selector of an activity's file means."""
+    """Tell what a selector of an activity's file means."""
     return SELECTORS.get(selector) or f"the person {selector}"
 
 
@@ -166,5 +166,5 @@ def activity_note(activity: Activity) -> str:
 
 
 def chosen_words(title: str) -> str:
-    """Say that an activity was chosen."""
+    """Tell that an activity was chosen."""
     return f"From now on you teach and play {title}."

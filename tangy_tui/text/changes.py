@@ -16,7 +16,7 @@ Name = Callable[[str], str]
 
 
 def changed_lines(event: GameChanged, activity: Activity, name: Name) -> list[str]:
-    """Say what changed, and what Tangy says to the group about it."""
+    """Tell what changed, and what Tangy says to the group about it."""
     said = [f"   Tangy says: {event.said}"] if event.said else []
     return [changed_words(event, activity, name), *said]
 

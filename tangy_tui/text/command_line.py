@@ -19,7 +19,7 @@ def no_screens(why: str) -> str:
 
 
 def report_in(place: object) -> str:
-    """Say where a report was written."""
+    """Tell where a report was written."""
     return f"The report is in {place}."
 
 
@@ -29,7 +29,7 @@ def cut_off(file: object, seconds: float) -> str:
 
 
 def recordings_deleted(count: int) -> str:
-    """Say how many recordings were deleted."""
+    """Tell how many recordings were deleted."""
     deleted = f"{counted(count, 'recording')} deleted"
     return f"{deleted}. Tangy records nothing more until a person agrees again."
 

@@ -26,7 +26,7 @@ NONE_LEFT = "The demonstrations agree in every situation."
 
 
 def left_open_words(situation: str) -> str:
-    """Say that a conflict was not settled."""
+    """Tell that a conflict was not settled."""
     return f"{situation}: left open. In a game Tangy will ask you."
 
 
@@ -41,7 +41,7 @@ def settled_words(answered: str, aside: int) -> str:
 
 
 def done_words(settled: int, left: int) -> str:
-    """Say how many conflicts were settled and left open."""
+    """Tell how many conflicts were settled and left open."""
     if not settled and not left:
         return NONE_LEFT
     if not left:

@@ -53,12 +53,12 @@ def split_words(row: ListRow, step: int) -> tuple[str, str]:
 
 
 def nothing_after_words(step: int) -> str:
-    """Say that a demonstration cannot be split after its last step."""
+    """Tell that a demonstration cannot be split after its last step."""
     return f"Nothing comes after step {step}: choose one before it."
 
 
 def refused_words(row: ListRow) -> str:
-    """Say why a demonstration cannot be merged or split."""
+    """Tell why a demonstration cannot be merged or split."""
     why = "not finished yet" if row.state == UNFINISHED else f"not in use: {row.state}"
     return f"Demonstration {row.number} by {row.teacher} is {why}."
 

@@ -119,7 +119,7 @@ def mark_of(fault: Fault) -> str:
 
 
 def kind_words(fault: Fault) -> str:
-    """Say whether a fault is critical."""
+    """Tell whether a fault is critical."""
     return "critical" if fault.critical else "non-critical"
 
 

@@ -168,7 +168,7 @@ def response_words(response: Response, belief: Beta, name: Name) -> str:
 
 
 def begun_words(number: int) -> str:
-    """Say that a game begins."""
+    """Tell that a game begins."""
     return f"Game {number} begins."
 
 
@@ -183,5 +183,5 @@ def over_words(steps: int) -> str:
 
 
 def broken_off_words(steps: int, reason: str) -> str:
-    """Say that a game stopped, and why."""
+    """Tell that a game stopped, and why."""
     return f"The game stopped after {counted(steps, 'step')}. {reason}"

@@ -165,6 +165,6 @@ def nobody_called(name: str, there: Sequence[str]) -> str:
 
 
 def written_words(tables: Sequence[tuple[str, int]], place: object) -> str:
-    """Say which tables were written, with how many rows each."""
+    """Tell which tables were written, with how many rows each."""
     told = listed(f"{name} ({counted(rows, 'row')})" for name, rows in tables)
     return f"Written to {place}: {told}."

@@ -20,7 +20,7 @@ def comes_later_words(kind: str) -> str:
 
 
 def lifted_words(kind: str) -> str:
-    """Say that a fault was lifted."""
+    """Tell that a fault was lifted."""
     return f"Lifted: {kind}."
 
 

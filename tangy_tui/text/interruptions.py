@@ -45,16 +45,16 @@ def begins_anew(verb: str) -> str:
 
 
 def waiting_words(names: Sequence[str]) -> str:
-    """Say that people who came meanwhile cannot join the game that goes on."""
+    """Tell that people who came meanwhile cannot join the resumed game."""
     verb = "plays" if len(names) == 1 else "play"
     return f"{listed(names)} cannot join this game in the middle, and {verb} in the next one."
 
 
 def with_words(names: Sequence[str]) -> str:
-    """Say who has come meanwhile, beside going on."""
+    """Describe the choice to resume with people who came meanwhile."""
     return f"paused at first; {listed(names)} joins" if names else RESUME[2]
 
 
 def report_words(path: str) -> str:
-    """Say where the report of an ended game is."""
+    """Tell where the report of an ended game is."""
     return f"The report is in {path}."

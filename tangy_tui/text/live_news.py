@@ -47,7 +47,7 @@ def event_words(event: Event, name: Name) -> str:
 
 
 def seated_words(seated: Seated, name: Name) -> str:
-    """Say who sits at another person's seat."""
+    """Tell who sits at another person's seat."""
     who = name(seated.person)
     if seated.person == seated.place:
         return f"{who} sits at {who}'s place again."

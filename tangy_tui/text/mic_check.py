@@ -52,7 +52,7 @@ def numbered(asked: Sequence[CalibrationPrompt]) -> list[str]:
 
 
 def advice_words(advice: SoundAdvice) -> str:
-    """Say what to change about the sound."""
+    """Tell what to change about the sound."""
     match advice:
         case "turn down":
             return "Some of it was too loud: move a little away, or turn the microphone down."

@@ -17,7 +17,7 @@ def question(games: int) -> str:
 
 
 def settled_words(games: int, world: str) -> str:
-    """Say in which world the games now count."""
+    """Tell in which world the games now count."""
     counts = "counts" if games == 1 else "count"
     return f"{counted(games, 'game')} now {counts} as {world}. {LATER}"
 

@@ -201,7 +201,7 @@ def take_back_words(change: Event[EventRecord], name: str) -> tuple[str, str]:
 
 
 def nothing_back_words(name: str) -> str:
-    """Say that there is no change to take back."""
+    """Tell that there is no change to take back."""
     return f"There is nothing to take back for {name}."
 
 

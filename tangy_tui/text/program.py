@@ -39,7 +39,7 @@ def left_out_words(first: str, others: int) -> str:
 
 
 def too_small_words(width: int, height: int, least: tuple[int, int]) -> str:
-    """Say that the window is too small; sizes are in columns and lines."""
+    """Tell that the window is too small; sizes are in columns and lines."""
     return (
         f"Tangy needs {least[0]} x {least[1]} characters; this window has "
         f"{width} x {height}. Make it larger: nothing is lost."

@@ -9,17 +9,17 @@ from tangy_profiles.person import is_guest
 
 
 def added_words(name: str, id: str) -> str:
-    """Say that a person now takes part."""
+    """Tell that a person now takes part."""
     return f"{name} now takes part (id {id})."
 
 
 def archived_words(name: str) -> str:
-    """Say that a person no longer takes part."""
+    """Tell that a person no longer takes part."""
     return f"{name} no longer takes part. Tangy keeps what it knows about {name}."
 
 
 def back_words(name: str) -> str:
-    """Say that a person takes part again."""
+    """Tell that a person takes part again."""
     return f"{name} takes part again."
 
 
@@ -29,7 +29,7 @@ def not_archived(person: str, known: str) -> str:
 
 
 def guest_added_words(name: str, id: str) -> str:
-    """Say that a guest was added."""
+    """Tell that a guest was added."""
     return f"{name} is a guest today (id {id}). Tangy forgets the name tomorrow."
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def status_words(status: FaultStatus) -> str:
-    """Say how a fault ended."""
+    """Tell how a fault ended."""
     match status:
         case "open":
             return "left open"

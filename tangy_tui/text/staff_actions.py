@@ -1,4 +1,4 @@
-"""Words for what staff, or the program beside its behaviours, did in a game."""
+"""Words for the actions of staff, and of the application outside behaviours, in a game."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ if TYPE_CHECKING:
     from tangy_tui.text.situations import Name
 
 PERSON_ID = re.compile(r"\b[a-z]+\d+\b")
-"""The ids of people in what an earlier version noted in words."""
+"""The ids of people in sentences that an earlier version logged."""
 
 
 def action_line(noted: Noted, name: Name) -> str:
-    """Say what was done, and who did it, in a sentence."""
+    """Tell what was done, and who did it, in a sentence."""
     return f"{action_words(noted, name)}{f', by {noted.by}' if noted.by else ''}."
 
 
 def action_words(noted: Noted, name: Name) -> str:
-    """Say what was done, without a full stop."""
+    """Tell what was done, without a full stop."""
     detail, person = noted.detail, name(noted.person) if noted.person else ""
     match noted.did:
         case "resumed":

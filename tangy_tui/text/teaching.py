@@ -133,7 +133,7 @@ OVER = "The game is over. Press {next} for another game, or {learn} to let Tangy
 
 
 def new_words(situation: str) -> str:
-    """Say that a situation was not shown before."""
+    """Tell that a situation was not shown before."""
     return f"New to Tangy: {situation}."
 
 

@@ -65,7 +65,7 @@ async def _ask(program: Program, past: PastGame) -> str | None:
 
 
 async def _add(program: Program) -> None:
-    """Ask who has come, and let them take part."""
+    """Ask who has come, and add them to the participants."""
     from tangy_tui.app.joining import let_join
     from tangy_tui.ui.joining import ask_who_joins
 
@@ -78,7 +78,7 @@ async def _add(program: Program) -> None:
 
 
 async def _resume(program: Program, past: PastGame) -> GameToPlay:
-    """Let people sit as they sat, and say who cannot join."""
+    """Restore the seats, and tell who cannot join."""
     from tangy_tui.app.interruption import take_up
 
     names = program.workspace.names

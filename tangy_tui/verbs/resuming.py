@@ -37,7 +37,7 @@ def past_game(
         asks: a screen asks later; otherwise a new game begins beside it, which is printed.
 
     Raises:
-        TangyError: nothing was interrupted, or its room cannot be had.
+        TangyError: nothing was interrupted, or its room is not available.
     """
     from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
 

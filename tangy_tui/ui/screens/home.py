@@ -1,4 +1,4 @@
-"""The first screen: what can be done with Tangy, each by one letter, and how far it is."""
+"""The home screen: everything that can be done with Tangy, one letter each, with its progress."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 @dataclass(frozen=True, slots=True)
 class MenuItem:
-    """One line: the letter, the name (also its id, in lower case), and what it is for."""
+    """A menu line: its letter, its name (in lower case also its id), and its purpose."""
 
     key: str
     name: str
@@ -32,7 +32,7 @@ class MenuItem:
 
     @property
     def id(self) -> str:
-        """The word it is known by."""
+        """The id of the choice."""
         return self.name.lower()
 
 
@@ -55,11 +55,11 @@ CHOICES = (
 )
 
 States = Callable[[], Mapping[str, str]]
-"""Gives a short line on how far each choice is, by its id: {"teach": "2 demonstrations"}."""
+"""Returns the progress of each choice, by its id: {"teach": "2 demonstrations"}."""
 
 
 class Menu(Inked, can_focus=True):
-    """The choices, one line each, with a line between them where there is room."""
+    """The choices, one line each, with empty lines between if there is room."""
 
     ALLOW_MAXIMIZE = False  # there is nothing beside them
 
@@ -73,7 +73,7 @@ class Menu(Inked, can_focus=True):
     ]
 
     class Chosen(Message):
-        """A choice was made; `id` is its word."""
+        """A choice was made; `id` is its id."""
 
         def __init__(self, id: str) -> None:
             super().__init__()
@@ -87,11 +87,11 @@ class Menu(Inked, can_focus=True):
 
     @property
     def chosen(self) -> MenuItem:
-        """The choice that the cursor is on."""
+        """The choice at the cursor."""
         return self._choices[self._at]
 
     def show(self, states: Mapping[str, str]) -> None:
-        """Say how far each choice is."""
+        """Show the progress of each choice."""
         if states != self._states:
             self._states = dict(states)
             self.refresh()
@@ -107,18 +107,18 @@ class Menu(Inked, can_focus=True):
         self.refresh()
 
     def action_choose(self) -> None:
-        """Choose what the cursor is on."""
+        """Choose the line at the cursor."""
         self.post_message(self.Chosen(self.chosen.id))
 
     def on_key(self, event: events.Key) -> None:
-        """Go to a choice by its letter; Enter takes it, so that text that is pasted does not."""
+        """Move the cursor to a choice by its letter; only Enter chooses (pasted text cannot)."""
         for choice in self._choices:
             if event.key == choice.key:
                 event.stop()
                 self.point(choice.id)
 
     def on_click(self, event: events.Click) -> None:
-        """Choose with the mouse."""
+        """Choose by mouse."""
         line = self._line(event.y - self.styles.padding.top)
         if line is not None:
             self._at = line
@@ -138,11 +138,11 @@ class Menu(Inked, can_focus=True):
         return 2 if self.size.height >= 2 * len(self._choices) + 3 else 1
 
     def _first(self) -> int:
-        """Return the line of the first choice: what stands above it goes where room is scarce."""
+        """Return the first choice's line; the heading above is left out if there is no room."""
         return max(0, min(3, self.size.height - len(self._choices)))
 
     def _line(self, y: int) -> int | None:
-        """Return which choice stands on line `y` of the content."""
+        """Return the choice on line `y` of the content."""
         line, rest = divmod(y - self._first(), self._spacing())
         return line if not rest and 0 <= line < len(self._choices) else None
 
@@ -171,7 +171,7 @@ class Menu(Inked, can_focus=True):
 
 
 class HomeScreen(TangyScreen[None]):
-    """The first screen. Posts `HomeScreen.Chosen` to itself and the app, which opens the rest."""
+    """The home screen. Posts `HomeScreen.Chosen` to itself and the application."""
 
     DEFAULT_CSS = """
     HomeScreen.-behind > * { visibility: hidden; }
@@ -199,7 +199,7 @@ class HomeScreen(TangyScreen[None]):
     def __init__(
         self, states: States = dict, *, choices: Sequence[MenuItem] = CHOICES, note: str = ""
     ) -> None:
-        """Make the screen; `states` is asked each time that it is shown."""
+        """Create the screen; `states` is called whenever it is shown."""
         super().__init__()
         self._states = states
         self._menu = Menu(choices)
@@ -215,13 +215,13 @@ class HomeScreen(TangyScreen[None]):
         )  # fmt: skip
 
     def show_activity(self, title: str) -> None:
-        """Show which activity is taught and played."""
+        """Show the title of the present activity."""
         self._note = title
         self.query_one(StatusLine).show(Status(mode="home", note=title))
         self._menu.show(self._states())
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
-        """Look how far things are."""
+        """Update the progress."""
         self._menu.show(self._states())
 
     def on_menu_chosen(self, event: Menu.Chosen) -> None:

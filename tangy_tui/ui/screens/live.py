@@ -1,8 +1,7 @@
-"""The live screen: a game among people, by a robot that is there, with staff who can step in.
+"""The live screen: a game among people with a live robot, in which staff can intervene.
 
-Behaviours take their time, so they are carried out beside the screen; nothing else touches the
-supervision meanwhile. What must not wait (a STOP, who asks, where the robot is) goes to the robot
-itself.
+Behaviours take time, so they run in a thread; nothing else uses the supervision meanwhile. Urgent
+matters (a STOP, requests, the robot's position) go directly to the robot.
 """
 
 from __future__ import annotations
@@ -76,20 +75,20 @@ from tangy_tui.ui.widgets.status_line import Status
 
 TRACK_SECONDS = 0.2
 SLOW_TRACK_SECONDS = 1.0
-"""Between two pictures of where the robot is."""
+"""The interval between two updates of the robot's position."""
 STAFF_SECONDS = 1.0
-"""Between two pictures of what staff have to see."""
-ANSWERS_SECONDS = 0.7  # to a command, before staff are told that it has to wait
-REST_SECONDS = 5.0  # in which what it does is broken off
+"""The interval between two updates of the staff panel."""
+ANSWERS_SECONDS = 0.7  # for a command, before staff are told that it has to wait
+REST_SECONDS = 5.0  # in which the current behaviour is aborted
 
 MODES: dict[GameWorld, str] = {BENCH: "bench"}
-"""The worlds that the status names otherwise."""
+"""The worlds with another name on the status line."""
 
 T = TypeVar("T")
 
 
 class LiveScreen(PlayScreen):
-    """Games among people. Dismissed with what they added up to."""
+    """Games among people. Dismissed with their totals."""
 
     mode = "live"
     FIRST = STAFF
@@ -106,7 +105,7 @@ class LiveScreen(PlayScreen):
         teacher: str = "",
         past: PastGame | None = None,
     ) -> None:
-        """Make the screen for games in a world that is there; a past one is taken up first."""
+        """Create the screen for games in a live world; a past game is resumed first."""
         super().__init__(
             workspace,
             supervision,
@@ -119,7 +118,7 @@ class LiveScreen(PlayScreen):
         self.world = world
         self.mode = MODES.get(world.played_in, self.mode)
         self._faults.beside = self._attend_beside
-        self.working = 0  # how many things are being done, or wait for their turn
+        self.working = 0  # number of running and queued commands
         self._seen_doing = ""
         self._frozen = 0.0
         self._tracked = 0.0
@@ -127,7 +126,7 @@ class LiveScreen(PlayScreen):
         self._cards = LiveCards(workspace, supervision, world, self._write)
 
     def on_mount(self) -> None:
-        """Show the robot's state, and follow it; the base screen begins the game."""
+        """Show the robot's state, and poll it; the base screen begins the game."""
         self.show_status()
         self.set_interval(STAFF_SECONDS, self.show_staff)
         workspace = self._workspace
@@ -135,12 +134,12 @@ class LiveScreen(PlayScreen):
             self._write(told, "text")
         if (link := self.world.link).screen:
             self._write(screen_words(link.screen, link.code), "text")
-            # the log has no room in a small window, and the tablet may have to be opened again
+            # a small window hides the log, and the tablet may have to be connected again
             self.query_one(RoomView).border_subtitle = Content(self.world.link.tablet_page)
         self.set_interval(TRACK_SECONDS, self.track)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave out what cannot be done among people."""
+        """Disable actions that are not available among people."""
         none = CARDS_ONLY if not self._has_cards else () if self.world.eyes else FACTS_ONLY
         return action not in (*NOT_LIVE, *none) and super().check_action(action, parameters)
 
@@ -152,7 +151,7 @@ class LiveScreen(PlayScreen):
 
     @property
     def at_rest(self) -> bool:
-        """Whether no game goes on, nor begins: for that the robot may drive."""
+        """Whether no game runs or begins, in which the robot may drive."""
         return self._supervision.over and not self.working
 
     async def _begin_game(self) -> list[Event]:
@@ -162,7 +161,7 @@ class LiveScreen(PlayScreen):
         return await super()._begin_game()
 
     async def _beside(self, work: Callable[[], T]) -> T:
-        """Do something that takes its time, while the screen lives."""
+        """Run slow work in a thread while the screen stays responsive."""
         self.working += 1
         self.show_status()
         try:
@@ -171,21 +170,21 @@ class LiveScreen(PlayScreen):
             self.working -= 1
 
     async def _attend_beside(self, work: Work) -> list[Event]:
-        """Do something about what halts the robot, which may end in another robot process."""
+        """Act on the fault that halts the robot, which may restart the robot process."""
         try:
             return await self._beside(work)
         finally:
-            if self.control.stopped:  # that one was not told
+            if self.control.stopped:  # the new process does not know of the stop
                 self.control.robot.stop()
 
     async def _wait(self, seconds: float) -> None:
-        """Do not wait: a live behaviour has taken its time already."""
+        """Do not wait: a live behaviour has already taken its time."""
         self._left = 0.0
 
     # ------------------------------------------------------------------------- staff's keys
 
     def _do(self, command: GameCommand) -> None:
-        """Carry out a command; what has to wait for its turn waits beside the screen."""
+        """Carry out a command, in the background if it has to wait for its turn."""
         if isinstance(command, AT_ONCE):
             super()._do(command)
         else:
@@ -198,7 +197,7 @@ class LiveScreen(PlayScreen):
         self._take(await done)
 
     def action_pause(self) -> None:
-        """Pause, or go on; after a STOP this is what lets the robot move again."""
+        """Pause, or continue; after a STOP, let the robot move again."""
         if self.control.stopped:
             self._sure(*MOVE_AGAIN, self._let_move)
         else:
@@ -212,7 +211,7 @@ class LiveScreen(PlayScreen):
             super().action_pause()
 
     def action_autonomy(self) -> None:
-        """Turn the dial of how much Tangy does of itself."""
+        """Cycle through the levels of autonomy."""
         level = AUTONOMY[(AUTONOMY.index(self.control.autonomy.level) + 1) % len(AUTONOMY)]
         self._do(SetAutonomy(level))
 
@@ -229,12 +228,12 @@ class LiveScreen(PlayScreen):
             super().action_leave()
 
     def action_take_over(self) -> None:
-        """Hand control to staff as soon as the current behaviour is over."""
+        """Hand control to staff as soon as the current behaviour ends."""
         if not self._supervision.over:
             self._do(TakeOver())
 
     def action_drive(self) -> None:
-        """Let staff drive; the game waits meanwhile."""
+        """Let staff drive while the game waits."""
         if self.working:
             self._tell_now(NOT_WHILE_WORKING, "warn")
         elif not self._refused():
@@ -268,7 +267,7 @@ class LiveScreen(PlayScreen):
             self.query_one(RoomView).show(self.world.scene())
 
     def action_ask_for(self) -> None:
-        """Ask for help for somebody."""
+        """Ask for help on behalf of a person."""
         if not self._supervision.over:
             self.run_worker(self._ask_for(), name="ask", group="ask")
 
@@ -285,7 +284,7 @@ class LiveScreen(PlayScreen):
             self.run_worker(say, name="card", group="ask")
 
     def action_tell(self) -> None:
-        """Tell Tangy what a person answers or does."""
+        """Report what a person answers or does."""
         if not self._supervision.over:
             self.run_worker(self._tell_of(), name="tell", group="ask")
 
@@ -304,7 +303,7 @@ class LiveScreen(PlayScreen):
                 self._tell_now(str(error), "warn")
 
     async def _learn(self, answer: Verified) -> list[Result]:
-        """Act on an answer, which takes its time, and learn from it."""
+        """Carry out an answer, which takes time, and learn from it."""
         self.working += 1
         try:
             return await super()._learn(answer)
@@ -314,7 +313,7 @@ class LiveScreen(PlayScreen):
     # -------------------------------------------------------------------------------- picture
 
     def _sensors_screen(self, shown: Callable[[], Status]) -> Screen[None]:
-        """Make the screen of the devices that the robot process has."""
+        """Create the screen of the robot process's devices."""
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
         workspace, where = (
@@ -327,14 +326,14 @@ class LiveScreen(PlayScreen):
         )
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
-        """Show events, and who was seen where somebody else usually sits."""
+        """Show events, and people at another person's seat."""
         super()._tell(events, known)
         for seated in self._seats.news(events, self.world.sitting):
             self._write(seated_words(seated, self._workspace.name), "warn")
         self._cards.tell(events)
 
     def track(self) -> None:
-        """Draw where the robot is, and what it knows of the floor; and tell it that this lives."""
+        """Draw the robot's pose and its estimates; send it a heartbeat."""
         self.world.link.alive()
         self._cards.tell()
         room = self.query_one(RoomView)
@@ -354,12 +353,12 @@ class LiveScreen(PlayScreen):
             track(room, state)
 
     async def _come_to_rest(self) -> None:
-        """Stop the robot in the midst of what it does, and wait until it has broken that off."""
+        """Abort the robot's current behaviour, and wait until it has stopped."""
         self.control.break_off()
         await asyncio.to_thread(self.control.wait_for_turn, REST_SECONDS)
 
     def show_status(self) -> None:
-        """Show how the game stands, and the keys that do something now."""
+        """Show the state of the game, and the keys that have an effect now."""
         super().show_status()
         going = self.control.going
         self.query_one(KeyLine).show(
@@ -372,7 +371,7 @@ class LiveScreen(PlayScreen):
         )
 
     def _note(self) -> str:
-        """Say what the robot is doing, or what the keys would do next."""
+        """Describe what the robot is doing, or the effect of the keys."""
         if self.control.stopped or self._learning or self.at_rest or not self.control.going:
             return super()._note()
         level = self.control.autonomy.level
@@ -380,7 +379,7 @@ class LiveScreen(PlayScreen):
         return self._doing() or self._until_call() or autonomy
 
     def _doing(self) -> str:
-        """Say what keeps the robot busy on its wheels, "" if nothing does."""
+        """Describe the robot's current drive, "" if it is not driving."""
         if self.working and self.world.lost:
             return "finds its place"
         state = self.world.link.state

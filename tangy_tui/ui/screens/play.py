@@ -43,11 +43,11 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 IDLE_SECONDS = 0.2
-"""Between two tries, while it is too early for the next thing."""
+"""The interval between two attempts while it is too early for the next behaviour."""
 
 
 class PlayScreen(PlayStaff):
-    """Games by the learnt policy, watched at any speed. Dismissed with what they added up to."""
+    """Games by the learnt policy, watched at any speed. Dismissed with their totals."""
 
     CSS_PATH = "play.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
@@ -66,16 +66,16 @@ class PlayScreen(PlayStaff):
         robot: LiveWorld | None = None,
         past: PastGame | None = None,
     ) -> None:
-        """Make the screen.
+        """Create the screen.
 
         Args:
-            workspace: what it belongs to.
-            supervision: what runs the games.
-            games: how many are played one after another.
+            workspace: the workspace of the games.
+            supervision: runs the games.
+            games: the number of games.
             speed: times life.
-            teacher: who answers where Tangy asks (default: whoever is logged in).
-            robot: the world of a robot that is there.
-            past: a game that was interrupted, which is taken up first.
+            teacher: who answers Tangy's questions (default: the workspace's teacher).
+            robot: the world of a real robot.
+            past: an interrupted game to resume first.
         """
         who = teacher or workspace.teacher
 
@@ -89,7 +89,7 @@ class PlayScreen(PlayStaff):
         self._past = past
         self.tally = Tally()
         self.skipping = False
-        self._left = 0.0  # s of a drive that STOP or a fault broke off
+        self._left = 0.0  # s left of a drive that STOP or a fault interrupted
         self._halted = False
         self._leaving = False
 
@@ -107,7 +107,7 @@ class PlayScreen(PlayStaff):
     # ---------------------------------------------------------------------------------- keys
 
     def action_pause(self) -> None:
-        """Pause, or go on; after a STOP this is what lets the robot move again."""
+        """Pause, or continue; after a STOP, let the robot move again."""
         stopped = self.control.stopped
         if self.control.going:
             self._do(Pause())
@@ -119,7 +119,7 @@ class PlayScreen(PlayStaff):
             asking.hold(False)
 
     def action_one_step(self) -> None:
-        """Do one step and pause."""
+        """Carry out one step, then pause."""
         if not self._supervision.over:
             self._do(OneStep())
 
@@ -130,7 +130,7 @@ class PlayScreen(PlayStaff):
         self.show_status()
 
     def action_skip(self) -> None:
-        """Play the rest of the game at once, if that is meant."""
+        """Play the rest of the game at once, after confirmation."""
         if not (self._refused() or self._supervision.over):
             self._sure(text.SKIP, text.SKIP_DETAIL, self._skip)
 
@@ -142,7 +142,7 @@ class PlayScreen(PlayStaff):
         self._do(GoOn())
 
     def action_again(self) -> None:
-        """Play one more game, now or after this one, if that is meant."""
+        """Play one more game, now or after this one, after confirmation."""
         if not self._refused():
             self._sure(text.ANOTHER, "", self._another)
 
@@ -160,7 +160,7 @@ class PlayScreen(PlayStaff):
             self._tell_now(f"{follow} will follow.", "dim")
 
     def action_leave(self) -> None:
-        """Close the chosen step, give up a question, or go back; in mid-game it asks first."""
+        """Take the cursor off the steps, give up a question, or leave; in mid-game ask first."""
         steps = self.query_one(Transcript)
         if steps.has_focus and steps.chosen is not None:
             steps.release()
@@ -172,7 +172,7 @@ class PlayScreen(PlayStaff):
             self.run_worker(self._leave(), name="leave")
 
     async def _leave(self) -> None:
-        """Ask whether to leave in mid-game; the game waits meanwhile."""
+        """Ask whether to leave in mid-game, with the game paused."""
         self._leaving = True
         going = self.control.going
         self._do(Pause())
@@ -187,23 +187,23 @@ class PlayScreen(PlayStaff):
             self._do(GoOn())
 
     async def _come_to_rest(self) -> None:
-        """Let the current behaviour end before the game does."""
+        """Let the current behaviour end first."""
 
     def _end_game(self) -> None:
-        """Let the log say that a game was left."""
+        """Log that the game was left."""
         if not self._supervision.over:
             self.tally.add(self.control.abandon())
 
     def on_unmount(self) -> None:
-        """End the game when the program is left."""
+        """End the game when the screen is closed."""
         self.control.changed = lambda: None
         self._workspace.door.detach(self.control)
         self._end_game()
         self._voice.hush()
 
     def on_stop(self, message: Stop) -> None:
-        """Stop the robot: nothing more is executed until somebody lets it go on."""
-        self.control.apply(StopRobot())  # before anything is drawn
+        """Stop the robot: no further behaviour runs until staff continue."""
+        self.control.apply(StopRobot())  # before drawing
         self._show_stopped()
 
     def _show_stopped(self) -> None:
@@ -217,7 +217,7 @@ class PlayScreen(PlayStaff):
 
     @property
     def at_rest(self) -> bool:
-        """Whether no game goes on."""
+        """Whether no game is running."""
         return self._supervision.over
 
     # ---------------------------------------------------------------------------------- game
@@ -228,11 +228,11 @@ class PlayScreen(PlayStaff):
                 return
             try:
                 await self._play_game()
-            except TangyError as error:  # the log could not be written, so nothing more is done
+            except TangyError as error:  # logging failed, so pause
                 await self._hold(str(error))
 
     async def _may_begin(self) -> bool:
-        """Ask before a game begins after one that ended with what nobody cleared."""
+        """Ask before a game begins after one with an uncleared fault."""
         if not self._supervision.over or await self._faults.all_well():
             return True
         self.games = self.tally.games
@@ -241,11 +241,11 @@ class PlayScreen(PlayStaff):
         return False
 
     async def _play_game(self) -> None:
-        """Play one game, or the rest of one that was held."""
+        """Play one game, or the rest of one that was paused by a failure."""
         control, supervision = self.control, self._supervision
         if supervision.over:
             self._tell(await self._begin_game())
-        owed = 0.0  # s of the game that are to pass after what is done against a fault
+        owed = 0.0  # s of game time still to pass after a recovery
         while not supervision.over:
             await self._until_going()
             if supervision.halted is not None:
@@ -253,7 +253,7 @@ class PlayScreen(PlayStaff):
                 await self._faults.free()
                 continue
             if self._left and not self.skipping and not control.single:
-                await self._wait(self._left)  # it walks on to where it was going
+                await self._wait(self._left)  # the robot continues its drive
                 continue
             alone = self.skipping or control.single
             if not alone and not await self._voice.heard(self._speed, self.nudge):
@@ -272,7 +272,7 @@ class PlayScreen(PlayStaff):
                 self._left = owed if self._drives else 0.0
                 owed = 0.0
             if self.skipping or self._faults.urgent(events):
-                await asyncio.sleep(0)  # let the screen and the keys live
+                await asyncio.sleep(0)  # let the screen handle keys
             elif events:
                 await self._wait(owed)
                 owed = 0.0
@@ -290,7 +290,7 @@ class PlayScreen(PlayStaff):
             await self.nudge.wait()
 
     async def _nudged(self, seconds: float) -> None:
-        """Wait for somebody to do something, but no longer than so many s."""
+        """Wait for a nudge, up to some s."""
         self.nudge.clear()
         with suppress(TimeoutError):
             await asyncio.wait_for(self.nudge.wait(), seconds)
@@ -299,11 +299,11 @@ class PlayScreen(PlayStaff):
         return await self._beside(self.control.begin)
 
     async def _beside(self, work: Callable[[], T]) -> T:
-        """Do something of the game; a simulated one takes no time."""
+        """Run work of the game; a simulated one takes no time."""
         return work()
 
     def _stand_still(self, reason: str) -> None:
-        """Do nothing more, after a failure, until somebody lets it try again."""
+        """Pause after a failure, until staff retry."""
         self._halted = True
         self.skipping = False
         self.control.apply(Pause())
@@ -311,18 +311,18 @@ class PlayScreen(PlayStaff):
         self.show_status()
 
     async def _hold(self, reason: str) -> None:
-        """Stand still after a failure until somebody lets it try again."""
+        """Pause after a failure, tell why, and wait until staff retry."""
         self._stand_still(reason)
         await self._say_why(reason, text.TRIES_AGAIN)
         await self._until_going()
 
     def _fail(self, reason: str) -> None:
-        """Stand still after a failure that came between two steps."""
+        """Pause after a failure between two steps, and tell why."""
         self._stand_still(reason)
         self.run_worker(self._say_why(reason, text.TRIES_AGAIN), name="why", group="why")
 
     async def _wait(self, seconds: float) -> None:
-        """Let a step's time (in the game, in s) pass; a key that changes the pace ends it early."""
+        """Let a step's time (in the game, in s) pass; a change of speed ends the wait early."""
         clock = asyncio.get_running_loop().time
         speed, until = self._speed, clock() + seconds / self._speed
         await self._nudged(seconds / speed)
@@ -335,10 +335,10 @@ class PlayScreen(PlayStaff):
         return self.query_one(RoomView).going is not None
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
-        """Show events; where a game was stopped a dialog says why, unless that is `known`."""
+        """Show events; a dialog tells why a game stopped, unless that is `known`."""
         self.tally.add(events)
         if self._faults.urgent(events):
-            self.nudge.set()  # the rest of the step's time is not waited for
+            self.nudge.set()  # do not wait for the rest of the step's time
         self.picture.tell(events, 0 if self.skipping else self._speed)
         if not self.skipping:
             self._voice.tell(events, self._speed if self.control.going else 0)
@@ -351,14 +351,14 @@ class PlayScreen(PlayStaff):
         self.show_status()
 
     async def _say_why(self, reason: str, then: str) -> None:
-        """Tell why a game could not go on, at every size of the window."""
+        """Tell why a game could not continue, at every window size."""
         dialog = MessageDialog(text.stopped_words(reason, self._told(then)), title=text.STOPPED)
         await self.app.push_screen_wait(dialog)
 
     # -------------------------------------------------------------------------------- status
 
     def show_status(self) -> None:
-        """Show in the line above how the game stands."""
+        """Show the state of the game on the status line."""
         asking = self._asking
         if asking is not None and self._supervision.question is None and not self._learning:
             asking.withdraw()
@@ -377,7 +377,7 @@ class PlayScreen(PlayStaff):
         self._faults.show()
 
     def _note(self) -> str:
-        """Say what the keys would do next, or how fast it goes."""
+        """Describe the effect of the keys, or the speed."""
         if self.control.stopped:
             return self._told(text.GOES_ON)
         if self._learning:

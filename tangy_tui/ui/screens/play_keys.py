@@ -8,11 +8,11 @@ from tangy_tui.text.games import SENSORS, SHOWS
 from tangy_tui.ui.keys import Key, bind
 
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-"""Times life; at 1 a game takes the half hour that it takes among people."""
+"""In times life; at 1 a game takes half an hour, as among people."""
 
 
 def keys(*, going: bool, over: bool = False) -> tuple[str | Key, ...]:
-    """Return the keys and what they do while the game goes on, stands still, or is over."""
+    """Return the keys and their names while the game runs, is paused, or is over."""
     if over:
         return ("next:play again", "why", ("1-7", "show"), "filter", "back", "help")
     return (
@@ -22,7 +22,7 @@ def keys(*, going: bool, over: bool = False) -> tuple[str | Key, ...]:
 
 
 def faster(speed: float, by: int) -> float:
-    """Return the speed (times life) `by` places from the nearest one that there is."""
+    """Return the speed (times life) `by` places from the nearest available one."""
     nearest = min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - speed))
     return SPEEDS[min(len(SPEEDS) - 1, max(0, nearest + by))]
 
@@ -47,7 +47,7 @@ HELP = (
 )
 
 PANELS = ("room", "transcript", "policy", "posteriors", "log", "faults")
-"""What the numbers show, from 1 on."""
+"""The panels of the number keys, from 1."""
 
 BINDINGS: list[BindingType] = [
     *bind("pause"),

@@ -1,4 +1,4 @@
-"""The panels of the playing screen: which of them are seen, and what they tell when chosen."""
+"""The panels of the playing screen: which are visible, and what they explain."""
 
 from __future__ import annotations
 
@@ -41,45 +41,45 @@ from tangy_tui.ui.widgets.transcript import Transcript
 CHOOSABLE = ("transcript", "policy", "posteriors", "log", "faults")
 STAFF = "staff"
 INSIDE = ("transcript", "policy", "posteriors")
-"""Panels that show how Tangy decides: they are a key away."""
+"""Panels that show how Tangy decides, reached by a key."""
 ON_THE_LEFT = ("log", "faults")
-"""Panels that live under the room; where one is seen at a time they take the others' place."""
+"""Panels below the room; if only one panel is visible at a time, they replace the others."""
 
 
 class PlayPanels(TangyScreen[Tally]):
-    """Room, steps, policy, posteriors, log and faults of the games that are supervised."""
+    """Room, steps, policy, posteriors, log and faults of supervised games."""
 
     mode = "play"
-    """What the status line calls it."""
+    """The name of the screen on the status line."""
     FIRST = CHOOSABLE[0]
     """The panel that is shown first."""
     ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner,#microphone"
 
     def __init__(self, workspace: Workspace, control: GameController) -> None:
-        """Make the panels of the games that a controller runs."""
+        """Create the panels of a controller's games."""
         super().__init__()
         self._workspace = workspace
         self.control = control
         self._supervision = control.supervision
         self.minutes = 0
-        """How long the session is planned to take; 0: it is left open."""
+        """The planned length of the session in minutes; 0: no limit."""
         self.picture = GamePicture(self, workspace, control.supervision)
         self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
-        """Show events; where a game was stopped a dialog says why, unless that is `known`."""
+        """Show events; a dialog tells why a game stopped, unless that is `known`."""
         raise NotImplementedError
 
     def steer(self, text: str, sure: float) -> None:
-        """Do what was said that steers the game, or is a person's answer (`sure`: likelihood)."""
+        """Handle a spoken steering command, or a person's answer (`sure`: likelihood)."""
         raise NotImplementedError
 
     def _fail(self, reason: str) -> None:
-        """Stand still because something could not be kept."""
+        """Pause because an event could not be stored."""
         raise NotImplementedError
 
     def compose(self) -> ComposeResult:
-        """Lay out the panels; which of them are seen at 80 columns `1` to `6` choose."""
+        """Lay out the panels; at 80 columns, keys 1 to 6 choose the visible one."""
         yield StatusLine()
         yield FaultBanner()
         with Horizontal(id="body"):
@@ -98,7 +98,7 @@ class PlayPanels(TangyScreen[Tally]):
         yield KeyLine(*keys(going=True))
 
     def action_panel(self, name: str) -> None:
-        """Show a panel where there is no room for all of them, and give it the keys."""
+        """Show a panel if not all are visible, and focus it."""
         enlarged = self.maximized is not None
         self.minimize()
         if name in INSIDE or name == STAFF:
@@ -114,12 +114,12 @@ class PlayPanels(TangyScreen[Tally]):
                 self.maximize(chosen)
 
     def action_inside(self) -> None:
-        """Show how Tangy decides, or what staff need."""
+        """Switch between Tangy's decisions and the view for staff."""
         self.action_panel(INSIDE[0] if self.has_class("-staff") else STAFF)
         self.show_staff()
 
     def show_staff(self) -> None:
-        """Show what staff have to see now."""
+        """Update the view for staff."""
         world, name = self._supervision.world, staff_names(self._workspace.name)
         view = self.control.view()
         show_view(
@@ -130,7 +130,7 @@ class PlayPanels(TangyScreen[Tally]):
         )
 
     def action_sensors(self) -> None:
-        """Show how all devices are, over the game, which goes on."""
+        """Show the state of all devices above the game, which continues."""
         try:
             screen = self._sensors_screen(lambda: self.query_one(StatusLine).status)
         except TangyError as error:
@@ -139,7 +139,7 @@ class PlayPanels(TangyScreen[Tally]):
         self.app.push_screen(screen)
 
     def _sensors_screen(self, shown: Callable[[], Status]) -> Screen[None]:
-        """Make the screen of devices: those of a simulated game, and cameras that are there."""
+        """Create the screen of devices: those of a simulated game, and real cameras."""
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
         eyes: CameraSession | None = getattr(self.app, "eyes", None)
@@ -148,7 +148,7 @@ class PlayPanels(TangyScreen[Tally]):
         return SensorsScreen(self._workspace, sensors, health=health, shown=shown)
 
     def action_why(self) -> None:
-        """Tell why: of the chosen step, of what Tangy asks, or of the last step."""
+        """Explain the chosen step, Tangy's question, or the last step."""
         chosen = self.query_one(Transcript).chosen
         fault = self._faults.asked_about if chosen is None else None
         dialog: Screen[Any] | None
@@ -159,41 +159,41 @@ class PlayPanels(TangyScreen[Tally]):
             self._tell_now(NOTHING_DECIDED, "dim")
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
-        """Tell why, for the step that was chosen with Enter."""
+        """Explain the step chosen with Enter."""
         event.stop()
         if (dialog := self.picture.why_step(event.number)) is not None:
             self.app.push_screen(dialog)
 
     def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
-        """Tell why, for the row of the policy that was chosen with Enter."""
+        """Explain the row of the policy chosen with Enter."""
         event.stop()
         self.app.push_screen(self.picture.why_row(event.index))
 
     def on_fault_list_chosen(self, event: FaultList.Chosen) -> None:
-        """Tell of a fault in full."""
+        """Show all about a fault."""
         event.stop()
         if (dialog := self._faults.dialog(event.id)) is not None:
             self.app.push_screen(dialog)
 
     def on_asking_panel_why_wanted(self, event: AskingPanel.WhyWanted) -> None:
-        """Tell why Tangy asks."""
+        """Explain why Tangy asks."""
         event.stop()
         self.query_one(Transcript).release()
         self.action_why()
 
     def action_acknowledge(self) -> None:
-        """Say that the fault in the banner was seen, if that is meant."""
+        """Acknowledge the fault in the banner, after confirmation."""
         if told := self._faults.told:
             self._sure(SEEN, told[0].name, self._acknowledge)
         else:
             self._tell_now(NO_UNSEEN_FAULT, "dim")
 
     def _told(self, text: str) -> str:
-        """Write the keys into a text that names actions."""
+        """Insert the keys of actions into a sentence."""
         return with_keys(text, keymap_of(self.app))
 
     def _sure(self, question: str, detail: str, then: Callable[[], None]) -> None:
-        """Do what cannot be undone once it is confirmed."""
+        """Run an action that cannot be undone, after confirmation."""
 
         def answered(sure: bool | None) -> None:
             if sure:
@@ -209,16 +209,16 @@ class PlayPanels(TangyScreen[Tally]):
             self._fail(str(error))
 
     def on_descendant_focus(self) -> None:
-        """Say which key takes the banner away: in a line to type in, keys are letters."""
+        """Update the banner's key: while an input line has the focus, letters are no keys."""
         if self.query(FaultBanner):
             self._faults.show()
 
     def on_descendant_blur(self) -> None:
-        """Say which key takes the banner away, now that keys are keys again."""
+        """Update the banner's key: letters are keys again."""
         self.on_descendant_focus()
 
     def action_inject(self) -> None:
-        """Bring about a fault in the simulated room, or lift one."""
+        """Inject a fault into the simulated room, or lift one."""
         if refusal := self._faults.refuses():
             self._tell_now(refusal, "warn")
         else:
@@ -229,35 +229,35 @@ class PlayPanels(TangyScreen[Tally]):
             said, shown = await self._faults.inject()
         except TangyError as error:  # it cannot be logged, so it is not done
             said, shown = str(error), False
-        if shown:  # what is there now says it, and nothing is to lie over that
+        if shown:  # the screen shows it already, and a toast would cover that
             self._write(said, "dim")
         elif said:
             self._tell_now(said, "dim")
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave out the key to talk where nobody listens, or always."""
+        """Disable the talk key if there is no push-to-talk."""
         hearing = hearing_of(self.app)
         return action != "talk" or (hearing is not None and hearing.by_key)
 
     async def action_talk(self) -> None:
-        """Push to talk: begin or end the utterance."""
+        """Start or end an utterance (push-to-talk)."""
         await self.run_action("app.talk")
 
     @property
     def _asking(self) -> AskingPanel | None:
-        """The question that is open, if Tangy asks."""
+        """The panel of Tangy's open question, if there is one."""
         panels = self.query(AskingPanel)
         return panels.first() if panels else None
 
     def take_sentence(self, sentence: str, kind: Kind = "dim") -> bool:
-        """Say a sentence under what Tangy asks, and in the log; False: nothing is asked."""
+        """Show a sentence below Tangy's question, and in the log; False: there is no question."""
         if self._asking is not None:
             self._asking.say(sentence)
             self._write(sentence, kind)
         return self._asking is not None
 
     def _tell_now(self, sentence: str, kind: Kind) -> None:
-        """Say what a key did, or why it does nothing, where it is seen at every size."""
+        """Show the result of a key, or why it has no effect, at every window size."""
         sentence = self._told(sentence)
         if not self.take_sentence(sentence, kind):
             self._write(sentence, kind)

@@ -1,4 +1,4 @@
-"""Staff at the playing screen: what they have done, what they are asked, and what they answer."""
+"""Staff at the playing screen: their commands, and Tangy's questions to them."""
 
 from __future__ import annotations
 
@@ -47,26 +47,26 @@ from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, wanted
 
 PACE_SECONDS = 1.0
-"""After the last change of the pace, before it is said."""
+"""The delay after the last change of pace before the new pace is shown."""
 SEEN_ANYWAY = ("paused", "goes on", "one step", "no game")
-"""What the keys' line and the status say."""
+"""Notes that the key line and the status line show anyway."""
 
 
 class PlayStaff(PlayPanels):
-    """Sends commands to the controller, and puts what Tangy asks to the teacher, by line or ear."""
+    """Sends commands to the controller, and Tangy's questions to staff."""
 
     def __init__(self, workspace: Workspace, control: GameController) -> None:
-        """Make the panels of the games that a controller runs."""
+        """Create the panels of a controller's games."""
         super().__init__(workspace, control)
         self._voice = GameVoice(workspace)
         self._learning = False
         self._pace_told: Timer | None = None
         self._guard: FreezeGuard | None = None
         self.nudge = asyncio.Event()
-        """Is set when something is done that the game's time is not to be waited for."""
+        """Set when the game should no longer wait for a step's time."""
 
     def show_status(self) -> None:
-        """Show how things stand."""
+        """Update the status."""
         raise NotImplementedError
 
     def _show_stopped(self) -> None:
@@ -74,7 +74,7 @@ class PlayStaff(PlayPanels):
         raise NotImplementedError
 
     def _let_look_on(self) -> None:
-        """Let others look on at these games from other consoles, and show who stops the robot."""
+        """Let onlookers on other consoles follow these games, and show who stops the robot."""
         loop = asyncio.get_running_loop()
 
         def stopped(guest: str) -> None:
@@ -90,12 +90,12 @@ class PlayStaff(PlayPanels):
         self.set_interval(LOOK_SECONDS, self._guard.look)
 
     def _next(self) -> list[Event]:
-        """Do the next thing, unless the program has just stood still."""
+        """Carry out the next step, unless the program was just frozen."""
         guard = self._guard
         return [] if guard is not None and guard.look() else self.control.next()
 
     def _stood_still(self, seconds: float) -> None:
-        """Ask whether the game goes on, after the program stood still for so many s."""
+        """Ask whether to continue, after the program was frozen for some s."""
         self.show_status()
         self._write(question(seconds), "warn")
         self.run_worker(self._ask_to_go_on(seconds), name="freeze", group="freeze", exclusive=True)
@@ -106,15 +106,15 @@ class PlayStaff(PlayPanels):
             self._do(GoOn())
 
     def action_pause(self) -> None:
-        """Pause, or go on."""
+        """Pause or continue."""
         raise NotImplementedError
 
     def _do(self, command: GameCommand) -> None:
-        """Carry out a command of staff, and tell what came of it."""
+        """Carry out a command of staff, and show its results."""
         self._take(self.control.apply(command))
 
     def _take(self, results: Sequence[Result]) -> None:
-        """Report the outcome of a command, unless the screen shows it anyway."""
+        """Show the results of a command, unless the screen shows them anyway."""
         for result in results:
             if isinstance(result, StaffNote) and result.kind not in SEEN_ANYWAY:
                 said = noted_words(result, self._workspace.name, by_keys=True)
@@ -125,17 +125,17 @@ class PlayStaff(PlayPanels):
         self._tell([result for result in results if not isinstance(result, StaffNote)])
 
     def _tell_pace(self, said: str) -> None:
-        """Say the pace once it stays: the keys change it step by step."""
+        """Show the pace once it is stable: the keys change it in steps."""
         if self._pace_told is not None:
             self._pace_told.stop()
         self._pace_told = self.set_timer(PACE_SECONDS, lambda: self._tell_now(said, "dim"))
 
     def steer(self, text: str, sure: float) -> None:
-        """Pause, go on, call again or change the pace, or take an answer, as somebody said.
+        """Handle a spoken command (pause, continue, call again, change pace) or answer.
 
-        After a STOP only a key goes on. `sure` is the likelihood that it was said.
+        After a STOP, only a key continues. `sure` is the likelihood of the recognition.
         """
-        if steering_of(text) is None:  # an answer of the person whom the game waits for
+        if steering_of(text) is None:  # an answer of the person the game waits for
             self._do(Tell(None, text, sure, "speech"))
             return
         command = read_command(text, lambda name: self._workspace.find_person(name).id)
@@ -146,14 +146,14 @@ class PlayStaff(PlayPanels):
             self._do(command)
 
     def action_type(self, begun: str = "") -> None:
-        """Let staff type what they want done: in the line of a question, where there is one."""
+        """Let staff type a command, in the line of an open question if there is one."""
         if not begun and (lines := self.query("#command-input")):
             lines.first().focus()
             return
         self.run_worker(self._type(begun), name="type", group="type", exclusive=True)
 
     def action_claim(self) -> None:
-        """Check a card by all that was called: its number is typed."""
+        """Let staff type the number of a card to check."""
         word = self._workspace.activity.rules.claim or CHECK
         self.action_type(f"{word} ")
 
@@ -198,7 +198,7 @@ class PlayStaff(PlayPanels):
             self._do(event.command)
 
     def _refused(self) -> bool:
-        """Say, after a STOP or while Tangy asks, what has to be done first."""
+        """Return whether a STOP or a question has to be handled first, and tell so."""
         refusal = self.control.refusal()
         if refusal is not None:
             self._take([refusal])
@@ -216,12 +216,12 @@ class PlayStaff(PlayPanels):
             self._do(Confirm(does))
 
     async def _ask(self, question: Unsure) -> None:
-        """Wait for the teacher's answer, learn it beside the screen, and go on.
+        """Wait for the teacher's answer, learn it in the background, and continue.
 
-        Where staff wanted to be asked it can also be left, and Tangy goes on by itself.
+        If staff requested the question, they can also leave it, and Tangy continues by itself.
         """
         self.minimize()
-        self.app.clear_notifications()  # they would lie over the question
+        self.app.clear_notifications()  # toasts would cover the question
         learnt, self.picture.lesson = self.picture.lesson, ""
         asking = AskingPanel(self._workspace, self.control, question, learnt)
         self.add_class("-asking")
@@ -233,7 +233,7 @@ class PlayStaff(PlayPanels):
             answer = await asking.answer()
         finally:
             self.remove_class("-asking")
-            with suppress(Exception):  # the screen may be going as well
+            with suppress(Exception):  # the screen may be closing
                 await asking.remove()
         match answer:
             case Instead.WITHDRAWN:
@@ -247,7 +247,7 @@ class PlayStaff(PlayPanels):
                 self._take(await self._learn(answer))
 
     async def _learn(self, answer: Verified) -> list[Result]:
-        """Act on an answer and learn from it; nothing else is done or looked at meanwhile."""
+        """Carry out an answer and learn from it; nothing else runs meanwhile."""
         self._learning = True
         self.show_status()
         try:
@@ -256,7 +256,7 @@ class PlayStaff(PlayPanels):
             self._learning = False
 
     def action_accept(self) -> None:
-        """Say that what Tangy asks about is all right, if that is meant."""
+        """Accept the condition that Tangy asks about, after confirmation."""
         asking = self._asking
         if self.control.stopped:
             self._take([StaffNote("stopped first")])

@@ -1,4 +1,4 @@
-"""What staff have to see of a game, put on the panels of the screen."""
+"""Shows the view for staff on the panels of a screen."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from tangy_tui.world import World
 
 INKS = {"asks": "warn", "visited": "robot", "comes": "robot", "away": "dim", "plays": "text"}
 BEFORE = 4
-"""Calls before the last one that stand beside it."""
+"""The number of calls beside the last one."""
 
 
 @dataclass(frozen=True, slots=True)
 class ViewSource:
-    """What a view is shown with: the world, who controls the game, the minutes, names.
+    """What a view is shown with: the world, the controller, the planned minutes, names.
 
-    `said` is what Tangy said last, "" for nothing yet.
+    `said` is Tangy's last speech, "" if there is none yet.
     """
 
     world: World
@@ -34,7 +34,7 @@ class ViewSource:
 
 
 def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewSource) -> None:
-    """Show a view on the panel of staff, and the numbers on the board."""
+    """Show a view on the staff panel, and its calls on the board."""
     label = shown.world.activity.deck.label
     board.show(view.called)
     call = label(view.called[-1]).replace("-", "") if view.called else ""
@@ -61,16 +61,16 @@ def _next(shown: ViewSource) -> str:
     words = ""
     if found is not None:
         words = text.next_words(world.activity, *found, shown.name, calls_first)
-    elif shown.said:  # where it is not known what comes next, staff need to know what was asked
+    elif shown.said:  # if the next step is unknown, staff need to know the last question
         words = text.said_words(shown.said)
     return words if control.going else f"{text.PAUSED} {words}".strip()
 
 
 def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
-    """Return what stands beside the call: with the last few calls, or without."""
+    """Return the facts beside the call, with the last few calls if wanted."""
     world, label = shown.world, shown.world.activity.deck.label
     before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1] if last)
-    if not world.activity.deck.columns:  # nothing is called
+    if not world.activity.deck.columns:  # the activity has no calls
         return [
             text.time_words(view.seconds, shown.minutes),
             text.tangy_words(shown.control.autonomy.level, battery_of(world)),
@@ -88,7 +88,7 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
 
 
 def person_lines(people: Sequence[PersonNow], name: Callable[[str], str]) -> list[PersonLine]:
-    """Write a line for each person; those who ask come first, those who are away last."""
+    """Format a line for each person: those who ask first, absent ones last."""
     ordered = sorted(people, key=lambda one: (not one.turn, one.turn, one.state == "away"))
     return [_person(person, name) for person in ordered]
 

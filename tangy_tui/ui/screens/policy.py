@@ -1,4 +1,4 @@
-"""The policy screen: what Tangy would do in every situation, and how sure it is."""
+"""The policy screen: Tangy's behaviour in every situation, with its share of votes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 
 def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
-    """Return a row for every situation that can come about, in the order of a game."""
+    """Return a row for every possible situation, in the order of a game."""
     return [
         _row(activity, activity.in_words(situation), policy.decide(situation))
         for situation in activity.situations
@@ -38,7 +38,7 @@ def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
 
 def _row(activity: Activity, words: str, decision: Decision) -> PolicyRow:
     """Format the behaviour in a situation, or why Tangy would ask."""
-    if not decision.seen:  # whatever the trees would vote for, Tangy asks there
+    if not decision.seen:  # Tangy asks there, whatever the trees vote for
         return PolicyRow(words, "never shown", 0.0, 0)
     if decision.contested:
         answers = listed((activity.behaviour_words(b) for b, _ in decision.votes), "or")
@@ -73,7 +73,7 @@ class PolicyScreen(TangyScreen[None]):
         policy: Policy,
         effects: Effects,
     ) -> None:
-        """Make the screen."""
+        """Create the screen."""
         super().__init__()
         self._workspace = workspace
         self.policy = policy
@@ -94,7 +94,7 @@ class PolicyScreen(TangyScreen[None]):
         )  # fmt: skip
 
     def on_mount(self) -> None:
-        """Fill both."""
+        """Fill the table and the effects."""
         activity = self._workspace.activity
         table = self.query_one(PolicyTable)
         table.show(policy_rows(activity, self.policy))
@@ -109,11 +109,11 @@ class PolicyScreen(TangyScreen[None]):
                 effects.write(f"{words}: {effects_words(variables)}")
 
     def action_why(self) -> None:
-        """Tell why, for the chosen row (the first, where none is)."""
+        """Explain the chosen row (by default the first)."""
         self._explain(self.query_one(PolicyTable).chosen or 0)
 
     def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
-        """Tell why, for the row that was chosen with Enter."""
+        """Explain the row chosen with Enter."""
         event.stop()
         self._explain(event.index)
 
@@ -122,7 +122,7 @@ class PolicyScreen(TangyScreen[None]):
         self.app.push_screen(why_row(self._workspace, self.policy, situation))
 
     def action_play(self) -> None:
-        """Let Tangy run a game by this policy, if that is meant."""
+        """Let Tangy run a game with this policy, after confirmation."""
         self.run_worker(self._play(), name="play")
 
     async def _play(self) -> None:
@@ -132,12 +132,12 @@ class PolicyScreen(TangyScreen[None]):
             await app.action_play(self.policy.digest)
 
     def action_compare(self) -> None:
-        """Compare this policy with another, or with what a teacher shows."""
+        """Compare this policy with another, or with a teacher's demonstrations."""
         app: Any = self.app
         app.run_worker(app.compare(f"policy:{self.policy.digest}"))
 
     def action_leave(self) -> None:
-        """Go back."""
+        """Close the screen."""
         close(self, None)
 
     def _summary(self) -> str:

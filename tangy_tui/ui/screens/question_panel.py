@@ -1,6 +1,6 @@
-"""Asking in place: Tangy is not sure, the game waits, and the teacher answers by a command.
+"""A question in a game: Tangy is unsure, the game waits, and the teacher answers by a command.
 
-The answer goes through the same question as a command in teaching: nothing happens before a y.
+The answer is verified like a command while teaching: nothing happens before a y.
 """
 
 from __future__ import annotations
@@ -63,11 +63,11 @@ ResultT = TypeVar("ResultT")
 KEYS = ("why", "command:answer", "pause", "back:give the game up")
 ACCEPTING_KEYS = ("why", "accept:all right", "command:answer", "pause", "back:give the game up")
 OWN_KEYS = ("why", "command:answer", "pause", "back:let Tangy go on by itself")
-"""The keys that count while the line does not have them."""
+"""The keys available while the line does not have the focus."""
 
 
 class Instead(Enum):
-    """What can come in the place of an answer."""
+    """Outcomes other than an answer."""
 
     GIVE_UP = "give up"
     ACCEPT = "accept"
@@ -80,10 +80,10 @@ def wanted(question: Unsure) -> bool:
 
 
 class AskingPanel(Vertical):
-    """What Tangy asks and why, and the line to answer in; `answer()` waits for the answer.
+    """Tangy's question with its reason, and the line for answers; `answer()` waits for one.
 
-    It listens through the ears of the program, if there are any; an answer that is spoken is
-    verified as one that is typed. While the robot is stopped it is `held`: commands are given back.
+    It also listens through the application's speech input; spoken answers are verified like typed
+    ones. While the robot is stopped the panel is on hold, and returns commands to the line.
     """
 
     DEFAULT_CSS = """
@@ -95,10 +95,10 @@ class AskingPanel(Vertical):
     """
 
     class WhyWanted(Message):
-        """Why was typed: the grounds are to be shown."""
+        """The teacher asked why: show the explanation."""
 
     class Commanded(Message):
-        """A command was typed that is no answer."""
+        """The teacher typed a command instead of an answer."""
 
         def __init__(self, command: GameCommand) -> None:
             self.command = command
@@ -111,9 +111,9 @@ class AskingPanel(Vertical):
         question: Unsure,
         before: str = "",
     ) -> None:
-        """Make the panel for a question; `before` is the result of the last answer.
+        """Create the panel for a question; `before` is the result of the last answer.
 
-        Where staff wanted to be asked, who leaves it lets Tangy go on by itself.
+        If staff requested the question, leaving it lets Tangy continue by itself.
         """
         super().__init__(id="asking")
         self._workspace = workspace
@@ -126,7 +126,7 @@ class AskingPanel(Vertical):
         self._answer = asyncio.get_running_loop().create_future()
         self._dialog: Dialog[Any] | None = None
         self._held = False
-        self.is_open = False  # for an answer: the line is seen, and no question waits for its own
+        self.is_open = False  # for answers: the line is visible, and no verification is open
         self._by_voice = False  # the present command was spoken
         self._hearing = hearing_of(self.app)
         self._before = clean(before)
@@ -158,9 +158,9 @@ class AskingPanel(Vertical):
         )
 
     def on_mount(self) -> None:
-        """Take the keys, but none that was typed before the question could be seen.
+        """Focus the line, but ignore keys typed before the question was visible.
 
-        Where a key is pushed to talk, the screen keeps them.
+        With push-to-talk, the screen keeps the focus.
         """
         self._take_keys()
         self.set_timer(SETTLE_SECONDS, self._ready)
@@ -168,7 +168,7 @@ class AskingPanel(Vertical):
             self._hearing.attend(self)
 
     def on_unmount(self) -> None:
-        """Hear no more here."""
+        """Stop listening."""
         if self._hearing is not None:
             self._hearing.leave(self)
 
@@ -190,11 +190,11 @@ class AskingPanel(Vertical):
             self.query_one(CommandBar).focus_input()
 
     async def answer(self) -> Verified | Instead:
-        """Wait for an answer that was verified, or for what came in its place."""
+        """Wait for a verified answer, or another outcome."""
         return await self._answer
 
     def withdraw(self) -> None:
-        """Close the question: an event has made it void."""
+        """Close the question, which an event has made obsolete."""
         self._settle(Instead.WITHDRAWN)
         if (dialog := self._dialog) is not None:
             self._close(dialog)
@@ -204,18 +204,18 @@ class AskingPanel(Vertical):
         dialog.on_stop(Stop("the question was withdrawn"))
 
     async def _take_away(self, dialog: Dialog[Any]) -> None:
-        """Take a dialog of the question's away, as soon as nothing lies over it."""
+        """Remove a dialog of the question, as soon as it is on top."""
         while dialog.is_attached:
             self._close(dialog)
             await asyncio.sleep(0.05)
 
     @property
     def acceptable(self) -> bool:
-        """Whether it can be said that what happened is all right."""
+        """Whether the teacher can accept what happened as normal."""
         return self._acceptable
 
     def accept(self) -> bool:
-        """Say that what happened is all right; False: that cannot be said of this question."""
+        """Accept what happened as normal; False: not possible for this question."""
         if self._acceptable and self._held:
             self.say(text.STOPPED_FIRST)
         elif self._acceptable:
@@ -240,9 +240,9 @@ class AskingPanel(Vertical):
             self._settle(Instead.GIVE_UP)
 
     async def _put(self, dialog: Dialog[ResultT]) -> ResultT:
-        """Put a question over the screen; it is taken away if what Tangy asks is withdrawn.
+        """Show a dialog, which closes if the question is withdrawn.
 
-        Its worker is the screen's: an answer must have somebody who waits for it.
+        Its worker belongs to the screen, so that its answer is always awaited.
         """
         self._dialog = dialog
         try:
@@ -255,7 +255,7 @@ class AskingPanel(Vertical):
             self._answer.set_result(answer)
 
     def hold(self, held: bool) -> None:
-        """Take no commands while the robot is stopped; the keys go to the screen."""
+        """Hold or release commands while the robot is stopped; the screen gets the focus."""
         self._held = held
         if held:
             self.screen.set_focus(None)
@@ -265,7 +265,7 @@ class AskingPanel(Vertical):
             self._take_keys()
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
-        """Put a typed answer to Tangy, or carry out a command."""
+        """Handle a typed answer or command."""
         event.stop()
         self._by_voice = False
         word = read_screen(event.text)
@@ -289,7 +289,7 @@ class AskingPanel(Vertical):
             self._carry_out(command)
 
     def _show(self, word: Perform) -> None:
-        """Show the requested help, or run a key's action."""
+        """Show the explanation, or run a key's action."""
         if word.action == "why":
             self.post_message(self.WhyWanted())
         else:
@@ -330,7 +330,7 @@ class AskingPanel(Vertical):
             self._be_open(True)
 
     async def _verify(self, asked: Asked | Offered) -> None:
-        """Put the question, and take its answer when its dialog has gone."""
+        """Verify an answer, and handle the reply once its dialog is removed."""
         dialog = dialog_for(asked, self._hearing.aloud if self._hearing is not None else "")
         answer = await self._put(dialog)
         while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
@@ -356,17 +356,17 @@ class AskingPanel(Vertical):
 
     @property
     def listens(self) -> bool:
-        """Whether a spoken answer could be taken now."""
+        """Whether a spoken answer can be taken now."""
         free = self.is_open and self._dialog is None and not self._answer.done()
         return free and self.screen.is_active
 
     @property
     def spoken(self) -> Phrasebook:
-        """What can be said."""
+        """The phrases that can be spoken."""
         return self._phrasebook
 
     def hear(self, said: Say) -> None:
-        """Put a spoken answer to Tangy."""
+        """Handle a spoken answer."""
         self._by_voice = True
         if self._held:
             self._return(said.text, text.STOPPED_FIRST)
@@ -374,24 +374,24 @@ class AskingPanel(Vertical):
             self._tell(self._answers.say(said))
 
     def told(self, sentence: str, kind: Kind) -> None:
-        """Say something about hearing, under the question and in the log."""
+        """Show a sentence about speech input, below the question and in the log."""
         self.say(sentence)
         self.screen.query_one(LogView).write(sentence, kind)
 
     def _be_open(self, is_open: bool) -> None:
-        """Open or close the panel for answers; utterances heard meanwhile come next."""
+        """Open or close the panel for answers; queued speech is handled next."""
         self.is_open = is_open
         if self._hearing is not None:
             self._hearing.look()
 
     def say(self, sentence: str) -> None:
-        """Say a sentence under the question, in the place of the last one."""
+        """Replace the sentence below the question."""
         self.set_class(bool(sentence), "-says", "-refuses")
         for said in self.query(".said").results(Static):
             said.update(clean(with_keys(sentence, keymap_of(self.app))))
 
     def show_keys(self, *, going: bool) -> None:
-        """Say which keys count while the line does not have them."""
+        """Show the available keys while the line does not have the focus."""
         for bar in self.query(AnswerBar):
             bar.rest(self._keys(going=going))
 

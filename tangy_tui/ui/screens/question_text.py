@@ -12,7 +12,7 @@ from tangy_tui.ui.reasons import why_of
 
 
 def question_words(workspace: Workspace, game: Supervision, question: Unsure) -> str:
-    """Write why Tangy asks; where answers were given, which."""
+    """Tell why Tangy asks, and which answers were given before."""
     if game.acceptable:
         return clean(acceptable_words(question.reason))
     if not question.fault and question.decision.seen:
@@ -22,7 +22,7 @@ def question_words(workspace: Workspace, game: Supervision, question: Unsure) ->
 
 
 def seen_words(workspace: Workspace, game: Supervision, question: Unsure) -> str:
-    """Write what Tangy sees where it asks."""
+    """Describe what Tangy sees."""
     scene = game.world.scene()
     words = state_words(workspace.activity, question.state, scene, workspace.name)
     return clean(f"Now: {words}")

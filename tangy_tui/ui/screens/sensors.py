@@ -1,4 +1,4 @@
-"""The sensors: how every device is, what a camera sees, and the last card as it was read."""
+"""The sensors screen: the state of every device, a camera's picture, and the last card read."""
 
 from __future__ import annotations
 
@@ -33,28 +33,28 @@ if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import CardSight
 
 LOOK_SECONDS = 0.25
-"""How often the devices are told of, and how often a picture is drawn at most."""
+"""The interval between two updates of devices and picture."""
 
 TINY_OR_WIDE = [(0, "-tiny"), (77, "-narrow"), WIDE[-1]]
-"""Below so many columns devices and picture are not seen side by side."""
+"""Below this width in cells, devices and picture are not shown side by side."""
 
 Shown = Callable[[], Status]
 
 
 class DeviceList(ChoiceList):
-    """The devices; `Chosen` tells of Enter on one."""
+    """The devices; posts `Chosen` on Enter."""
 
     class Chosen(Message):
-        """The device that the cursor is on was chosen."""
+        """The device at the cursor was chosen."""
 
     def _tell(self, index: int) -> None:
         self.post_message(self.Chosen())
 
 
 class SensorsScreen(TangyScreen[None]):
-    """The devices of a robot, what the chosen camera sees, and the card it has read.
+    """The devices of a robot, the picture of the chosen camera, and the card it read.
 
-    The cameras are open as long as the screen is there.
+    The cameras stay open while the screen is open.
     """
 
     CSS_PATH = "sensors.tcss"
@@ -85,15 +85,15 @@ class SensorsScreen(TangyScreen[None]):
         live: bool = False,
         where: str = "",
     ) -> None:
-        """Make the screen.
+        """Create the screen.
 
         Args:
-            workspace: whose robot it is.
-            sensors: its cameras; they are opened here, and closed with the screen.
-            health: what the devices of a game say of themselves.
-            shown: what the status line says of that game.
-            live: those devices are a robot's that is there.
-            where: in what way it is there, in a few words.
+            workspace: the workspace with the robot.
+            sensors: its cameras, opened and closed with the screen.
+            health: returns the readings of a game's devices.
+            shown: returns the status of that game.
+            live: whether those devices are real.
+            where: a note on the robot, in a few words.
         """
         super().__init__()
         self._workspace = workspace
@@ -105,7 +105,7 @@ class SensorsScreen(TangyScreen[None]):
         self.told: dict[str, Told] = {}
         self._frames: dict[Widget, tuple[str | None, str | None]] = {}
         self._seen = False
-        """Whether the picture is shown."""
+        """Whether a picture is shown."""
 
     def compose(self) -> ComposeResult:
         """Lay out the devices, details of one, its picture and the card."""
@@ -120,7 +120,7 @@ class SensorsScreen(TangyScreen[None]):
         yield key_line(("up down", "choose"), "camera", "panel", "zoom", "back", "help")
 
     def on_mount(self) -> None:
-        """Open the cameras, and tell of all devices from now on."""
+        """Open the cameras, and poll all devices."""
         self._devices.focus()
         self.look()
         cameras = self._cameras
@@ -131,19 +131,19 @@ class SensorsScreen(TangyScreen[None]):
         self.set_interval(LOOK_SECONDS, self.look)
 
     def on_choice_list_moved(self, event: ChoiceList.Moved) -> None:
-        """Tell of another device, and show what it sees if that is wanted."""
+        """Show another device, with its picture if wanted."""
         event.stop()
         self._tell_of_chosen()
         self._watch()
 
     def on_device_list_chosen(self, event: DeviceList.Chosen) -> None:
-        """Show what a camera sees, or hide it, for Enter on it."""
+        """Show or hide the picture of the camera chosen with Enter."""
         event.stop()
         if self._chosen in self._cameras:
             self.action_picture()
 
     def action_picture(self) -> None:
-        """Show what the chosen camera sees, or hide it."""
+        """Show or hide the picture of the chosen camera."""
         self._seen = not self._seen
         if self._seen and self._chosen not in self._cameras:
             self._seen = False
@@ -157,7 +157,7 @@ class SensorsScreen(TangyScreen[None]):
         self._watch()
 
     def action_leave(self) -> None:
-        """Give an enlarged panel its place back, or go back."""
+        """Restore a maximised panel, or close the screen."""
         if self.maximized is not None:
             self.minimize()
         else:
@@ -170,21 +170,21 @@ class SensorsScreen(TangyScreen[None]):
         return () if self._sensors is None else self._sensors.cameras
 
     async def _keep_open(self) -> None:
-        """Keep the cameras open, and let cards be read, until the screen goes."""
+        """Keep the cameras open and read cards while the screen is open."""
         assert self._sensors is not None  # noqa: S101 - there are cameras
         async with self._sensors:
             with self._sensors.reading_cards():
                 await asyncio.Event().wait()
 
     def _watch(self) -> None:
-        """Let pictures of the chosen camera come, if they are wanted; else none is asked for."""
+        """Request pictures of the chosen camera only if they are shown."""
         if self._seen and self._chosen in self._cameras:
             self.run_worker(self._draw(self._chosen), group="picture", exclusive=True)
         else:
             self.workers.cancel_group(self, "picture")
 
     async def _draw(self, device: str) -> None:
-        """Draw a camera's pictures as they come."""
+        """Draw a camera's pictures as they arrive."""
         assert self._sensors is not None  # noqa: S101 - there are cameras
         await asyncio.to_thread(__import__, "numpy")
         picture, loop = self.query_one(BlockPicture), asyncio.get_running_loop()
@@ -209,7 +209,7 @@ class SensorsScreen(TangyScreen[None]):
 
     @property
     def _chosen(self) -> str:
-        """The device that the cursor is on."""
+        """The device at the cursor."""
         return str(self._devices.chosen)
 
     def _status(self) -> Status:
@@ -218,7 +218,7 @@ class SensorsScreen(TangyScreen[None]):
         return Status(mode="sensors", note=self._workspace.robot.title)
 
     def look(self) -> None:
-        """Tell how everything is now, if anybody can see it."""
+        """Update all devices, if the screen is visible."""
         if self.told and not self.is_active:
             return
         self.told = {told.device.name: told for told in self._teller.tell()}
@@ -254,7 +254,7 @@ class SensorsScreen(TangyScreen[None]):
         self._frame(picture, below=below)
 
     def _frame(self, widget: Widget, *, above: str | None = None, below: str | None = None) -> None:
-        """Write what stands in a frame; the same again would draw all of the panel anew."""
+        """Set title and subtitle of a frame; unchanged ones would redraw the panel."""
         title, subtitle = self._frames.get(widget, (None, None))
         above, below = title if above is None else above, subtitle if below is None else below
         self._frames[widget] = above, below
@@ -275,7 +275,7 @@ class SensorsScreen(TangyScreen[None]):
 
 
 def device_row(told: Told, width: int) -> Row:
-    """Write one device: a mark and a word for its state, how old its data is, and, wide, why."""
+    """Format a device: mark, state, age of its data, and the reason if there is room."""
     label = min(20, max(10, width - 24))
     ink = state_ink(told)
     mark = "  " if told.well or not told.code else "!!" if told.bad else "! "
@@ -292,14 +292,14 @@ def device_row(told: Told, width: int) -> Row:
 
 
 def state_ink(told: Told) -> str:
-    """Return the ink in which a state is written; its word says as much."""
+    """Return the ink of a state, whose word tells the same."""
     if not told.code or told.code in ("OPENING", "ENDED"):
         return "dim"
     return "good" if told.well else "bad" if told.bad else "warn"
 
 
 def about_lines(told: Told, width: int) -> list[PageLine]:
-    """Tell of one device: how it is, why, since when, and what it measures."""
+    """Describe a device: state, reason, duration, and measurements."""
     since = f" for {age_words(told.seconds)}" if told.seconds is not None and told.code else ""
     kind = "" if told.live or not told.code else " (simulated)"
     lines = [PageLine(((f"{told.state}{since}{kind}", state_ink(told)),))]
@@ -318,7 +318,7 @@ def about_lines(told: Told, width: int) -> list[PageLine]:
 
 
 def card_page(cards: CardSight, letters: list[str], width: int) -> list[PageLine]:
-    """Write the last card that was read, when that was, and why none is read now."""
+    """Describe the last card read, its time, and why none is read now."""
     read, problem = card_words(cards)
     lines = paragraph(read, width)
     if problem:

@@ -1,4 +1,4 @@
-"""The page on which staff set a live game up. Begin is a key of its own; nothing moves before."""
+"""The screen on which staff set up a live game. Nothing moves before the begin key."""
 
 from __future__ import annotations
 
@@ -39,17 +39,17 @@ from tangy_tui.ui.widgets.set_up_list import SetUpList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 LOOK_SECONDS = 0.5
-"""Between two looks at what is ready."""
+"""The interval between two checks."""
 
 SETTLES_SECONDS = 4.0
-"""In which devices that were just started are given time to be ready."""
+"""Time for newly started devices to become ready, in s."""
 
 ChooseActivity = Callable[[], Awaitable[None]]
 SwitchOn = Callable[[], Awaitable[LiveWorld | None]]
 
 
 class SetUpScreen(TangyScreen[bool]):
-    """People, choices and checks on one page. Dismissed with whether the game is to begin."""
+    """People, choices and checks. Dismissed with whether to begin the game."""
 
     DEFAULT_CSS = """
     SetUpScreen #page { height: 1fr; }
@@ -82,7 +82,7 @@ class SetUpScreen(TangyScreen[bool]):
     def __init__(
         self, setup: SetUp, switch_on: SwitchOn, choose: ChooseActivity | None = None
     ) -> None:
-        """Take the set-up, the switch of the robot, and the choice of another activity."""
+        """Show a set-up; `switch_on` starts the robot, `choose` asks for another activity."""
         super().__init__()
         self.setup = setup
         self._switch_on = switch_on
@@ -91,7 +91,7 @@ class SetUpScreen(TangyScreen[bool]):
         self._drawn: object = None
 
     def compose(self) -> ComposeResult:
-        """Lay out the page."""
+        """Lay out the lines and the seats."""
         kind = getattr(self.app, "kind", None)
         in_ascii = kind is not None and kind.ascii
         yield StatusLine()
@@ -116,9 +116,9 @@ class SetUpScreen(TangyScreen[bool]):
         self.set_interval(LOOK_SECONDS, self._show)
 
     def on_stop(self, message: Stop) -> None:
-        """Begin no game, and stop the robot if it is on; only the key to begin lets it go on."""
+        """Stop the robot if it is on, and begin no game; only the begin key releases the robot."""
         if self.setup.world is not None:
-            self.setup.world.link.stop(STOPPED)  # before anything is drawn
+            self.setup.world.link.stop(STOPPED)  # before drawing
         elif not self._busy:
             self._say(NOTHING_MOVES)
             return
@@ -126,7 +126,7 @@ class SetUpScreen(TangyScreen[bool]):
         self._say(text.STOPPED)
 
     def _say(self, words: str) -> None:
-        """Say something in the upper edge of the page, where it covers no line; "" no more."""
+        """Show a sentence in the panel's title, where it covers no line; "" clears it."""
         ink = "$warning bold" if words else ""
         title = Content.assemble((clean(words or text.TITLE), ink))
         self.query_one(SetUpList).border_title = title
@@ -168,7 +168,7 @@ class SetUpScreen(TangyScreen[bool]):
     # -------------------------------------------------------------------------------- the keys
 
     def on_set_up_list_turned(self, event: SetUpList.Turned) -> None:
-        """Change a line by left and right."""
+        """Change the line at the cursor by left or right."""
         event.stop()
         self._say("")
         line, by = event.line, event.by
@@ -177,7 +177,7 @@ class SetUpScreen(TangyScreen[bool]):
         self._show()
 
     def on_set_up_list_carried(self, event: SetUpList.Carried) -> None:
-        """Let a person sit where another sits."""
+        """Swap the seats of two people."""
         event.stop()
         if self.setup.world is not None:
             self._say(text.SEATED)
@@ -185,14 +185,14 @@ class SetUpScreen(TangyScreen[bool]):
         self._show()
 
     def on_set_up_list_held(self, event: SetUpList.Held) -> None:
-        """Say how the person who is held is carried."""
+        """Explain how to move the person who is picked up."""
         event.stop()
         self._say(
             text.CARRIED.format(self.setup.workspace.name(event.person)) if event.person else ""
         )
 
     def on_set_up_list_entered(self, event: SetUpList.Entered) -> None:
-        """Change a line by Enter."""
+        """Change the line at the cursor by Enter."""
         event.stop()
         self._say("")
         line = event.line
@@ -231,7 +231,7 @@ class SetUpScreen(TangyScreen[bool]):
                 self._say(text.PATTERNS_HOW)
 
     def action_pattern(self, number: int) -> None:
-        """Play for a pattern by its number, or not any more."""
+        """Append a pattern, given by number, or remove it."""
         patterns = self.setup.workspace.activity.rules.patterns
         if number <= len(patterns):
             self.setup.toggle_pattern(patterns[number - 1].name)
@@ -240,7 +240,7 @@ class SetUpScreen(TangyScreen[bool]):
     # ------------------------------------------------------------------------- who takes part
 
     def action_join(self) -> None:
-        """Ask who else is there, and whether for good."""
+        """Ask who else takes part, and whether for good."""
         if self.setup.world is not None or self.setup.teams_play:
             why = text.SEATED if self.setup.world is not None else text.TEAMS_PLAY
             self._say(why)
@@ -248,7 +248,7 @@ class SetUpScreen(TangyScreen[bool]):
             self.run_worker(self._ask(self._join), name="join", group="check")
 
     def action_rename(self) -> None:
-        """Ask what the person is called that the cursor is on."""
+        """Ask for a new name of the person at the cursor."""
         line = self.query_one(SetUpList).chosen
         if line is not None and line.kind == "person" and not self._busy:
             self.run_worker(self._ask(partial(self._rename, line.id)), name="name", group="check")
@@ -267,7 +267,7 @@ class SetUpScreen(TangyScreen[bool]):
             self.setup.rename(person, name)
 
     async def _ask(self, ask: Callable[[], Awaitable[None]]) -> None:
-        """Ask something, and say why it cannot be done if it cannot."""
+        """Ask a question, and tell if the answer is not possible."""
         try:
             await ask()
         except TangyError as error:
@@ -338,7 +338,7 @@ class SetUpScreen(TangyScreen[bool]):
         if self.setup.world is None:
             await self._check(CHECKS[0])
             until = monotonic() + SETTLES_SECONDS
-            while self._waits(until):  # noqa: ASYNC110 - it is looked at
+            while self._waits(until):  # noqa: ASYNC110 - the checks are polled
                 await asyncio.sleep(LOOK_SECONDS)
         if self.setup.world is None or self._stopped:
             return
@@ -349,10 +349,10 @@ class SetUpScreen(TangyScreen[bool]):
             self.dismiss(True)
 
     def _waits(self, until: float) -> bool:
-        """Say whether devices are given time to be ready, until a time in s at most."""
+        """Return whether to wait for devices, at most until a time in s."""
         return not self._stopped and bool(self.setup.not_ready) and monotonic() < until
 
     def action_leave(self) -> None:
-        """Go back; the robot is switched off again."""
+        """Close the screen; the robot is switched off again."""
         if not self._busy:
             self.close(False)

@@ -1,4 +1,4 @@
-"""The lines of the set-up page: people at tables, the choices for the game, and the checks."""
+"""The lines of the set-up: people at tables, choices for the game, and checks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tangy_tui.ui.widgets.set_up_list import SetUpLine
 from tangy_tui.ui.widgets.wrapping import wrap
 
 NARROWEST = 20
-"""Columns into which the names of patterns are wrapped at least."""
+"""The least width in cells into which the patterns are wrapped."""
 INKS = {"ready": "good", "not ready": "warn", "off": "dim", "not told": "dim"}
 
 
@@ -34,7 +34,7 @@ def people_lines(setup: SetUp) -> list[SetUpLine]:
 
 
 def game_lines(setup: SetUp, width: int) -> list[SetUpLine]:
-    """Return the choices for the game, under its patterns, for a page of so many columns."""
+    """Return the choices for the game below its patterns, for a width in cells."""
     workspace = setup.workspace
     rows = [
         ("activity", text.ACTIVITY, workspace.activity.title),
@@ -60,7 +60,7 @@ def game_lines(setup: SetUp, width: int) -> list[SetUpLine]:
 
 
 def check_lines(setup: SetUp) -> list[SetUpLine]:
-    """Return what has to be ready, and what the robot has not."""
+    """Return the checks, and the robot's missing devices."""
     lines = [SetUpLine("head", "checks", text.READY, "")]
     for check in setup.checks():
         ink = INKS.get(check.state, "text")

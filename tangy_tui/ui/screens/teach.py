@@ -66,9 +66,9 @@ T = TypeVar("T")
 
 
 class TeachScreen(TangyScreen[bool]):
-    """One teacher's session. Dismissed with True when the wanted demonstrations are complete.
+    """One teacher's session. Dismissed with True when the scripted demonstration is complete.
 
-    Commands are typed, or heard; one that is spoken leaves the keys where they are.
+    Commands are typed or spoken; spoken ones do not change the focus.
     """
 
     CSS_PATH = "teach.tcss"
@@ -89,16 +89,16 @@ class TeachScreen(TangyScreen[bool]):
         begun: Sequence[TeachingEvent] = (),
         tour: bool = False,
     ) -> None:
-        """Make the screen.
+        """Create the screen.
 
         Args:
-            workspace: what it belongs to.
+            workspace: the workspace of the session.
             teaching: the session.
-            resume: take up an unfinished demonstration of this teacher.
-            another: the session has begun already; begin its next demonstration.
-            scripted: let a scripted teacher give the demonstration, this many steps a second.
-            begun: the session has begun already, and this is what followed.
-            tour: show a new teacher around.
+            resume: resume an unfinished demonstration of this teacher.
+            another: the session has already begun; begin its next demonstration.
+            scripted: let a scripted teacher demonstrate, at this many steps a second.
+            begun: the session has already begun with these events.
+            tour: whether to show the tour.
         """
         super().__init__()
         self._workspace = workspace
@@ -130,7 +130,7 @@ class TeachScreen(TangyScreen[bool]):
         if hearing is not None:
             self._listener.hearing = hearing
             if hearing.by_key:
-                self.AUTO_FOCUS = ""  # type: ignore[misc]  # so that t is a key at once
+                self.AUTO_FOCUS = ""  # type: ignore[misc]  # so that t works at once
             yield HearingLine(hearing)
         yield CommandBar(
             lambda typed: self.teaching.phrasebook.complete(typed),
@@ -153,7 +153,7 @@ class TeachScreen(TangyScreen[bool]):
         self._listener.attend()
 
     def on_unmount(self) -> None:
-        """Hear and say no more here."""
+        """Stop listening and speaking."""
         self._listener.leave()
         speaker_of(self.app).hush()
 
@@ -163,7 +163,7 @@ class TeachScreen(TangyScreen[bool]):
         return self.teaching.begin(resume=self._resume)
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
-        """Put a typed command to Tangy."""
+        """Handle a typed command."""
         event.stop()
         self._listener.by_voice = False
         remark = self.teaching.remark
@@ -173,11 +173,11 @@ class TeachScreen(TangyScreen[bool]):
         follow_word(self, read_teaching(event.text, self.teaching.phrasebook.game), event.text)
 
     def follow(self, command: TeacherCommand) -> None:
-        """Put a command to the session, and tell what came of it."""
+        """Apply a command to the session, and show its results."""
         self._apply(command)
 
     def again_from(self, step: int | None) -> None:
-        """Show the present game again from a step on, counted from 1; None: it was not said."""
+        """Demonstrate the present game again from a step, counted from 1; None: not specified."""
         self.query_one(CommandBar).ready()
         if step is None:
             self._log.write(text.WHICH_STEP, "warn")
@@ -185,7 +185,7 @@ class TeachScreen(TangyScreen[bool]):
             self.again(self.teaching.demonstration.id, step - 1)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave a scripted teacher alone: who watches can only look, leave or stop."""
+        """Disable editing for a scripted teacher: onlookers can only look, leave or stop."""
         if action == "think_no_more":
             return self._why.thinks
         if action == "tour":
@@ -195,41 +195,41 @@ class TeachScreen(TangyScreen[bool]):
         return self._scripted is None or action not in NOT_WATCHING
 
     def take_letter(self, event: events.Key | events.Paste) -> bool:
-        """Type letters into the line, wherever the focus is: no letter is a shortcut here."""
+        """Send letters to the line, whatever has the focus: none is a shortcut here."""
         by_key = self._listener.by_key
         return self._scripted is None and type_letter(self, event, push_to_talk=by_key)
 
     async def action_talk(self) -> None:
-        """Push to talk: begin or end the utterance."""
+        """Start or end an utterance (push-to-talk)."""
         await self.run_action("app.talk")
 
     def action_undo(self) -> None:
-        """Take the last step back."""
+        """Undo the last step."""
         self._apply(Undo())
 
     def action_redo(self) -> None:
-        """Do the step again that was taken back last."""
+        """Redo the last undone step."""
         self._apply(Redo())
 
     def action_again(self) -> None:
-        """Show the present game again from the step that is chosen."""
+        """Demonstrate the present game again from the chosen step."""
         self.again_from(self.query_one(Transcript).chosen)
 
     def again(self, id: str, kept: int) -> None:
-        """Show a demonstration again from the step after `kept`, if the teacher means it."""
+        """Demonstrate a game again from the step after `kept`, after confirmation."""
         self.run_worker(show_again(self, Again(id, kept)), name="again")
 
     def action_rule(self) -> None:
-        """Let the last step hold for more situations, whatever some of its facts are."""
+        """Extend the last step to more situations by ignoring some facts."""
         self.query_one(CommandBar).ready()
         self.run_worker(add_rule(self), name="rule")
 
     def listen(self) -> None:
-        """Take commands again."""
+        """Accept commands again."""
         self._listener.open(True)
 
     async def alone(self, dialog: Screen[T]) -> T:
-        """Wait for an answer; no command is taken before it has been acted upon."""
+        """Wait for a dialog's answer; accept no commands until it has been applied."""
         self._listener.open(False)
         answer = await self.app.push_screen_wait(dialog)
         while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
@@ -237,21 +237,21 @@ class TeachScreen(TangyScreen[bool]):
         return answer
 
     def action_coverage(self) -> None:
-        """Show which situations were shown, where the steps are seen, or the steps again."""
+        """Switch between the coverage and the steps."""
         self.toggle_class("-coverage")
         covers = self.has_class("-coverage")
         panel = self.query_one(CoverageList if covers else Transcript)
         self.call_after_refresh(panel.focus)
 
     def action_choose(self, by: int) -> None:
-        """Give the keys to the steps, and choose one."""
+        """Focus the steps, and choose one."""
         steps = self.query_one(Transcript)
         self.remove_class("-coverage")
         steps.focus()
         steps.action_choose(by)
 
     def action_why(self) -> None:
-        """Tell what Tangy would do in the chosen step's situation, or here, and why."""
+        """Explain what Tangy would do in the chosen step's situation, or in the present one."""
         self.query_one(CommandBar).ready()
         self._why.show(self.query_one(Transcript).chosen)
 
@@ -261,18 +261,18 @@ class TeachScreen(TangyScreen[bool]):
         self._log.write("Cancelled.", "dim")
 
     def teaches_as(self, name: str) -> None:
-        """Switch the teacher; a game in progress keeps its teacher."""
+        """Change the teacher; a game in progress keeps its teacher."""
         self.teaching.teach_as(name)
         if not self.teaching.demonstration.steps:
             self._apply(Discard())
         self._log.write(renamed_teacher(name, self.teaching.demonstration.teacher), "good")
 
     def action_tour(self, way: str) -> None:
-        """Go on with the tour, or end it."""
+        """Continue the tour, or end it."""
         self._picture.go_on_tour(skip=way == "skip")
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
-        """Tell why, for the step that was chosen with Enter."""
+        """Explain the step chosen with Enter."""
         event.stop()
         self.action_why()
 
@@ -281,7 +281,7 @@ class TeachScreen(TangyScreen[bool]):
         self._apply(Next())
 
     def action_leave(self) -> None:
-        """Close what lies over the steps, let go of a chosen one, or go home; all is kept."""
+        """Close the coverage, take the cursor off the steps, or go home; all steps are stored."""
         if not self.is_active:
             return  # it is covered, or has been left
         steps = self.query_one(Transcript)
@@ -294,16 +294,16 @@ class TeachScreen(TangyScreen[bool]):
             go_home(self, watching=self._scripted is not None)
 
     def action_discard(self) -> None:
-        """Put the present game away, if that is meant, and begin another."""
+        """Discard the present game, after confirmation, and begin another."""
         self.query_one(CommandBar).ready()
         self.run_worker(put_away(self), name="discard")
 
     def action_perform(self, action: str) -> None:
-        """Do what a key of the program does."""
+        """Run the action of a global key."""
         follow_word(self, Perform(action), "")
 
     def on_stop(self, message: Stop) -> None:
-        """Let the robot stand where it is seen until the next command is carried out."""
+        """Stop the robot where it is drawn, until the next command."""
         self.query_one(RoomView).hold(True)
         self.query_one(CommandBar).ready()
         self._log.write(text.STOPPED, "warn")
@@ -311,7 +311,7 @@ class TeachScreen(TangyScreen[bool]):
     def _apply(self, command: TeacherCommand) -> None:
         try:
             events = self.teaching.apply(command)
-        except TangyError as error:  # the log could not be written, and nothing was done
+        except TangyError as error:  # logging failed, so nothing was done
             self._log.write(str(error), "bad")
             self.notify(str(error), severity="error", markup=False)
             self.query_one(CommandBar).ready()
@@ -322,7 +322,7 @@ class TeachScreen(TangyScreen[bool]):
 
     def _tell(self, events: Sequence[TeachingEvent]) -> None:
         if not self.query(StatusLine):
-            return  # the screen is going, and its panels go before its session does
+            return  # the screen is closing, and its panels are removed first
         bar = self.query_one(CommandBar)
         self._picture.follow_tour(events)
         undone = [event for event in events if isinstance(event, StepUndone)]
@@ -365,14 +365,14 @@ class TeachScreen(TangyScreen[bool]):
         return self._scripted is not None or self._listener.by_voice
 
     async def _remark(self, remark: Remark) -> None:
-        """Let a remark be answered in place; one on a spoken step is answered by its word."""
+        """Ask about a remark in place; a remark on a spoken step is answered by voice."""
         answer = await self.alone(remark_dialog(remark, self.teaching))
         if answer == "later":
-            self._picture.remark(remark)  # it stood in the dialog, and is read here from now on
+            self._picture.remark(remark)  # the dialog has shown it; from now on the log does
         self._apply(Settle(answer))
 
     async def _verify(self, asked: Asked | Offered) -> None:
-        """Put the question, and give its answer to the session when its dialog has gone."""
+        """Verify a command, and apply the answer once the dialog is removed."""
         answer = await self.alone(dialog_for(asked, self._listener.aloud))
         self._apply(answer.reply)
 
@@ -385,5 +385,5 @@ class TeachScreen(TangyScreen[bool]):
         self.close(True)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
-        """Listen for names as they are said now."""
+        """Listen for names with their present pronunciation."""
         self._listener.refresh()

@@ -1,4 +1,4 @@
-"""What a teacher is asked before it is done: going back, putting a game away, making a rule."""
+"""Questions to a teacher before going back, discarding a game, or making a rule."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 async def show_again(screen: TeachScreen, command: Again) -> None:
-    """Show a demonstration again, if the teacher means to take back steps of this one."""
+    """Demonstrate a game again, if the teacher agrees to undo steps of this one."""
     present = screen.teaching.demonstration
     steps = len(present.steps)
     if command.demonstration == present.id and 0 <= command.kept < steps:
@@ -27,7 +27,7 @@ async def show_again(screen: TeachScreen, command: Again) -> None:
 
 
 async def put_away(screen: TeachScreen) -> None:
-    """Put the present game away, if the teacher means it."""
+    """Discard the present game, if the teacher confirms."""
     steps = len(screen.teaching.demonstration.steps)
     dialog = ConfirmDialog(*text.discard_words(steps), yes=text.DISCARD, no=text.KEEP)
     if not steps or await screen.alone(dialog):
@@ -36,7 +36,7 @@ async def put_away(screen: TeachScreen) -> None:
 
 
 async def add_rule(screen: TeachScreen) -> None:
-    """Make the last step a rule: the teacher chooses which facts make no difference to it."""
+    """Make the last step a rule: the teacher chooses the facts that make no difference."""
     choices = screen.teaching.rules.choices(screen.teaching.demonstration)
     if isinstance(choices, NoRule):
         screen.follow(SameWhatever())  # tells why there is none

@@ -25,7 +25,7 @@ from tangy_tui.ui.widgets.log_view import Kind, LogView
 
 
 class TeachHearing:
-    """Takes spoken commands for a session, one at a time. Without ears it only keeps count."""
+    """Takes spoken commands, one at a time. Without a recogniser it only keeps its state."""
 
     def __init__(
         self,
@@ -34,7 +34,7 @@ class TeachHearing:
         teaching: TeachingSession,
         apply: Callable[[Say], None],
     ) -> None:
-        """Make the listener; `apply` puts a command to the session."""
+        """Create the listener; `apply` applies a command to the session."""
         self.hearing: Hearing | None = None
         self.by_voice = False
         """Whether the present command was spoken."""
@@ -42,14 +42,14 @@ class TeachHearing:
         self._workspace = workspace
         self._teaching = teaching
         self._apply = apply
-        self._people = workspace.people  # as they were when the session was made
+        self._people = workspace.people  # when the session was created
         self._present = self._people
-        self._changed: Phrasebook | None = None  # since they are others
+        self._changed: Phrasebook | None = None  # the phrasebook after a change of people
         self._open = False
 
     @property
     def by_key(self) -> bool:
-        """Whether a key is pushed to talk."""
+        """Whether it is push-to-talk."""
         return self.hearing is not None and self.hearing.by_key
 
     @property
@@ -62,14 +62,14 @@ class TeachHearing:
 
     @property
     def help(self) -> str:
-        """How to talk to Tangy; "" if nothing listens."""
+        """How to talk to Tangy; "" without speech input."""
         if self.hearing is None:
             return ""
         return f" {BY_KEY if self.by_key else HANDS_FREE}"
 
     @property
     def aloud(self) -> str:
-        """How an answer to a question begins that is given by voice; "" if none can be."""
+        """The words that tell how to answer a question by voice; "" if that is not possible."""
         return "" if self.hearing is None else self.hearing.aloud
 
     def follow(self, events: Iterable[TeachingEvent]) -> None:
@@ -78,29 +78,29 @@ class TeachHearing:
             self.hearing.ears.follow(events)
 
     def attend(self) -> None:
-        """Listen from now on."""
+        """Start to listen."""
         if self.hearing is not None:
             self.hearing.attend(self)
 
     def leave(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         if self.hearing is not None:
             self.hearing.leave(self)
 
     def open(self, is_open: bool) -> None:
-        """Open or close for commands; utterances heard meanwhile come next."""
+        """Open or close for commands; queued speech is handled next."""
         self._open = is_open
         if self.hearing is not None:
             self.hearing.look()
 
     @property
     def listens(self) -> bool:
-        """Whether a command could be put to the session now."""
+        """Whether a command can be applied to the session now."""
         return self._open and self._screen.is_active
 
     @property
     def spoken(self) -> Phrasebook:
-        """What can be said, with the names as they are pronounced now."""
+        """The phrases that can be spoken, with the present pronunciation of names."""
         present = tuple(p for p in self._workspace.people if p.id in self._teaching.people)
         if self._changed is None and self._people is self._workspace.people:
             return self._teaching.phrasebook
@@ -112,12 +112,12 @@ class TeachHearing:
         return self._changed
 
     def refresh(self) -> None:
-        """Listen for who takes part now, and for names as they are said now."""
+        """Listen for the present participants and the pronunciation of their names."""
         if self.hearing is not None:
             self.hearing.understand()
 
     def hear(self, said: Say) -> None:
-        """Put a spoken command to the session; what steers the program counts as if typed."""
+        """Apply a spoken command; words that steer the application count as if typed."""
         if said.commands is None:
             self._screen.post_message(
                 CommandBar.Given(self._screen.query_one(CommandBar), said.text)
@@ -127,14 +127,14 @@ class TeachHearing:
         self._apply(said)
 
     def told(self, sentence: str, kind: Kind) -> None:
-        """Say something about hearing in the log of the screen."""
+        """Show a sentence about speech input in the log."""
         for log in self._screen.query(LogView):
             log.write(sentence, kind)
 
     def give_back(self, heard: str) -> None:
-        """Put a command into the bar to be changed.
+        """Put a command back into the bar for correction.
 
-        One that was spoken does not go there: what was overheard would stay in the line.
+        A spoken command is not put back: overheard words would stay in the line.
         """
         bar = self._screen.query_one(CommandBar)
         if self.by_voice:

@@ -1,4 +1,4 @@
-"""The keys of the teaching screen, and what its help says of them."""
+"""The keys of the teaching screen, and its help."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tangy_tui.ui.keys import bind
 
 KEYS = ("undo", "redo", "why", "learn", "next", "shown", "again", "library", "back:home", "help")
 HEARING_KEYS = ("talk", "undo", "redo", "why", "learn", "next", "listen", "back:home", "help")
-"""The same where there is a microphone."""
+"""The same with a microphone."""
 
 RULE_KEYS = (
     *("undo", "why", "rule", "shown", "learn", "next"),
@@ -20,17 +20,17 @@ RULE_HEARING_KEYS = (
     *("talk", "undo", "why", "rule", "shown", "learn", "next"),
     *("redo", "listen", "back:home", "help"),
 )
-"""The same in an activity whose steps can become rules."""
+"""The same for an activity whose steps can become rules."""
 
 TOUR_KEYS = ("undo", "redo", "back:skip the tour", "help")
 TOUR_GOES_ON = "open:go on"
-"""The same while a new teacher is shown around."""
+"""The same during the tour."""
 
 NOT_WATCHING = ("undo", "redo", "again", "next", "discard", "perform", "rule")
-"""What only the teacher does."""
+"""Actions of the teacher only."""
 
 WATCHING = (("up down", "a step"), "why", "shown", "back:leave", "help")
-"""The keys that a scripted teacher leaves to who watches."""
+"""The keys for onlookers of a scripted teacher."""
 
 HELP = (
     "You are the teacher. Look at the room, decide what Tangy should do, and type it. Tangy "

@@ -1,4 +1,4 @@
-"""Letters on the teaching screen: they go to its line, wherever the focus is."""
+"""Letters on the teaching screen go to the command bar, whatever has the focus."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tangy_tui.ui.widgets.command_bar import CommandBar
 def type_letter(
     screen: Screen[Any], event: events.Key | events.Paste, *, push_to_talk: bool
 ) -> bool:
-    """Type a letter, or text that was pasted, into the line; False: it is a key like any other."""
+    """Type a letter, or pasted text, into the bar; return False if it is a key."""
     bar = next(iter(screen.query(CommandBar)), None)
     if isinstance(event, events.Paste):
         lines = event.text.strip().splitlines()

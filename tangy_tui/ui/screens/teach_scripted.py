@@ -22,13 +22,13 @@ async def follow_script(
     pace: float,
     tell: Callable[[Sequence[TeachingEvent]], None],
 ) -> None:
-    """Let the scripted teacher type, and answer as a person would; dialogs make it wait.
+    """Let the scripted teacher type and answer like a person; it waits for dialogs.
 
     Args:
-        screen: that it is on.
+        screen: the teaching screen.
         teaching: the session.
-        pace: steps a second.
-        tell: shows what followed.
+        pace: in steps a second.
+        tell: shows events.
     """
     teacher = ScriptedTeacher(teaching)
     bar = screen.query_one(CommandBar)

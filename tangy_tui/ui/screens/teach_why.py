@@ -1,4 +1,4 @@
-"""Why, on the teaching screen: what Tangy would do by now, thought over beside the screen."""
+"""Explanations on the teaching screen: what Tangy would do, computed in the background."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tangy_tui.ui.policy_preview import show_why
 
 
 class TeachWhy:
-    """Shows the grounds of a step, or of what comes now; one at a time, and it can be given up."""
+    """Explains a step or the present situation, one at a time; it can be cancelled."""
 
     def __init__(
         self, screen: Screen[Any], workspace: Workspace, teaching: TeachingSession
@@ -25,11 +25,11 @@ class TeachWhy:
 
     @property
     def thinks(self) -> bool:
-        """Whether Tangy is thinking over what it would do."""
+        """Whether an explanation is being computed."""
         return self._thinking is not None and not self._thinking.is_finished
 
     def show(self, number: int | None) -> None:
-        """Tell of a step by its number, or of the present situation."""
+        """Explain a step by its number, or the present situation."""
         if self.thinks:
             return
         present = self._teaching.demonstration

@@ -1,4 +1,4 @@
-"""Typed lines that are no behaviour: words of keys, and questions."""
+"""Typed lines that are no behaviour: actions of keys, and questions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> None:
-    """Do what words mean that were typed; those of a behaviour are put to Tangy."""
+    """Carry out a typed command or question; other lines are commands to Tangy."""
     match word:
         case None | "where" | "what to do" | "faults":
             screen.follow(Say(typed))
@@ -48,7 +48,7 @@ def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> N
 
 
 def go_home(screen: TeachScreen, *, watching: bool = False) -> None:
-    """Leave, and tell what is stored of an unfinished game, unless the teacher is scripted."""
+    """Close the screen, and tell what is stored of an unfinished game, unless scripted."""
     shown = screen.teaching.demonstration
     if screen.is_active and shown.steps and not (shown.finished or watching):
         screen.app.notify(left_words(len(shown.steps)), markup=False)

@@ -1,4 +1,4 @@
-"""A second console: the game that another program runs, as it is seen there, and STOP."""
+"""A second console: shows the game of another program, and can stop the robot."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ KINDS: dict[type, Kind] = {
 
 
 class WatchScreen(TangyScreen[None]):
-    """Looks on. Nothing here changes the game; STOP stops the robot."""
+    """Shows a game to an onlooker. Nothing here changes the game; STOP stops the robot."""
 
     CSS_PATH = "watch.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
@@ -56,13 +56,13 @@ class WatchScreen(TangyScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = []
 
     def __init__(self, guest: Guest, store: Store, *, who: str, note: str = "") -> None:
-        """Make the screen.
+        """Create the screen.
 
         Args:
-            guest: at the door of the program that runs the games.
-            store: its log, opened for reading.
-            who: looks on; stands in the log where they stop the robot.
-            note: what is said first.
+            guest: the connection to the program that runs the games.
+            store: its log, open for reading.
+            who: the onlooker, named in the log if they stop the robot.
+            note: the first line of the log panel.
         """
         super().__init__()
         self._guest, self._log = guest, WatchedLog(store)
@@ -74,7 +74,7 @@ class WatchScreen(TangyScreen[None]):
         self._activity: Activity | None = None
 
     def compose(self) -> ComposeResult:
-        """Lay out the room and the board of calls, and what happens beside or below."""
+        """Lay out the room and the board of calls, with the log beside or below."""
         yield StatusLine(Status(mode="watch"))
         with Horizontal(id="body"):
             with Vertical(id="left"):
@@ -83,7 +83,7 @@ class WatchScreen(TangyScreen[None]):
         yield KeyLine("filter", "zoom", "palette", "quit", "help")
 
     def on_mount(self) -> None:
-        """Begin to look on."""
+        """Start to poll."""
         log = self.query_one(LogView)
         for sentence in (self._note, text.READ_ONLY):
             if sentence:
@@ -94,13 +94,13 @@ class WatchScreen(TangyScreen[None]):
         self.set_interval(WATCH_SECONDS, self.look)
 
     def on_unmount(self) -> None:
-        """Leave the door."""
+        """Disconnect."""
         self._guest.close()
 
     def on_stop(self, message: Stop) -> None:
-        """Stop the robot, before anything is drawn."""
+        """Stop the robot first, then redraw."""
         if getattr(self.app, "leaving", False):
-            return  # who only looks on may leave, and the game goes on
+            return  # an onlooker may leave without stopping the robot
         log = self.query_one(LogView)
         try:
             self._guest.stop(self._who)
@@ -171,7 +171,7 @@ class WatchScreen(TangyScreen[None]):
         return activity.deck.label(called[-1]).replace("-", "") if called and activity else ""
 
     def _lay_out(self, view: GameView, people: tuple[str, ...]) -> None:
-        """Make the room and the board anew, for the people and the activity of a game."""
+        """Create room and board again for the people and the activity of a game."""
         left = self.query_one("#left", Vertical)
         left.remove_children(".panel")
         self._activity = self._log.activity(view.activity)
