@@ -241,19 +241,18 @@ class Activity:
     ) -> tuple[str, str]:
         """Return the speech and picture text of an action; "" if numbers are missing."""
         called = name(action.target) if action.target is not None else ""
-        return (
-            self.fill(action.speech, called, outcome.numbers),
-            self.fill(action.image, called, outcome.numbers),
-        )
+        fill, numbers = self.fill, outcome.numbers
+        return fill(action.speech, called, numbers, aloud=True), fill(action.image, called, numbers)
 
-    def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
-        """Fill name and numbers into a text; return "" if it needs numbers and there are none."""
+    def fill(
+        self, template: str, name: str, numbers: tuple[int, ...], *, aloud: bool = False
+    ) -> str:
+        """Fill name and numbers (few if said `aloud`) into a text; "" if it lacks its numbers."""
         if not numbers and ("{numbers}" in template or "{call}" in template):
             return ""
         labels = [self.deck.label(number) for number in numbers]
-        return template.format(
-            name=name, call=labels[0] if labels else "", numbers=", ".join(labels)
-        )
+        said = self.rules.said(labels) if aloud else ", ".join(labels)
+        return template.format(name=name, call=labels[0] if labels else "", numbers=said)
 
 
 def shipped_activities() -> dict[str, Path]:

@@ -74,7 +74,8 @@ class GameRules:
     `claim` is the word before the number of a card that is claimed to win. `claim_right`,
     `claim_wrong`, `taken_back` and `play_on` are announcements; so are `all_called` (no number is
     left, and each person gets a visit) and `nobody_won` (after these visits). A person without a
-    visit for `unvisited` calls gets one, if staff want that. See `CallsFirst`.
+    visit for `unvisited` calls gets one, if staff want that. See `CallsFirst`. Of more numbers than
+    `numbers_aloud`, so many are said, in the words of `more_numbers`.
     """
 
     patterns: tuple[Pattern, ...] = ()
@@ -88,6 +89,16 @@ class GameRules:
     unvisited: int = 0
     strengths: tuple[Strength, ...] = ()
     calls_first: CallsFirst | None = None
+    numbers_aloud: int = 0
+    more_numbers: str = ""
+
+    def said(self, labels: Sequence[str]) -> str:
+        """Return numbers as they are said: all of them, or the first few and how many more."""
+        most = self.numbers_aloud
+        if not most or len(labels) <= most + 1:  # a single one more is said as well
+            return ", ".join(labels)
+        few = ", ".join(labels[:most])
+        return self.more_numbers.format(numbers=few, count=len(labels) - most)
 
     def pattern(self, name: str) -> Pattern:
         """Return a pattern by its name or label, in any case.
@@ -191,7 +202,11 @@ def read_game_rules(top: Table, deck: Deck, strategies: Sequence[str]) -> GameRu
         nobody_won=_said(rules, "nobody_won", ("pattern",)),
         unvisited=rules.whole("unvisited", 0, 999, 0),
         calls_first=_read_calls_first(rules) if "calls_first" in rules else None,
+        numbers_aloud=rules.whole("numbers_aloud", 0, 99, 0),
+        more_numbers=_said(rules, "more_numbers", ("numbers", "count")),
     )
+    if found.numbers_aloud and "{numbers}" not in found.more_numbers:
+        raise rules.wrong("more_numbers", "must have {numbers} in it.")
     rules.close()
     names = [one.name for one in patterns] + [one.name for one in strengths]
     if len(set(names)) < len(names):

@@ -41,7 +41,8 @@ def evidence_words(
             parts.append(f"{SYMPTOMS.get(key, key)}: {written(value)}")
         elif fact == "state":
             age = evidence.get(f"{head}.age")
-            since = f" for {age:.2g} s" if value == STALE and isinstance(age, float) else ""
+            late = value == STALE and isinstance(age, float)
+            since = f" for {written(age)} s" if late and age is not None else ""
             parts.append(f"{device.label}: {STATES.get(str(value), str(value))}{since}")
         elif fact == "age" and f"{head}.state" in evidence:
             continue  # included with the state
@@ -95,7 +96,9 @@ _MISMATCHES = {
 
 
 def written(value: Fact) -> str:
-    """Format a measured value, numbers with two significant digits."""
+    """Format a measured value, numbers with two significant digits and without an exponent."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.2g}" if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:.2g}" if abs(value) < 99.5 else f"{value:.0f}"

@@ -298,7 +298,7 @@ def _done(
     if activity is not None and behaviour is not None:
         speech = behaviour.speech.get(strategy or activity.plain_strategy, "")
         numbers = tuple(n for n in step.numbers if n in activity.deck.numbers)
-        said = activity.fill(speech, names.get(target or "", target or ""), numbers)
+        said = activity.fill(speech, names.get(target or "", target or ""), numbers, aloud=True)
     return Done(
         number=number,
         begun=begun,

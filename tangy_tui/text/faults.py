@@ -283,7 +283,7 @@ def _age(device: DeviceProfile, age: Fact) -> list[EvidenceLine]:
     if isinstance(age, (bool, str)) or age <= device.stale_after:
         return []
     expected = f"to be expected: at most {device.stale_after:g} s old"
-    return [EvidenceLine(f"{device.label}, newest data: {age:.3g} s old", expected)]
+    return [EvidenceLine(f"{device.label}, newest data: {written(age)} s old", expected)]
 
 
 def _expected(key: str, value: Fact, rule: FaultRule, book: FaultBook) -> str:

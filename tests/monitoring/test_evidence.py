@@ -6,12 +6,14 @@ import pytest
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.faults import Evidence
+from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
 from tangy_profiles.state import ActivityState, Outcome, Response, Situation, UserState
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision
 from tangy_tui.monitoring.detection import Detector
+from tangy_tui.monitoring.evidence import written
 
 BINGO = load_activity("bingo")
 ASKED = UserState("user1", "missing numbers", "AR")
@@ -136,3 +138,11 @@ def test_forgiving_somebody_ends_their_count_and_no_other(detector: Detector) ->
     detector.forgive(None)
     assert detector.refusals("user1") == {}
     assert detector.refusals("user2") == {"person.refusals": 1}
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [(0.264, "0.26"), (3.84, "3.8"), (25.4, "25"), (99.7, "100"), (3600.0, "3600"), (True, "yes")],
+)
+def test_a_measured_value_is_written_without_an_exponent(value: Fact, words: str) -> None:
+    assert written(value) == words

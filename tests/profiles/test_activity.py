@@ -13,7 +13,7 @@ from tangy_profiles.activity import Activity, load_activity, read_activity, ship
 from tangy_profiles.behaviour import SLOTS
 from tangy_profiles.effects import EFFECTS
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.state import Situation
+from tangy_profiles.state import Outcome, Situation
 
 PAPERS_BEHAVIOURS = {
     "greeting", "call number", "joke", "remove markers", "mark numbers", "encourage",
@@ -100,6 +100,25 @@ def test_every_speech_and_screen_can_be_filled_in(activity: Activity, lanterns: 
                 assert slots <= set(SLOTS)
                 assert ("Rosa" in text) == ("name" in slots)
                 assert "{" not in text
+
+
+def test_of_many_numbers_few_are_said_and_all_are_shown(activity: Activity) -> None:
+    request, deck = activity.behaviours["mark numbers"], activity.deck
+    action = activity.action(request, "user1", None)
+
+    def words(count: int) -> tuple[str, str]:
+        return activity.words_of(action, Outcome(True, 0.0, deck.numbers[:count], None), str)
+
+    assert words(5)[0].count("-") == 5 and "more" not in words(5)[0]
+    said, shown = words(25)
+    assert "B-1, B-2, B-3, B-4, and 21 more" in said and said.count("-") == 4
+    assert shown.count("-") == 25
+
+
+def test_a_rule_for_many_numbers_has_its_words(tmp_path: Path) -> None:
+    (line,) = [line for line in SHIPPED.splitlines() if line.startswith("more_numbers")]
+    with pytest.raises(ProfileError, match="more_numbers"):
+        read_activity(written(tmp_path, SHIPPED.replace(line, "")))
 
 
 @given(st.text())

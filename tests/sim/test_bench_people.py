@@ -242,3 +242,16 @@ class TestPlaying:
                                   ("navigate to user", 69)):  # fmt: skip
             usual = fitted * games / 20
             assert rows[behaviour] == pytest.approx(usual, abs=4 * usual**0.5 + 2), behaviour
+
+
+def test_people_who_hear_that_there_are_more_numbers_read_them_on_the_screen() -> None:
+    behaviour = ACTIVITY.behaviours["mark numbers"]
+    numbers = tuple(ACTIVITY.deck.numbers[:12])
+    for template in behaviour.speech.values():
+        few, many = (
+            HEARING.hear(ACTIVITY.fill(template, "Ann", said, aloud=True))
+            for said in (numbers[:3], numbers)
+        )
+        assert few is not None and many is not None
+        assert (few.numbers, few.more) == (numbers[:3], False)
+        assert (many.numbers, many.more) == (numbers[:4], True)

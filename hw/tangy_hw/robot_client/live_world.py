@@ -245,7 +245,9 @@ class LiveWorld(LivePlan):
             self.calls.labels(deck),
             seat if behaviour.attends and not behaviour.persuades else "",
         )
-        speech, written = (fill(action.speech, called, numbers) for called in (name, seat))
+        speech, written = (
+            fill(action.speech, called, numbers, aloud=True) for called in (name, seat)
+        )
         self.say(speech, picture, self._robot.postures[action.posture], written)
 
     def name_of(self, person: str | None) -> str:

@@ -86,7 +86,9 @@ class DeclaredActivity(Activity):
         """Return the world's speech and picture text, with people's names."""
         return with_names(outcome.speech, name), with_names(outcome.image, name)
 
-    def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
+    def fill(
+        self, template: str, name: str, numbers: tuple[int, ...], *, aloud: bool = False
+    ) -> str:
         """Fill a name into a text; return "" if it has other slots."""
         text = template.replace("{name}", name)
         return "" if SLOT.search(text) else text

@@ -307,7 +307,7 @@ class People:
         """Carry out a request; in vain if another cell gets the same error."""
         player, before = sitter.player, sitter.player.marked
         judged = self.judged(sitter.id)
-        named = sum(1 << player.cell[n] for n in heard.numbers if n in player.cell)
+        named = heard.cells(player)
         match behaviour.effect:
             case "bring card closer":
                 if not self._faults.concerns("card-out-of-sight", sitter.id):

@@ -17,6 +17,7 @@ from tangy_profiles.fault_file import load_faults
 from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import SEAT
+from tangy_sim.worlds.users import SimulatedUser
 
 BEGINS, EACH = 1.0, 0.06  # s before the first word, and per letter
 
@@ -34,10 +35,18 @@ class Heard:
     person: str = ""
     numbers: tuple[int, ...] = ()
     fault: str = ""
+    more: bool = False
+    """Whether there are more numbers than those that were said."""
     rows: tuple[int, ...] = ()
     """Possible rows of an activity's items."""
     again: bool = False
     """Whether the person is asked to repeat their answer."""
+
+    def cells(self, player: SimulatedUser) -> int:
+        """Return the cells of a card (a bit each) that it is about; people read on the screen."""
+        if self.more:
+            return player.marked ^ player.called
+        return sum(1 << player.cell[n] for n in self.numbers if n in player.cell)
 
 
 @dataclass(frozen=True)
@@ -59,10 +68,11 @@ class SpeechReception:
         self._numbers = {_plain(deck.label(number)): number for number in deck.numbers}
         label = "|".join(re.escape(one) for one in sorted(self._numbers, key=len, reverse=True))
         names = "|".join(re.escape(one) for one in sorted(self._people, key=len, reverse=True))
+        more = _pattern(activity.rules.more_numbers, {"numbers": "", "count": r"(?P<more>\d+)"})
         slots = {
             "name": f"(?P<name>{names})",
             "call": f"(?P<call>{label})",
-            "numbers": f"(?P<numbers>(?:{label})(?:, (?:{label}))*)",
+            "numbers": f"(?P<numbers>(?:{label})(?:, (?:{label}))*)(?:{more.pattern})?",
             "object": re.escape(_plain(activity.object)),
             "why": ".*",
         }
@@ -89,6 +99,7 @@ class SpeechReception:
                 self._people.get(groups.get("name") or "", ""),
                 tuple(self._numbers[label] for label in said.split(", ") if label),
                 one.fault,
+                bool(groups.get("more")),
             )
         return None
 
