@@ -1,26 +1,26 @@
-// Draws what the robot says, as large as there is room, and answers that it was drawn. A tablet
-// that is not paired yet asks for the code that stands on the robot's console.
-// Written for browsers of ten years ago: no framework, no build, nothing newer than EventSource.
+// Draws the robot's words as large as possible, and acknowledges each picture. A tablet that is not
+// paired yet asks for the code on the robot's console.
+// For browsers of ten years ago: no framework, no build, nothing newer than EventSource.
 (function () {
   "use strict";
-  var SILENT = 2000, AGAIN = 500;  // ms: without an event the link is lost; until it is tried again
-  var THANKS = 8000;  // ms: for which it is said that somebody comes
-  var LOOK = 1000;  // ms: until a tablet that is not paired looks whether it is now
+  var SILENT = 2000, AGAIN = 500;  // ms: without an event, the link counts as lost; retry delay
+  var THANKS = 8000;  // ms: for which the answer to a press is shown
+  var LOOK = 1000;  // ms: between two checks of an unpaired tablet
   var page = String(Math.random()).slice(2) + String(Date.now());
-  var calls = {}, thanks = "";  // who is called, by the key of the call; what is said after a press
+  var calls = {}, thanks = "";  // called person by key; answer to a press
   var source = null, heard = Date.now(), waiting = null, dots = 0, picture = null, drawn = 0;
 
   function get(id) { return document.getElementById(id); }
 
   function put(id, words) { get(id).textContent = words; }
 
-  // Part "N-40" into letter and number; what is not of this kind is all number.
+  // Split "N-40" into letter and number; other text counts as a number.
   function parts(called) {
     var found = /^([^\d\s\-\u2010-\u2013]{1,2})[\s\-\u2010-\u2013]*(\d+)$/.exec(called);
     return found ? [found[1], found[2]] : ["", called];
   }
 
-  // Put a line word by word, so that it breaks between words alone: never within "N-40".
+  // Insert a line word by word, so that it only breaks between words: never within "N-40".
   function putWords(id, line) {
     var words = line.split(/\s+/), i, span;
     put(id, "");
@@ -32,7 +32,7 @@
     }
   }
 
-  // Make an element as large as its box allows; it may break between words, never within one.
+  // Enlarge an element to fit its box; it may break between words, never within one.
   function fit(element, box, least, most) {
     var style = window.getComputedStyle(box);
     var wide = box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
@@ -86,12 +86,12 @@
     else if (shown.text) { fit(get("text"), get("main"), 16, height * 0.5); }
   }
 
-  // Make an element so large, or as much smaller as its row asks for.
+  // Set the size of an element, or a smaller one if its row requires it.
   function fitLine(element, row, size) {
     var left;
     for (; size > 10; size *= 0.92) {
       element.style.fontSize = size + "px";
-      // A row that is centred runs over on both sides, of which scrollWidth knows only one.
+      // A centred row overflows on both sides, and scrollWidth includes only one.
       left = row.firstElementChild.getBoundingClientRect().left;
       if (row.lastElementChild.getBoundingClientRect().right - left <= 0.97 * row.clientWidth) {
         return;
@@ -99,7 +99,7 @@
     }
   }
 
-  // Have the page be lost, or unpaired, or not so any more.
+  // Set or clear a state of the page, such as lost or unpaired.
   function mark(word, so) {
     var body = document.body, was = body.className.indexOf(word) >= 0;
     if (so !== was) {
@@ -119,7 +119,7 @@
     }
   }
 
-  // Ask for something, and tell what was answered: a status, 0 where nothing was.
+  // Send a request, and call back with the status, or 0 without an answer.
   function ask(method, path, body, told) {
     var request = new XMLHttpRequest();
     request.open(method, path);
@@ -133,7 +133,7 @@
     if (!waiting) { waiting = window.setTimeout(connect, milliseconds); }
   }
 
-  // A sleeping screen shows nothing: keep it awake if the browser allows that, else say so.
+  // A sleeping screen shows nothing: keep it awake, or say that the browser cannot.
   function stayAwake() {
     if (document.hidden) { return; }
     if (!navigator.wakeLock) {
@@ -172,7 +172,7 @@
     request.send();
   }
 
-  // Put a button for each call that is open, and what was said about a press.
+  // Show a button for each open call, and the answer to a press.
   function drawCalls() {
     var box = get("calls"), key, button;
     box.textContent = "";
@@ -185,7 +185,7 @@
     if (!mark("calling", box.children.length > 0) && picture) { draw(); }
   }
 
-  // Return what a press on the button of a call does.
+  // Return the handler for the button of a call.
   function comes(key) {
     return function () {
       this.disabled = true;
@@ -214,7 +214,7 @@
     hear();
   }
 
-  // Load the file of a picture first; what cannot be loaded is left out.
+  // Load the file of a picture first; skip a file that cannot be loaded.
   function load(shown) {
     var file = get("file");
     file.onload = file.onerror = null;
@@ -251,7 +251,7 @@
   function listen() {
     if (source) { source.close(); }
     source = new EventSource("events?page=" + page);
-    drawn = 0;  // another robot may count anew
+    drawn = 0;  // another robot has its own numbers
     source.addEventListener("show", function (event) {
       load(JSON.parse(event.data));
     });

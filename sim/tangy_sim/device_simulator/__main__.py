@@ -96,7 +96,7 @@ async def _serve(bench: DeviceServers) -> None:
 def _answer(bench: DeviceServers, told: Asked) -> dict[str, Any]:
     try:
         answer = {"done": "stop"} if told["do"] == "stop" else bench.do(told)
-    except Exception as error:  # the parent must not wait for ever
+    except Exception as error:  # the parent must not wait forever
         answer = {"failed": f"The bench does not understand {told!r:.200} ({error!r:.200})."}
     _LOG.info("asked for %s: %s", told.get("do"), ", ".join(answer))
     return {**answer, "id": told["id"]} if "id" in told else answer

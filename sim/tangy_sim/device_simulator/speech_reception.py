@@ -36,14 +36,14 @@ class Heard:
     numbers: tuple[int, ...] = ()
     fault: str = ""
     more: bool = False
-    """Whether there are more numbers than those that were said."""
+    """Whether the screen shows more numbers than were said."""
     rows: tuple[int, ...] = ()
     """Possible rows of an activity's items."""
     again: bool = False
     """Whether the person is asked to repeat their answer."""
 
     def cells(self, player: SimulatedUser) -> int:
-        """Return the cells of a card (a bit each) that it is about; people read on the screen."""
+        """Return a mask of the cells concerned; people read further numbers on the screen."""
         if self.more:
             return player.marked ^ player.called
         return sum(1 << player.cell[n] for n in self.numbers if n in player.cell)
