@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
-from tangy_tui.language.stop_sentence import likelihood, stops
+from tangy_tui.language.stop_sentence import likelihood, prepare, stops
 from tangy_tui.speech.language import dictionary, open_model, words_of
 from tangy_tui.speech.noise_reduction import cleared
 from tangy_tui.speech.pocketsphinx_search import add_model, best_path, make_search, next_best
@@ -66,6 +66,7 @@ class StopDecoder:
             return
         words = words_of((*texts, *others)) | everyday.keys()
         said = {word: (*known[word], *ACCENTS.get(word, ())) for word in words}
+        prepare()  # before the first utterance has to wait
         self._search = make_search(dictionary(said), bestpath=True, active=ACTIVE)
         add_model(self._search, "all", open_model((*others, *texts), everyday, SHARE))
 
