@@ -201,12 +201,6 @@ _AIM = _any(
     f"{ROBOT} .*",
 )
 _WHAT = f"(?:(?: {HOW}){{0,3}} {_AIM}|{AFTER})"
-_HURTS = (
-    "(?:(?:(?:going|about) to|gonna) (?:hit|hurt|crush|squash|run over|run into|knock|trap"
-    "|bump into)"
-    "|running (?:over|into)|driving (?:over|into)|rolling over|standing on|crushing|squashing"
-    "|trapping|hurting|hitting|pinning|ramming)"
-)
 _OWN = r"(?:me|us|him|her|them|(?:my|our|his|her|their|your) \w+)"
 _FROM = f"from {_OWN}"
 _STILL = _any(
@@ -222,25 +216,13 @@ _STILL = _any(
     "(?:(?:this is|its) an )?emergency",
     "that(?: i)?s enough|cut it out|knock it off|shut ?down|power (?:off|down)|switch off",
     "come to a (?:complete |full )?(?:stop|halt|standstill)|hit the brakes?|brakes?",
-    f"(?:do not|dont) let {ROBOT} (?:move|drive|go|come|turn|run)(?: \\w+){{0,3}}",
-    f"(?:keep|hold) {ROBOT} (?:still|there|back|where it is)",
     "(?:whoa|woah)(?: there)?(?: (?:boy|girl|nelly))?|(?:easy|steady) (?:there|now|boy|on)",
     f"(?:stay|keep|stand|move) (?:back|away|off)(?: {_FROM})?|back (?:off|away)(?: {_FROM})?",
-    f"get (?:back|away|off) {_FROM}|get off {_OWN}",
     f"(?:get|take|move|keep) (?:{ROBOT} (?:away|off)(?: {_FROM}| {_OWN})?"
     f"|(?:it|this|that) (?:away|off) (?:{_FROM}|{_OWN}))",
     "(?:that|this)(?: i)?s (?:quite |more than )?(?:far|close|near|quite) enough",
-    "(?:far|close|near) enough|(?:everything|everybody|everyone) stops",
-    "(?:no more|enough) (?:numbers?|calling|driving|moving|playing|of (?:this|it))",
-    f"(?:were|we are) (?:all )?(?:done|finished|through) (?:playing|with (?:{GAME}))|game over",
-    "pause (?:it|there)",
-    "(?:wait|hold on|hang on) (?:right )?(?:there|tangy|robot)",
-    "(?:tangy|robot) wait",
-    "call it a day|leave it (?:there|at that) for (?:today|now)|pack it in|pack (?:it|this) up",
-    "(?:do not|dont) (?:you )?dare move(?: another (?:inch|step|metre|centimetre))?",
-    "park yourself (?:right )?(?:there|here)",
-    f"(?:youre|you are|{ROBOT} is) (?:just )?{_HURTS} (?:{_WHOM}|(?:{_MINE}|the) \\w+)",
-    f"(?:its|it is) (?:just )?(?!\\w+ to hurt|hurting){_HURTS} (?:{_WHOM})",
+    "(?:tangy|robot) wait|wait (?:there|tangy|robot)|pause (?:it|there)|(?:far|close|near) enough",
+    "game over|unplug it|(?:hit|press|push) (?:the|that) (?:big )?red button",
 )
 _OFF = "turn|switch|shut|power"
 _CANCEL = "cancel|interrupt|suspend|pause|abandon|break off|call off|quit|terminate|discontinue"
@@ -249,13 +231,10 @@ _SWITCHED = _any(
     f"(?:{_OFF}) {ITSELF} (?:off|down)|(?:{_CANCEL}|hold) (?:{ROBOT}|{GAME})|quit {_MOVING}",
     f"(?:(?:{_OFF}) (?:off|down)|quit|put (?:a stop|an end) to|call a halt to) {ITSELF}",
     f"bring {ITSELF} to a (?:complete |full )?(?:stop|halt|standstill)|stop button",
-    f"call a halt|pull the plug|unplug (?:{ROBOT}|it)",
     "(?:cut|kill|disable|disengage) (?:(?:the|its|your|all) )*(?:power|engines?|motors?|drives?"
     "|wheels?)|put the brakes on|slam on the brakes",
-    f"call (?:{GAME}|it) off",
     f"(?:{_PRESS}) (?:(?:the|that|its) )?(?:red |big |emergency )*(?:e ?)?"
     "(?:stop|brake|emergency button)(?: button| switch)?",
-    "(?:hit|press|push) (?:the|that) (?:big )?red button",
     "(?:safety|emergency) (?:stop|halt|brakes?|off|shutdown)",
     "(?:do|make|(?:(?:i|we) )?need) (?:an|the) emergency (?:stop|halt|shutdown)",
 )
