@@ -44,8 +44,10 @@ class StepRules:
         if not shown.steps:
             return NoRule("no step")
         step = shown.steps[-1]
+        if not isinstance(activity, DeclaredActivity):
+            return NoRule("no facts")
         facts = tuple(seen_facts(step.state.situation))
-        if not isinstance(activity, DeclaredActivity) or not facts:
+        if not facts:
             return NoRule("no facts")
         offered = [facts] if len(facts) == 1 else [facts, *((one,) for one in facts)]
         covers = [(one, len(self._covered(activity, step, one))) for one in offered]
@@ -58,8 +60,10 @@ class StepRules:
         if not shown.steps:
             return NoRule("no step")
         step = shown.steps[-1]
+        if not isinstance(activity, DeclaredActivity):
+            return NoRule("no facts")
         facts = seen_facts(step.state.situation)
-        if not isinstance(activity, DeclaredActivity) or not facts:
+        if not facts:
             return NoRule("no facts")
         whatever = command.facts or tuple(facts)
         for fact in whatever:

@@ -80,7 +80,7 @@ class TangyApp(App[None]):
         *bind("back"),
         *bind("zoom"),
         *bind("picture"),
-        *bind("draw", "draw_again"),
+        *bind("draw", "draw_again", priority=True),
         *bind("filter"),
         *bind("phrases"),
         *bind("mouse"),

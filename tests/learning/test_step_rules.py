@@ -102,3 +102,13 @@ def test_a_fact_that_is_not_gone_by_is_refused(
 ) -> None:
     assert isinstance(teaching.apply(SameWhatever(facts))[0], NoRule)
     assert read_library(workspace.store, "trivia").resolutions == ()
+
+
+def test_an_activity_without_facts_says_that_it_has_no_rules(tmp_path: Path) -> None:
+    session = Workspace(tmp_path).teaching("Mary", 1)
+    session.begin()
+    teacher = ScriptedTeacher(session)
+    while not session.demonstration.steps or not session.demonstration.steps[-1].target:
+        session.apply(teacher.command())
+    assert session.rules.choices(session.demonstration) == NoRule("no facts")
+    assert session.apply(SameWhatever()) == [NoRule("no facts")]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import pty
+import re
 import select
 import shutil
 import signal
@@ -21,6 +22,9 @@ import pyte
 
 PATIENCE = 30.0
 """Seconds after which something that should be on a screen is missed."""
+
+KEY_PROTOCOL = re.compile(rb"\x1b\[[<>=][0-9;]*u")
+"""What turns the kitty keyboard protocol on and off; pyte would write its last letter."""
 
 TANGY = str(Path(sys.executable).parent / "tangy")
 
@@ -73,6 +77,12 @@ class Terminal:
         """What can be read on the screen."""
         return "\n".join(line.rstrip() for line in self._screen.display)
 
+    @property
+    def cells(self) -> list[list[tuple[object, ...]]]:
+        """What can be seen of each cell: its character, colours and attributes."""
+        rows, buffer = range(self._screen.lines), self._screen.buffer
+        return [[_seen(buffer[y][x]) for x in range(self._screen.columns)] for y in rows]
+
     def read(self, seconds: float) -> bytes:
         """Read what is written within a time; stops at the first chunk."""
         if not select.select([self._parent], [], [], seconds)[0]:
@@ -82,7 +92,7 @@ class Terminal:
         except OSError:  # the program has closed its side
             return b""
         self.raw += chunk
-        self._stream.feed(chunk)
+        self._stream.feed(KEY_PROTOCOL.sub(b"", chunk))
         return chunk
 
     def until(self, seen: str | Callable[[str], bool]) -> str:
@@ -129,6 +139,14 @@ class Terminal:
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
         self.close()
+
+
+def _seen(cell: pyte.screens.Char) -> tuple[object, ...]:
+    """Return what can be seen of a cell: of a blank one, its background and lines."""
+    if cell.data == " " and not cell.reverse:
+        lined = cell.underscore or cell.strikethrough
+        return (" ", cell.fg if lined else "", cell.bg, cell.underscore, cell.strikethrough)
+    return tuple(cell)
 
 
 def ended(pid: int) -> bool:
