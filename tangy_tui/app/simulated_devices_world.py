@@ -20,7 +20,7 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_client.response_watch import PATIENCES
 from tangy_hw.robot_client.staff_eyes import ToldCard, told_card
 from tangy_profiles.behaviour import Action
-from tangy_profiles.effects import CORRECTS, DRIVES
+from tangy_profiles.effects import ABOUT_CARD, CORRECTS, DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import BENCH, GameWorld
@@ -207,21 +207,29 @@ class BenchedWorld(LiveWorld):
         match kind.shows:
             case injection.DRIVING:
                 return behaviour.effect in DRIVES
+            case injection.LOOKING if self._never_complies(tracker.place):
+                return False  # nothing is expected of a card whose owner does not do as asked
             case injection.LOOKING:
                 if tracker.seen is None:
                     return beside and behaviour.effect == "bring card closer"
                 return behaviour.effect in CORRECTS
             case injection.ASKING:
-                return beside and behaviour.effect in CORRECTS and tracker.allows(behaviour)
+                return beside and behaviour.effect in ABOUT_CARD and tracker.allows(behaviour)
             case injection.CLOSING:
                 settled = self.activity.card_states[-1].name
                 return beside and behaviour.closes == "always" and tracker.seen == settled
+            case injection.WAITING if "requests-silent" in self.present:
+                return False  # no sensor sees that a sign goes down
             case injection.WAITING:
                 return len(tracker.queue) > 1
             case injection.MOVING_ON:
                 return beside and behaviour.effect in CORRECTS
             case _:
                 return True
+
+    def _never_complies(self, person: str) -> bool:
+        there = {fault["kind"]: fault["person"] for fault in self.truth()["faults"]}
+        return there.get("never-complies") in ("", person)
 
     def execute(self, action: Action) -> Outcome:
         """Inject the faults that are due, and carry out the action."""

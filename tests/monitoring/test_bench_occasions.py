@@ -1,0 +1,66 @@
+"""When a fault on the bench could be noticed: what another one hides counts as none that could."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import pytest
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_profiles.activity import load_activity
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_sim.worlds.injection import KINDS
+from tangy_tui.app.device_simulator import DeviceSimulator
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+from tests.hw.links import FakeLink
+
+BINGO, PEOPLE = load_activity("bingo"), ("user1", "user2")
+
+
+class FakeBench:
+    """A bench of which only the faults matter."""
+
+    def __init__(self, **faults: str) -> None:
+        self.faults = [
+            {"kind": kind.replace("_", "-"), "person": who} for kind, who in faults.items()
+        ]
+
+    def do(self, what: str, **_: Any) -> dict[str, Any]:
+        assert what == "truth"
+        return {"truth": {"faults": self.faults}}
+
+
+def beside_somebody(**faults: str) -> BenchedWorld:
+    """Return a world in which the robot stands beside a person who asks, whose card is unread."""
+    link = cast(RobotLink, FakeLink(PEOPLE))
+    world = BenchedWorld(BINGO, PEOPLE, link, load_robot(), load_room(), seed=1)
+    world.on(cast(DeviceSimulator, FakeBench(**faults)))
+    for person in PEOPLE:
+        world.tracker.ask(person)
+    world.tracker.arrive("user1")
+    return world
+
+
+@pytest.mark.parametrize(
+    ("kind", "shows", "hidden_by"),
+    [
+        ("card-out-of-sight", {"never_complies": "user2"}, {"never_complies": "user1"}),
+        ("card-out-of-sight", {}, {"never_complies": ""}),
+        ("request-withdrawn", {}, {"requests_silent": ""}),
+    ],
+)
+def test_a_fault_cannot_show_beside_one_that_hides_it(
+    kind: str, shows: dict[str, str], hidden_by: dict[str, str]
+) -> None:
+    action = BINGO.action(BINGO.behaviours["move card closer"], "user1", None)
+    assert beside_somebody(**shows).can_show(KINDS[kind], action)
+    assert not beside_somebody(**hidden_by).can_show(KINDS[kind], action)
+
+
+def test_a_person_who_never_complies_shows_it_at_any_request_about_the_card() -> None:
+    for name in ("move card closer", "mark numbers"):
+        action = BINGO.action(BINGO.behaviours[name], "user1", None)
+        world = beside_somebody()
+        world.tracker.seen = None if name == "move card closer" else "missing numbers"
+        assert world.can_show(KINDS["never-complies"], action)
