@@ -48,7 +48,8 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         return kind.shows not in WITH_CARDS and super().can_show(kind, action)
 
     def _listen(self) -> None:
-        """Pass on what the simulated people have done since the last call."""
+        """Pass on what the simulated people have done since the last call, and see their signs."""
+        super()._listen()
         acts = self.truth()["acts"]
         for fact, who, raw, sure in acts[self._passed_on :]:
             self.take(Observed(TypedObservation(fact, who or None, raw), sure, "staff"))

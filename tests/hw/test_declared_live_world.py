@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -170,6 +171,41 @@ def test_the_pause_is_as_long_as_the_file_says(link: FakeLink, tmp_path: Path) -
         words = len(activity.behaviours[name].speech["plain"].split())
         assert world.execute(action).seconds - SECONDS["perform"] == pytest.approx(pause, abs=0.5)
         assert simulated.execute(action).seconds == pytest.approx(1.0 + 0.4 * words + pause)
+
+
+def test_a_letter_that_is_held_up_is_an_answer_once(
+    world: DeclaredLiveWorld, link: FakeLink
+) -> None:
+    asked(world)
+    items, row = world.activity.declaration.items, world.game.row
+    letter = next(one for one in "abc" if items.value(row, one) == right(world))
+    link.state = replace(link.state, shows=((1, letter, link.time, 0.9),))
+    assert dict(world.observe().facts)["answer"] == "right"
+    world.game.execute("give hint", "user1")  # takes it back, while the sign is still up
+    assert world.observe().stage == "listen"
+    link.state = replace(link.state, shows=())
+    world.observe()
+    link.state = replace(link.state, shows=((1, letter, link.time, 0.9),))
+    assert world.observe().stage == "judge"
+
+
+def test_a_letter_that_is_not_sure_is_asked_again(world: DeclaredLiveWorld, link: FakeLink) -> None:
+    asked(world)
+    link.state = replace(link.state, shows=((1, "b", link.time, 0.5), (9, "b", link.time, 1.0)))
+    assert world.observe().stage == "listen"
+    done = do(world, "allow time")
+    first = done.unclear[0]
+    assert (first.person, first.source, first.asked_again) == ("user1", "sign", True)
+    ((seat, letter, since, _), other) = link.state.shows
+    link.state = replace(link.state, shows=((seat, letter, since, 0.9), other))
+    assert world.observe().stage == "judge"  # now it can be read
+
+
+def test_letters_count_only_where_the_file_takes_signs(link: FakeLink, tmp_path: Path) -> None:
+    by_voice = ('from = ["sign", "speech", "button"]', 'from = ["speech"]')
+    world = asked(world_with(changed_trivia(tmp_path, by_voice), link))
+    link.state = replace(link.state, shows=((1, "b", link.time, 1.0),))
+    assert world.observe().stage == "listen"
 
 
 def test_a_sign_that_is_up_asks_and_comes_down_when_it_was_answered(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tangy_profiles.declared.judging import CERTAIN
@@ -13,9 +15,11 @@ from tangy_sim.device_simulator.declared_people import DeclaredPeople
 from tangy_sim.device_simulator.declared_reception import DeclaredReception
 from tangy_sim.device_simulator.faults import Faults
 from tangy_sim.worlds.declared_world import DeclaredWorld
+from tests.support.changed import changed_trivia
 from tests.support.declared import DECLARED, declared
 
 PEOPLE = load_people(3)
+QUESTION = "Which planet do we live on? Mars, Earth or Saturn?"
 NAMES = {person.id: person.name for person in PEOPLE}
 
 
@@ -40,11 +44,34 @@ def test_people_understand_every_sentence_and_which_item_it_is_about(name: str, 
     assert heard
 
 
-def test_people_act_only_where_the_game_gives_them_reason_to() -> None:
+def test_people_hold_up_the_letter_of_their_answer_for_a_while() -> None:
     activity = declared("trivia")
+    people = DeclaredPeople(activity, PEOPLE, Faults(), seed=2)
+    ears = DeclaredReception(activity, PEOPLE)
+    letters, up = set[str](), 0
+    for _ in range(30):
+        people.begin(people.now)
+        assert people.shown == {}
+        for text in ("Welcome to the quiz!", f"User 1, question 1: {QUESTION}"):
+            found = ears.hear(text)
+            assert found is not None
+            people.hear(found)
+        for _ in range(48):
+            people.step(people.now + 0.25)
+            assert set(people.shown) <= {"user1"}
+            letters.update(people.shown.values())
+            up += bool(people.shown)
+        assert people.shown == {} and all(sure < CERTAIN for *_, sure in people.game.acts)
+    assert letters == {"a", "b"} or letters == {"a", "b", "c"}
+    assert up > 30
+
+
+def test_people_act_only_where_the_game_gives_them_reason_to(tmp_path: Path) -> None:
+    by_voice = ('from = ["sign", "speech", "button"]', 'from = ["speech"]')
+    activity = changed_trivia(tmp_path, by_voice)
     people = DeclaredPeople(activity, PEOPLE, Faults(), seed=1)
     ears = DeclaredReception(activity, PEOPLE)
-    sentences = ("Welcome to the quiz!", "Which planet do we live on? Mars, Earth or Saturn?")
+    sentences = ("Welcome to the quiz!", QUESTION)
     answered = unclear = 0
     for _ in range(50):
         people.begin(people.now)

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
     from tangy_profiles.game_records import GameChange
 
+SIGN = "sign"
+"""The source of answers that people hold up."""
 LOOK_SECONDS = 0.5  # between two observations of people
 PATIENCES = 2.0  # windows of patience after which a person counts as not complying
 
@@ -80,6 +82,7 @@ class DeclaredLiveWorld(LiveWorld):
         self._did: dict[str, list[str]] = {}
         self._told.clear()
         self.unsure = None
+        self._signs_up: dict[tuple[int, str, float], bool] = {}  # and whether each was sure
         self._asked_again: dict[str, int] = {}
         self._not_clear: list[UnclearAnswer] = []
 
@@ -171,7 +174,19 @@ class DeclaredLiveWorld(LiveWorld):
         """Do nothing, whatever the time `after` in s: there are no cards."""
 
     def _listen(self) -> None:
-        """Collect what people have done; overridden where a sensor reports it."""
+        """Take in the answer signs that were put up since, or that are sure only now."""
+        before, self._signs_up = self._signs_up, {}
+        for seat, letter, since, sure in self.link.state.shows:
+            key = seat, letter, since
+            certain = sure >= CERTAIN
+            self._signs_up[key] = certain or before.get(key, False)
+            known = key in before and (before[key] or not certain)
+            if known or seat > len(self.people):
+                continue
+            found = meant(self.game, self.people[seat - 1], letter)
+            fact = None if found is None else self.game.declaration.facts[found.fact]
+            if found is not None and fact is not None and SIGN in fact.sources:
+                self.take(Observed(found, sure, SIGN))
 
     def _take_in(self) -> None:
         """Apply the observations since the last look, each with its certainty."""

@@ -15,12 +15,13 @@ NOWHERE = Pose(0.0, 0.0, 0.0)
 class RobotState:
     """Latest state of the robot; `time` is its own, in s, and so is `since` of a request.
 
-    `asks` are (seat, since); `hazard` is why it stands still, `stopped` why it was stopped, and
-    `failed` a failure of its control that only a new robot process fixes. `frozen` is for how many
-    s its control was frozen, until staff acknowledge it; `held` is the result of the last manual
-    command: "" executed, "slow", "stands" or "overridden". `waits` names the late data that it
-    waits for; `pauses` is the number of such waits, and their total s. `lets` is the kind of person
-    it waits for: "walking" past, or "standing" in the way. `answered` are the keys of calls
+    `asks` are (seat, since), `shows` the answer signs: (seat, letter, since, probability);
+    `hazard` is why it stands still, `stopped` why it was stopped, and `failed` a failure of its
+    control that only a new robot process fixes. `frozen` is for how many s its control was
+    frozen, until staff acknowledge it; `held` is the result of the last manual command: ""
+    executed, "slow", "stands" or "overridden". `waits` names the late data that it waits for;
+    `pauses` is the number of such waits, and their total s. `lets` is the kind of person it
+    waits for: "walking" past, or "standing" in the way. `answered` are the keys of calls
     answered at the chest screen.
     """
 
@@ -33,6 +34,7 @@ class RobotState:
     particles: tuple[tuple[float, float], ...] = ()
     obstacles: tuple[tuple[float, float], ...] = ()
     asks: tuple[tuple[int, float], ...] = ()
+    shows: tuple[tuple[int, str, float, float], ...] = ()
     hazard: str = ""
     stopped: str = ""
     failed: str = ""
@@ -56,6 +58,7 @@ class RobotState:
             tuple((x, y) for x, y in body["particles"]),
             tuple((x, y) for x, y in body["obstacles"]),
             tuple((int(seat), since) for seat, since in body["asks"]),
+            tuple((int(seat), str(letter), *more) for seat, letter, *more in body["shows"]),
             body["hazard"],
             body["stopped"],
             body["failed"],

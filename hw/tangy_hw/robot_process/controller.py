@@ -18,7 +18,7 @@ from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
-from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
+from tangy_hw.perception.requests.help_request_source import Ask, RequestSource, ShownLetter
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.control_loop import ControlLoop
@@ -169,6 +169,11 @@ class LiveRobot:
     def asking(self) -> tuple[Ask, ...]:
         """Requests for help, the longest waiting first."""
         return () if self.requests is None else self.requests.asking
+
+    @property
+    def showing(self) -> tuple[ShownLetter, ...]:
+        """Who shows an answer sign, the first to do so first."""
+        return () if self.requests is None else self.requests.showing
 
     @property
     def stopped(self) -> str:

@@ -26,6 +26,7 @@ def beat_of(robot: LiveRobot, number: int) -> dict[str, Any]:
         "particles": _thinned(navigator.particles),
         "obstacles": [[round(x, 2), round(y, 2)] for x, y in navigator.obstacles],
         "asks": [[ask.seat, ask.since] for ask in robot.asking],
+        "shows": [[s.seat, s.letter, s.since, round(s.sure, 2)] for s in robot.showing],
         "hazard": robot.hazard,
         "stopped": robot.stopped,
         "failed": robot.failed,

@@ -66,7 +66,7 @@ class Film:
         """Send a frame of the signs now."""
         camera = self._server.camera[INFRARED]
         if camera.viewers and not camera.hangs:
-            camera.push(self._signs.frame(self._world.asking))
+            camera.push(self._signs.frame(self._world.asking, self._world.people.shown))
 
     async def _watch(self) -> None:
         while True:

@@ -16,15 +16,18 @@ from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.memory import GameMemory, game_from
+from tangy_profiles.declared.model import Fact
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.person import Person
 from tangy_sim.device_simulator.faults import Faults
 from tangy_sim.device_simulator.people import CLEAR, TURNS_DOWN, People, Sitter
+from tangy_sim.device_simulator.signs import LETTERS
 from tangy_sim.device_simulator.speech_reception import Heard
 from tangy_sim.worlds.clarity import UNCLEAR, Clarity
 from tangy_sim.worlds.compliance import respond
 from tangy_sim.worlds.users import SimulatedUser
 
+SIGN_UP = (2.5, 4.0)  # s for which an answer sign is held up
 ACTS = (1.0, 6.0)  # s between a sentence and an action that follows it
 
 
@@ -151,8 +154,19 @@ class DeclaredPeople(People):
             return
         if act.fact == ASKING and act.who is not None:
             self.sitters[act.who].asks_since = self.now
+        elif letter := self._letter(fact, said):
+            self.shown[act.who or ""] = letter
+            self._after(SIGN_UP, partial(self.shown.pop, act.who or "", None))
         else:
             self.game.acts.append((act.fact, act.who or "", said, sure))
+
+    def _letter(self, fact: Fact, said: str) -> str:
+        """Return the letter of an answer that is held up on a sign ("": it is not)."""
+        if "sign" not in fact.sources:
+            return ""
+        items, row = self._declaration.items, self.known.row
+        options = [items.value(row, column) for column in fact.options]
+        return dict(zip(options, LETTERS, strict=False)).get(said, "")
 
     def _may(self, act: Act) -> bool:
         """Return whether the conditions of the habits for an action hold now."""

@@ -111,8 +111,8 @@ class People:
         self._agenda.clear()
         self._calls = 0  # numbers called
         self._time = 0.0  # in calls
-        self._left_to_open = set(self._openers)
-        self._driven_to = ""
+        self._left_to_open, self._driven_to = set(self._openers), ""
+        self.shown: dict[str, str] = {}  # letters that people hold up on answer signs
         self._speak = False  # whether people were told to ask aloud
         self.place = FRONT
         self.sitters = self._seat()

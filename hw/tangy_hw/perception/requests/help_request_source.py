@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from tangy_profiles.errors import TangyError
@@ -26,6 +26,15 @@ class Ask(NamedTuple):
 
     seat: int
     person: str
+    since: float
+    sure: float = 1.0
+
+
+class ShownLetter(NamedTuple):
+    """A letter that somebody shows at a seat (from 1), since when, and how sure it is."""
+
+    seat: int
+    letter: str
     since: float
     sure: float = 1.0
 
@@ -58,6 +67,7 @@ class RequestSource:
         """Number of consecutive frames that showed exactly the current requests."""
         self._people = tuple(people)
         self._asks: dict[int, Ask] = {}
+        self._shown: dict[int, ShownLetter] = {}
         self._changed = asyncio.Event()
         self._closed = False
         self._error: RequestError | None = None
@@ -73,6 +83,11 @@ class RequestSource:
     def asking(self) -> tuple[Ask, ...]:
         """Current requests, the longest waiting first."""
         return tuple(sorted(self._asks.values(), key=lambda ask: ask.since))
+
+    @property
+    def showing(self) -> tuple[ShownLetter, ...]:
+        """Who shows which letter now, where the source can tell that; the first to do so first."""
+        return tuple(sorted(self._shown.values(), key=lambda shown: shown.since))
 
     def answered(self, seat: int) -> None:
         """End the request of a seat that was visited, if nothing else ends it."""
@@ -119,6 +134,17 @@ class RequestSource:
             self._changed.set()
         else:
             self._asks[seat] = ask._replace(sure=sure)
+
+    def _show(self, letters: Mapping[int, tuple[str, float]], since: float) -> None:
+        """Take note of who shows a letter now, and how sure it is."""
+        for seat in self._shown.keys() - letters.keys():
+            del self._shown[seat]
+        for seat, (letter, sure) in letters.items():
+            before = self._shown.get(seat)
+            same = before is not None and before.letter == letter
+            began = before.since if before is not None and same else since
+            if 1 <= seat <= self.seats:
+                self._shown[seat] = ShownLetter(seat, letter, began, sure)
 
     def _withdraw(self, seat: int) -> None:
         """Record the end of a request."""

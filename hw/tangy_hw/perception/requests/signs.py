@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.camera_source import CameraError, CameraSource
 from tangy_hw.drivers.camera_state import USUAL as USUAL_CAMERA
+from tangy_hw.perception.requests.answer_signs import AnswerPersistence
 from tangy_hw.perception.requests.help_request_source import DEVICE, RequestError, RequestSource
 from tangy_hw.perception.requests.triangles import USUAL, TriangleLimits, find_triangles
 from tangy_profiles.health import OK, STALE, Reading
@@ -113,6 +114,7 @@ class SignWatcher:
         self._view = view
         self._limits = limits
         self._persistence = Persistence()
+        self._answers = AnswerPersistence(view.seat)
         self.found: dict[int, float] = {}
         """Signs of the last frame alone: seat to probability."""
 
@@ -124,6 +126,10 @@ class SignWatcher:
             if seat:
                 self.found[seat] = max(self.found.get(seat, 0.0), one.sure)
         return self._persistence.take(self.found)
+
+    def answers(self, image: Image) -> dict[int, tuple[str, float]]:
+        """Take a picture (BGR); return who shows which letter: seat to letter and probability."""
+        return self._answers.look(image)
 
 
 class Signs(RequestSource):
@@ -170,7 +176,9 @@ class Signs(RequestSource):
 
     async def _look(self) -> None:
         async for frame in self.camera:
-            asks = await asyncio.to_thread(self._watcher.look, frame.image())
+            image = frame.image()
+            asks = await asyncio.to_thread(self._watcher.look, image)
+            self._show(await asyncio.to_thread(self._watcher.answers, image), frame.stamp)
             for seat, sure in asks.items():
                 self._ask(seat, sure, frame.stamp)
             for seat in set(self._asks) - set(asks):

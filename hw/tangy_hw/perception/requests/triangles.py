@@ -87,17 +87,30 @@ def how_sure(shape: Shape, limits: TriangleLimits = USUAL) -> float:
     return 1 / (1 + exp(-40 * (shape.fills - limits.fills) - 0.5))
 
 
+def ahead_of_background(image: Image) -> Any:
+    """Return a grey picture (of 255) of how much brighter all is than what is behind it."""
+    import cv2
+    import numpy as np
+
+    grey = _grey(image)
+    size = (max(1, grey.shape[1] // COARSE), max(1, grey.shape[0] // COARSE))
+    coarse = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
+    behind = cv2.morphologyEx(coarse, cv2.MORPH_OPEN, np.ones((BEHIND, BEHIND), np.uint8))
+    return cv2.subtract(grey, cv2.resize(cv2.blur(behind, (5, 5)), grey.shape[::-1]))
+
+
+def _grey(image: Image) -> Any:
+    import cv2
+
+    return image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
+
+
 def shapes(image: Image, limits: TriangleLimits = USUAL) -> list[Shape]:
     """Return the shapes (px) of all bright spots of a sign's size in an image (grey, or BGR)."""
     import cv2
     import numpy as np
 
-    grey: Any = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
-    size = (max(1, grey.shape[1] // COARSE), max(1, grey.shape[0] // COARSE))
-    coarse = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
-    behind = cv2.morphologyEx(coarse, cv2.MORPH_OPEN, np.ones((BEHIND, BEHIND), np.uint8))
-    behind = cv2.resize(cv2.blur(behind, (5, 5)), grey.shape[::-1])
-    ahead = cv2.blur(cv2.subtract(grey, behind), (3, 3))
+    grey, ahead = _grey(image), cv2.blur(ahead_of_background(image), (3, 3))
     bright = cv2.threshold(ahead, limits.brighter, 255, cv2.THRESH_BINARY)[1]
     _, _, boxes, _ = cv2.connectedComponentsWithStats(bright, connectivity=4)
     low, high = limits.size
