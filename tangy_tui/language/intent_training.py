@@ -13,17 +13,14 @@ from tangy_tui.language.examples import Example
 from tangy_tui.language.intent_model import IntentModel, features
 
 FEWEST = 3  # examples with a feature; rarer features do not generalise
-INVERSE_REGULARISATION = 10.0  # scikit-learn's C
-MOST_STEPS = 120
-TOLERANCE = 1e-3
+INVERSE_REGULARISATION = 30.0  # scikit-learn's C
+MOST_STEPS = 400
+TOLERANCE = 1e-5
 DIGITS = 2
 
 
-def train(examples: Sequence[Example], tolerance: float = TOLERANCE) -> IntentModel:
-    """Fit a model to examples. It takes a few seconds, and is deterministic.
-
-    A lower `tolerance` fits them more closely, and takes longer.
-    """
+def train(examples: Sequence[Example]) -> IntentModel:
+    """Fit a model to examples. It takes some seconds, and is deterministic."""
     import numpy as np
     from sklearn.feature_extraction import DictVectorizer
     from sklearn.linear_model import LogisticRegression
@@ -33,7 +30,7 @@ def train(examples: Sequence[Example], tolerance: float = TOLERANCE) -> IntentMo
     kept = [{name: v for name, v in row.items() if seen[name] >= FEWEST} for row in rows]
     vectorizer = DictVectorizer(dtype=np.float64)
     table = vectorizer.fit_transform(kept)
-    classifier = LogisticRegression(C=INVERSE_REGULARISATION, max_iter=MOST_STEPS, tol=tolerance)
+    classifier = LogisticRegression(C=INVERSE_REGULARISATION, max_iter=MOST_STEPS, tol=TOLERANCE)
     classifier.fit(table, [example.behaviour for example in examples])
     weights = np.round(classifier.coef_, DIGITS)
     offsets = classifier.intercept_

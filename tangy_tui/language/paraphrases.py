@@ -15,7 +15,7 @@ from tangy_tui.language.mentions import Mentions
 from tangy_tui.language.words import FILLERS, Words, bare
 
 SURE = 0.6
-UNSURE = 0.35
+UNSURE = 0.25
 """The lowest probability of any command for the likeliest ones to be offered."""
 TALK = 0.9
 """Probability of other talk above which only near phrases count."""

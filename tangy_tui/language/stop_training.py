@@ -22,7 +22,6 @@ from tangy_tui.language.stop_likelihood import MODEL, STOP
 from tangy_tui.language.stop_phrases import game_words, other_stop_texts, stop_texts
 from tangy_tui.language.words import Words, words_of
 
-TOLERANCE = 1e-5
 OFTEN = 6  # how many times a sentence counts at most
 OWN = 4  # how many times each phrase of an activity counts
 EVERY = 6  # every so many sentences are taken that ask for an activity's behaviours
@@ -51,7 +50,7 @@ def digest_of(examples: Iterable[Example]) -> str:
 def main() -> None:
     """Learn the stops anew."""
     examples = stop_examples()
-    model = json.loads(train(examples, TOLERANCE).to_json())
+    model = json.loads(train(examples).to_json())
     told = json.dumps({"made_of": digest_of(examples), **model}, separators=(",", ":"))
     Path(__file__).with_name(MODEL).write_text(told, encoding="utf-8")
 

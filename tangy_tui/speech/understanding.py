@@ -37,7 +37,7 @@ CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 14.98, 0.39, 1.51, -12.
 LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
 MOST_KNOWN = 3
 SURE = 0.6
-UNSURE = 0.35
+UNSURE = 0.25
 DOUBT_WEIGHT, DOUBTED = 4.5, 0.0
 """Reduction of a paraphrase's logit per unit of the margin, below some margin."""
 NO_TALK = 0.9  # probability of a near phrase that overrules the intent model's talk class

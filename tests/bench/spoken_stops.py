@@ -31,7 +31,7 @@ from tangy_tui.language.intent_training import train
 from tangy_tui.language.stop_likelihood import use_model
 from tangy_tui.language.stop_phrases import other_stop_texts, stop_sets, stop_texts
 from tangy_tui.language.stop_sentence import stops as is_stop
-from tangy_tui.language.stop_training import TOLERANCE, stop_examples
+from tangy_tui.language.stop_training import stop_examples
 from tangy_tui.learning.verification import StopCommand
 from tangy_tui.speech.decoder import make_decoder
 from tangy_tui.speech.evidence import USUAL
@@ -146,7 +146,7 @@ def main() -> None:
     options.add_argument("--show", action="store_true", help="list what went wrong")
     chosen = options.parse_args()
     if chosen.set:
-        use_model(train(stop_examples(chosen.set), TOLERANCE))
+        use_model(train(stop_examples(chosen.set)))
     listened = wanted(BOOK, USUAL)
     texts = stop_texts(chosen.set)
     other_texts = (*other_stop_texts(chosen.set), *BOOK.spoken())
