@@ -98,7 +98,7 @@ _WHATEVER = re.compile(r"(?:always )?(?:it is |do |that is )?the same whatever(.
 
 @dataclass(frozen=True, slots=True)
 class Perform:
-    """Do what a key does. `action` is one of the keymap; `on` sets a switch if the words say so."""
+    """Run an action of the keymap; `on` is the wanted state of a switch if the words name it."""
 
     action: str
     on: bool | None = None

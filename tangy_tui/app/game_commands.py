@@ -17,7 +17,7 @@ Direction = Literal["forward", "back", "left", "right", "still"]
 DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
 
 Phase = Literal["idle", "running", "paused", "stopped", "asking", "halted", "staff"]
-"""The phase of a game. Without a game it is idle; `staff`: they drive by hand or say what is next.
+"""The phase of a game; idle without a game. `staff`: they drive by hand or choose the next step.
 """
 
 LONGEST_DRIVE = 5.0  # s that one command drives by hand

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
 
 COARSE = 0.1
-"""Cell size in m of the map shown during the drive: odometry drifts, so finer cells show no more.
+"""Cell size in m of the map shown during the drive: odometry drifts, so finer cells would not help.
 """
 DRIVES_BY = ("base", "stop_button")
 """The devices that a drive on the bench reaches by rosbridge; the scanner has its own connection.

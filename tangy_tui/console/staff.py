@@ -82,7 +82,7 @@ class StaffLines:
             find_person: returns the id of a person by name or id.
             read: blocks for the next line, and returns None at the end.
             write: writes a line; is called by one thread at a time.
-            speed: pace of simulated time in times life; None: the robot's own time.
+            speed: of simulated time (ratio to real time); None: the robot's own time.
             also: is called with all events, and returns further lines to write.
             demonstrations: returns all demonstrations, to explain decisions.
             yes: parses a typed yes.

@@ -28,7 +28,7 @@ def interrupted_words(past: PastGame, calls: int) -> str:
 
 
 def still_open_words(past: PastGame, calls: int) -> str:
-    """Tell beside a choice that a game was interrupted, and can be resumed."""
+    """Tell in the note on a choice that a game was interrupted, and can be resumed."""
     return f"interrupted after {_far(past, calls)}: Enter asks whether to go on"
 
 
@@ -37,7 +37,7 @@ def _far(past: PastGame, calls: int) -> str:
 
 
 def begins_anew(verb: str) -> str:
-    """Tell that a new game begins beside an interrupted one, and how to resume that one."""
+    """Tell that a new game begins, and how to resume the interrupted one instead."""
     return (
         f"A new game begins. `tangy {verb} --resume` would go on with the interrupted one, "
         "until another game is played."

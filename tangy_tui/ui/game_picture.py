@@ -84,7 +84,7 @@ class GamePicture:
         self._show_beliefs(None)
 
     def tell(self, events: Sequence[Event], pace: float) -> None:
-        """Show events; `pace` is in times life (0: without animation)."""
+        """Show events; `pace` is a ratio to real time (0: no animation)."""
         taught = next((event for event in events if isinstance(event, Taught | DoneOnce)), None)
         log = self._screen.query_one(LogView)
         for event in events:
@@ -208,7 +208,7 @@ class GamePicture:
         self._screen.query_one(PolicyTable).show(rows, highlight)
 
     def show_scene(self, seconds: float, *, drive: bool, pace: float) -> None:
-        """Show the room after a step of some s, at a pace in times life (0: at once)."""
+        """Show the room after a step of some s, `pace` times as fast as real (0: at once)."""
         room = self._screen.query_one(RoomView)
         scene = self._supervision.world.scene()
         if drive and pace:

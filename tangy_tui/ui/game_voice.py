@@ -15,7 +15,7 @@ from tangy_tui.monitoring.supervision import Event
 from tangy_tui.ui.speaking import opening_lines, preference_of, speaker_of
 
 AS_IN_LIFE = 1.0
-"""Up to this pace, in times life, the game waits for a line to end."""
+"""Up to this pace (ratio to real time), the game waits for a line to end."""
 
 
 class GameVoice:
@@ -36,7 +36,8 @@ class GameVoice:
 
         Args:
             events: the new events.
-            pace: times life; 0 if the user steps through the events, or all come at once.
+            pace: a ratio to real time; 0 if the user steps through the events, or all come
+                at once.
         """
         if self._app is None:
             return
@@ -62,7 +63,9 @@ class GameVoice:
             speaker_of(self._app).hush()
 
     async def heard(self, pace: float, nudge: asyncio.Event) -> bool:
-        """Wait until the last line has been spoken (pace in times life); a nudge ends the wait.
+        """Wait until the last line is spoken, at a pace up to `AS_IN_LIFE`; a nudge ends it.
+
+        `pace` is a ratio to real time.
 
         Returns:
             Whether there is nothing left to wait for.

@@ -12,7 +12,7 @@ from tangy_tui.ui.dialogs.name import NameDialog
 
 
 async def ask_who_joins(app: App[Any]) -> tuple[str, bool] | None:
-    """Return the name of who joins, and whether as a guest; None: nobody does."""
+    """Ask who joins; return the name, and whether as a guest; None: nobody does."""
     name = await app.push_screen_wait(NameDialog("", text.ADD, text.NAME_DETAIL))
     if not name:
         return None

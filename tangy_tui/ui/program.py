@@ -1,4 +1,4 @@
-"""The application on a terminal: the order of its screens, and what each of them works with."""
+"""The application on a terminal: the order of its screens, and what each of them needs."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ T = TypeVar("T")
 LONGEST_WORK = 600.0  # s until the notice of slow work expires, if the work has not ended
 
 PLAYING = 20.0
-"""The pace of watched games in times life, unless Tangy speaks or the user asks for another."""
+"""The speed of watched games (ratio to real time) if Tangy is silent and none is given."""
 
 Start = Callable[["Program"], Coroutine[Any, Any, None]]
 """What the application does first, above its home screen."""
@@ -252,8 +252,8 @@ class Program(SoundingApp):
 
         Args:
             games: the number of games.
-            speed: times life; by default 1 if Tangy speaks or its cameras are real, otherwise
-                faster.
+            speed: a ratio to real time; by default 1 if Tangy speaks or its cameras are real,
+                otherwise faster.
             seed: seeds the random generators.
             wanted: the policy: its name or digest, "" for the last.
             teacher: who answers Tangy's questions.

@@ -118,7 +118,7 @@ class RoundTrip:
         if y == 0:
             return  # Shift+F3, which Textual parses as a report
         if not self._answers and (x + 1, y + 1) in self._waiting and (x, y) not in self._waiting:
-            self._base = 1  # it counts from 0, as kmscon is said to
+            self._base = 1  # it counts from 0, as kmscon reportedly does
         found = self._waiting.pop((x + self._base, y + self._base), None)
         if found is None:
             return

@@ -92,11 +92,11 @@ def run_playing(
     sensors: CameraHub | None = None,
     past: PastGame | None = None,
 ) -> int:
-    """Open the playing screen (speed in times life); return the exit status.
+    """Open the playing screen; return the exit status.
 
-    The default speed is 1 if Tangy speaks or if `sensors` are given, which then count as the
-    robot's cameras; otherwise it is faster. Answers to Tangy's questions may be spoken if there are
-    `ears`.
+    `speed` is a ratio to real time, by default 1 if Tangy speaks or if `sensors` are given,
+    which then count as the robot's cameras; otherwise it is faster. Answers to Tangy's questions
+    may be spoken if there are `ears`.
     """
     return _run(
         workspace,

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision
 
 
-SPEED = 20.0  # times life, as on the screen
+SPEED = 20.0  # ratio to real time, as on the screen
 
 
 def play(

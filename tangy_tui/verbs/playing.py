@@ -146,7 +146,7 @@ def play_with_staff(
         games: the number of games.
         teacher: who types.
         robot: the world of a real robot.
-        speed: times life, for simulated games.
+        speed: a ratio to real time, for simulated games.
         past: an interrupted game to resume first.
     """
     lines = _lines(workspace, supervision, teacher, robot=robot, speed=speed, past=past)

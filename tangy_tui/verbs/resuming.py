@@ -34,7 +34,7 @@ def past_game(
         world: the world to play in.
         resume: resume without asking.
         discard: end the interrupted game.
-        asks: a screen asks later; otherwise a new game begins beside it, which is printed.
+        asks: a screen asks later; otherwise a new game begins, and a note is printed.
 
     Raises:
         TangyError: nothing was interrupted, or its room is not available.

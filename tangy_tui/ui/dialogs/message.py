@@ -1,4 +1,4 @@
-"""A message to read before going on."""
+"""A message to read before continuing."""
 
 from __future__ import annotations
 

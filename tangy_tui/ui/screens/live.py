@@ -151,7 +151,7 @@ class LiveScreen(PlayScreen):
 
     @property
     def at_rest(self) -> bool:
-        """Whether no game runs or begins, in which the robot may drive."""
+        """Whether no game runs or begins; in a game, the robot may drive."""
         return self._supervision.over and not self.working
 
     async def _begin_game(self) -> list[Event]:

@@ -72,7 +72,7 @@ class PlayScreen(PlayStaff):
             workspace: the workspace of the games.
             supervision: runs the games.
             games: the number of games.
-            speed: times life.
+            speed: a ratio to real time.
             teacher: who answers Tangy's questions (default: the workspace's teacher).
             robot: the world of a real robot.
             past: an interrupted game to resume first.

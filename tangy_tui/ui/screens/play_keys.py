@@ -8,7 +8,7 @@ from tangy_tui.text.games import SENSORS, SHOWS
 from tangy_tui.ui.keys import Key, bind
 
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-"""In times life; at 1 a game takes half an hour, as among people."""
+"""Ratios to real time; at 1 a game takes half an hour, as among people."""
 
 
 def keys(*, going: bool, over: bool = False) -> tuple[str | Key, ...]:
@@ -22,7 +22,7 @@ def keys(*, going: bool, over: bool = False) -> tuple[str | Key, ...]:
 
 
 def faster(speed: float, by: int) -> float:
-    """Return the speed (times life) `by` places from the nearest available one."""
+    """Return the speed (ratio to real time) `by` places from the nearest available one."""
     nearest = min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - speed))
     return SPEEDS[min(len(SPEEDS) - 1, max(0, nearest + by))]
 

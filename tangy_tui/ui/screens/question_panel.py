@@ -75,7 +75,7 @@ class Instead(Enum):
 
 
 def wanted(question: Unsure) -> bool:
-    """Return whether staff requested the question, so that Tangy could also go on by itself."""
+    """Return whether staff requested the question, so that Tangy could also continue by itself."""
     return question.fault == TAKEN_OVER
 
 
@@ -223,7 +223,7 @@ class AskingPanel(Vertical):
         return self._acceptable
 
     def ask_to_give_up(self) -> None:
-        """Confirm giving up the game; or let Tangy go on, if staff requested the question."""
+        """Confirm giving up the game; or let Tangy continue, if staff requested the question."""
         if self._wanted:
             self.withdraw()
         elif self._dialog is None:
