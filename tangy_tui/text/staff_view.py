@@ -16,6 +16,9 @@ from tangy_tui.text.control import autonomy_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import moment_words
 
+STEP_SECONDS = 10
+"""Waits of less than a minute are told in steps of so many s."""
+
 NOTHING_CALLED = "nothing called yet"
 PAUSED, STOPPED, OVER = "Paused.", "Tangy was stopped.", "The game is over."
 
@@ -24,6 +27,15 @@ def clock_words(seconds: float) -> str:
     """Format a time in s as minutes and seconds."""
     whole = max(0, int(seconds))
     return f"{whole // 60}:{whole % 60:02}"
+
+
+def lasting_words(seconds: float) -> str:
+    """Write how long somebody has waited (s), as coarse as staff need it.
+
+    Seconds of 24 people would change the screen all the time.
+    """
+    whole = max(0, int(seconds))
+    return f"{whole // 60} min" if whole >= 60 else f"{whole - whole % STEP_SECONDS} s"
 
 
 def time_words(seconds: float, minutes: int) -> str:
@@ -84,7 +96,7 @@ def said_words(said: str) -> str:
 
 def person_words(person: PersonNow) -> str:
     """Describe a person's state, with the relevant times."""
-    seen = "" if person.unvisited is None else f"visit {clock_words(person.unvisited)} ago"
+    seen = "" if person.unvisited is None else f"visit {lasting_words(person.unvisited)} ago"
     match person.state:
         case "away":
             return "not here"
@@ -93,7 +105,7 @@ def person_words(person: PersonNow) -> str:
         case "comes":
             return "Tangy comes"
         case "asks":
-            waits = "" if person.waits is None else f" {clock_words(person.waits)}"
+            waits = "" if person.waits is None else f" {lasting_words(person.waits)}"
             return f"asks{waits}" + (f", {seen}" if seen else "")
         case "plays":
             return seen or "no visit yet"

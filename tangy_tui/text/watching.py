@@ -7,7 +7,7 @@ from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.game_commands import Phase
 from tangy_tui.app.game_view import GameView
 from tangy_tui.text.situations import Name
-from tangy_tui.text.staff_view import clock_words, time_words
+from tangy_tui.text.staff_view import lasting_words, time_words
 
 WORLDS: dict[GameWorld, str] = {
     UNKNOWN: "world unknown",
@@ -60,7 +60,7 @@ def waiting_words(view: GameView, name: Name) -> str:
     """Tell who waits for help, and for how long; "" if nobody does."""
     waits = {one.id: one.waits for one in view.people if one.waits is not None}
     told = [
-        f"{name(one)} {clock_words(waits[one])}" if one in waits else name(one)
+        f"{name(one)} {lasting_words(waits[one])}" if one in waits else name(one)
         for one in view.scene.requests
     ]
     return f"Waiting for help: {', '.join(told)}" if told else ""

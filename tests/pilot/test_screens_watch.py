@@ -14,7 +14,7 @@ from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.text.staff_view import clock_words, time_words
+from tangy_tui.text.staff_view import clock_words, lasting_words, time_words
 from tangy_tui.ui.screens.watch import WatchScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -73,7 +73,7 @@ async def test_it_shows_the_time_and_who_waits_how_long_as_staff_see_it(
         await until(lambda: screen.query(RoomView))
         seen = control.view()
         waits = {one.id: one.waits for one in seen.people if one.waits is not None}
-        (first, *_), words = world.scene().requests, clock_words(waits[world.scene().requests[0]])
+        (first, *_), words = world.scene().requests, lasting_words(waits[world.scene().requests[0]])
         assert clock_words(seen.seconds) != "0:00"
         await until_shown(pilot, lambda: time_words(seen.seconds, 0) in pilot.text())
         name = f"User {first.removeprefix('user')}"
