@@ -27,7 +27,6 @@ from tangy_sim.worlds.clarity import UNCLEAR, Clarity
 from tangy_sim.worlds.compliance import respond
 from tangy_sim.worlds.users import SimulatedUser
 
-SIGN_UP = (2.5, 4.0)  # s for which an answer sign is held up
 ACTS = (1.0, 6.0)  # s between a sentence and an action that follows it
 
 
@@ -91,6 +90,8 @@ class DeclaredPeople(People):
         behaviour, game = heard.behaviour, self.known
         if behaviour is None or self.game.over:
             return
+        for person in self.shown:
+            self._after(TURNS_DOWN, partial(self.shown.pop, person, None))
         declared = game.declaration.behaviours[behaviour.name]
         named = (game.whom(one) for one in declared.to)
         whom = heard.person or next((one for one in named if one is not None), None)
@@ -156,7 +157,6 @@ class DeclaredPeople(People):
             self.sitters[act.who].asks_since = self.now
         elif letter := self._letter(fact, said):
             self.shown[act.who or ""] = letter
-            self._after(SIGN_UP, partial(self.shown.pop, act.who or "", None))
         else:
             self.game.acts.append((act.fact, act.who or "", said, sure))
 

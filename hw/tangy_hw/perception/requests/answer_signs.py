@@ -104,10 +104,13 @@ class AnswerPersistence:
         self._seen: dict[int, deque[tuple[str, float]]] = {}
         self.shown: dict[int, tuple[str, float]] = {}
         """Each seat that shows a letter, with the letter and how sure it is."""
+        self.found: dict[int, str] = {}
+        """The letters in the last picture alone, by seat."""
 
     def look(self, image: Image) -> dict[int, tuple[str, float]]:
         """Take the next picture; return the letter at each seat, with its probability."""
         found = {self._seat_at(one.x, one.y): one for one in find_answer_signs(image)}
+        self.found = {seat: one.letter for seat, one in found.items() if seat}
         for seat in (found.keys() | self._seen.keys()) - {0}:
             one, last = found.get(seat), self._seen.setdefault(seat, deque(maxlen=OF))
             last.append(("", 0.0) if one is None else (one.letter, one.sure))

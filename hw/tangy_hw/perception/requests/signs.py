@@ -131,6 +131,12 @@ class SignWatcher:
         """Take a picture (BGR); return who shows which letter: seat to letter and probability."""
         return self._answers.look(image)
 
+    @property
+    def sure_of_answers(self) -> bool:
+        """Whether the last picture showed exactly the letters that count as shown."""
+        shown = {seat: letter for seat, (letter, _) in self._answers.shown.items()}
+        return shown == self._answers.found
+
 
 class Signs(RequestSource):
     """Requests by signs before a camera."""
@@ -184,7 +190,8 @@ class Signs(RequestSource):
             for seat in set(self._asks) - set(asks):
                 self._withdraw(seat)
             self.looks += 1
-            self.agreed = self.agreed + 1 if set(self._watcher.found) == set(self._asks) else 0
+            agreed = set(self._watcher.found) == set(self._asks) and self._watcher.sure_of_answers
+            self.agreed = self.agreed + 1 if agreed else 0
             if not self.camera.source.each:
                 await asyncio.sleep(max(0.0, PAUSE - (time.monotonic() - frame.stamp)))
 
