@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.codec import written
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.memory import GameMemory
 from tangy_profiles.declared.silence import SILENCE
 from tangy_profiles.events import EventRecord
@@ -242,6 +244,7 @@ def _replay(
     faults = {fault.id: fault for fault in replay.faults}
     moved: dict[str, int] = {}  # fault id -> number of its moves so far
     step, acted = 0, 0.0
+    done = Counter[str]()  # how often each behaviour was completed so far
     for event in events:
         what: What
         match event.record:
@@ -251,7 +254,9 @@ def _replay(
                 replay.seconds = max(replay.seconds, (over or 0.0) - (took or 0.0))
                 begun = replay.seconds
                 replay.seconds += took or 0.0
-                what = _done(record, step, begun, replay.seconds, activity, names)
+                times = done[record.behaviour]
+                done[record.behaviour] += record.completed
+                what = _done(record, step, begun, replay.seconds, activity, names, times)
             case ResponseGiven(followed=followed, seconds=took):
                 what = _answered(event, followed, took)
             case ResponseAwaited():
@@ -290,13 +295,17 @@ def _done(
     over: float,
     activity: Activity | None,
     names: Mapping[str, str],
+    times: int,
 ) -> Done:
     name, target, strategy = step.behaviour, step.target, step.strategy or ""
     behaviour = activity.behaviours.get(name) if activity is not None else None
     expected = activity.expected.get(step.state.situation, name) if activity is not None else name
     said = ""
     if activity is not None and behaviour is not None:
-        speech = behaviour.speech.get(strategy or activity.plain_strategy, "")
+        chosen = strategy or activity.plain_strategy
+        speech = behaviour.speech.get(chosen, "")
+        if isinstance(activity, DeclaredActivity):
+            speech = activity.text_in_turn(name, chosen, times, personal=target is not None)
         numbers = tuple(n for n in step.numbers if n in activity.deck.numbers)
         said = activity.fill(speech, names.get(target or "", target or ""), numbers, aloud=True)
     return Done(

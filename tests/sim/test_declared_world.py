@@ -12,7 +12,7 @@ from tangy_profiles.declared.checking import expected_moves
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.state import Outcome
 from tangy_sim.worlds.declared_world import DeclaredWorld
-from tests.support.declared import declared
+from tests.support.declared import DECLARED, declared
 from tests.support.media import guess_the_sound, make_sound
 
 PEOPLE = ("user1", "user2", "user3")
@@ -49,6 +49,31 @@ def test_a_sound_takes_as_long_as_it_lasts(tmp_path: Path) -> None:
             ).seconds
         )
     assert seconds[1] - seconds[0] == pytest.approx(60.0)
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_the_text_in_turn_is_what_was_said(name: str) -> None:
+    activity, taught = declared(name), expected_moves(declared(name))
+    world = DeclaredWorld(activity, activity.teams or PEOPLE, seed=2)
+    times, told = Counter[str](), set[str]()
+    for _ in range(6):
+        world.begin()
+        times.clear()
+        while not world.over:
+            move = taught.move(world.game)
+            assert move is not None
+            behaviour, whom = move
+            done = world.execute(activity.action(activity.behaviours[behaviour], whom, None))
+            text = activity.text_in_turn(
+                behaviour, activity.plain_strategy, times[behaviour], personal=whom is not None
+            )
+            times[behaviour] += done.completed
+            if said := activity.fill(text, f"\x02{whom}\x03", ()):
+                assert said == done.speech
+                told.add(text)
+    assert (
+        len(told) > len({activity.behaviours[b].speech[activity.plain_strategy] for b in times}) / 2
+    )
 
 
 def test_an_unclear_answer_is_asked_for_again_and_games_come_to_their_end() -> None:

@@ -86,6 +86,16 @@ class DeclaredActivity(Activity):
         """Return the world's speech and picture text, with people's names."""
         return with_names(outcome.speech, name), with_names(outcome.image, name)
 
+    def text_in_turn(self, behaviour: str, strategy: str, times: int, *, personal: bool) -> str:
+        """Return the text of a behaviour after so many times, `personal` if it is for a person.
+
+        A text that needs a person is skipped without one, as in a game.
+        """
+        says = self.declaration.behaviours[behaviour].says
+        texts = says.get(strategy) or next(iter(says.values()), ())
+        in_turn = (texts[(times + n) % len(texts)] for n in range(len(texts)))
+        return next((text for text in in_turn if personal or "{name}" not in text), "")
+
     def fill(
         self, template: str, name: str, numbers: tuple[int, ...], *, aloud: bool = False
     ) -> str:
