@@ -71,9 +71,7 @@ def test_the_text_in_turn_is_what_was_said(name: str) -> None:
             if said := activity.fill(text, f"\x02{whom}\x03", ()):
                 assert said == done.speech
                 told.add(text)
-    assert (
-        len(told) > len({activity.behaviours[b].speech[activity.plain_strategy] for b in times}) / 2
-    )
+    assert len(told) > 3
 
 
 def test_an_unclear_answer_is_asked_for_again_and_games_come_to_their_end() -> None:
