@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.situations import seen_facts
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.state import EVERYBODY, ActivityState
@@ -55,7 +56,10 @@ def activity_lines(activity: DeclaredActivity) -> Iterator[str]:
     for name, one in declaration.behaviours.items():
         to = f", for {' or '.join(one.to)}" if one.to else ""
         does = ", ".join(map(_effect_words, one.effects)) or "speaks only"
-        yield f"  {name}{to}: {does}"
+        more = [f"shows {one.picture}"] if one.picture else []
+        more += [f"plays {one.sound}"] if one.sound else []
+        more += [f"waits {one.pause:g} s"] if one.pause != PAUSE_SECONDS else []
+        yield f"  {name}{to}: {', '.join((does, *more))}"
 
 
 def condition_words(condition: FactCondition) -> str:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tangy_profiles.declared.activity import read_declared
 from tangy_tui.app.trying import tried_game
-from tangy_tui.text.activities import SAYS_NOTHING, people_did
+from tangy_tui.text.activities import SAYS_NOTHING, activity_lines, people_did, tried_lines
 from tests.support.changed import changed_trivia
 from tests.support.declared import declared
+from tests.support.media import guess_the_sound
 
 
 def test_everything_that_a_person_did_after_a_step_is_told() -> None:
@@ -26,3 +28,18 @@ def test_who_says_nothing_and_is_asked_again_is_told(tmp_path: Path) -> None:
     silent = [step for step in steps if step.silent]
     assert {step.behaviour for step in silent} == {"ask question"}
     assert SAYS_NOTHING in people_did(silent[0].doing, silent[0].silent)
+
+
+def test_what_is_shown_and_played_is_told_step_by_step_and_of_the_whole(tmp_path: Path) -> None:
+    file = guess_the_sound(tmp_path)
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace('picture = "{photo}"', 'picture = "{photo}"\npause = 12'))
+    activity = read_declared(file)
+    steps = list(tried_game(activity, 2, 1))
+    (first,) = next(step.media for step in steps if step.behaviour == "play a sound")
+    assert first.endswith(".wav")
+    told = [line for step in steps for line in tried_lines(step)]
+    assert f"   Tangy shows or plays: {first}" in told
+    whole = "\n".join(activity_lines(activity))
+    assert "start clock, plays {clip}\n" in whole
+    assert "next turn, shows {photo}, waits 12 s\n" in whole
