@@ -62,7 +62,7 @@ class Filtered(RowView):
         """Take letters as filter words while filtering; esc clears the filter."""
         if event.key == "escape" and self.filtered:
             self.filtering, self.filter = False, ""
-        elif not self.filtering and not (self.LETTERS_FILTER and self._filters(event)):
+        elif not self.filtering and not (self.LETTERS_FILTER and self._is_filter_key(event)):
             return
         elif event.key == "slash" and not self.filter:
             pass  # it starts the filter, as in every list
@@ -78,7 +78,7 @@ class Filtered(RowView):
         event.prevent_default()
         self._refilter()
 
-    def _filters(self, event: events.Key) -> bool:
+    def _is_filter_key(self, event: events.Key) -> bool:
         """Return whether a key edits the filter: a letter, a digit, backspace or space."""
         typed = event.character or ""
         if self.filter and event.key in ("backspace", "space"):
