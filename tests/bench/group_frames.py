@@ -50,8 +50,7 @@ def measured(people: int, columns: int, lines: int) -> tuple[float, float]:
             terminal.settle(1.0)
         return found[0], found[1]
     finally:
-        terminal.type("\x03")
-        terminal.close()
+        terminal.end()
 
 
 def show(people: int) -> int:
