@@ -115,13 +115,15 @@ class GamePlanControls:
     def _choose(self, world: PlannedGame, names: tuple[str, ...]) -> list[Result]:
         rules = world.activity.rules
         patterns = tuple(rules.pattern(name).name for name in names)
-        labels = ", ".join(rules.pattern(name).label for name in patterns)
+        labels = [rules.pattern(name).label for name in patterns]
         if self._idle:
             world.choose(replace(world.game_plan, patterns=patterns))
         else:
             self._supervision.game.change("patterns chosen", patterns=patterns, by=self._by)
+            if world.patterns.present is not None:
+                labels.insert(0, world.patterns.present.label)
         self._note("patterns", detail=", ".join(patterns))
-        return [StaffNote("patterns", labels)]
+        return [StaffNote("patterns", ", then ".join(labels))]
 
     def _let_win(
         self, world: PlannedGame, several: bool | None, visits: bool | None

@@ -84,6 +84,15 @@ class Guest:
             self._take(line)
         return True
 
+    def look_first(self, seconds: float = PATIENCE_SECONDS) -> bool:
+        """Look, and wait up to so many s until the program there has said how its game stands."""
+        there, until = self.look(), time.monotonic() + seconds
+        while there and not self.pid and (left := until - time.monotonic()) > 0:
+            assert self._socket is not None  # noqa: S101 - somebody is there
+            select.select([self._socket], [], [], left)
+            there = self.look()
+        return there
+
     def stop(self, by: str) -> None:
         """Stop the robot.
 

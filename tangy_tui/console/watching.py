@@ -68,7 +68,7 @@ class WatchingLines:
         self._tell_phase()
 
     def _tell_first(self) -> None:
-        self._there = self.guest.look()
+        self._there = self.guest.look_first()
         if not self._as_json:
             lines = text.view_lines(self.guest.view, None, self._name)
             for line in lines if self._there else [text.NOBODY]:

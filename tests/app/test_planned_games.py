@@ -122,7 +122,9 @@ def test_a_claim_is_told_by_the_numbers_that_were_called(planned: Planned) -> No
     planned.begin(GamePlan(("full card",)))
     planned.play(calls=20)
     world = planned.world
-    planned.do(ChoosePatterns(("line",)))
+    (note,) = planned.control.apply(ChoosePatterns(("line",)))
+    assert isinstance(note, StaffNote)
+    assert note.about == "the full card, then a line"
     card = world.players["user3"].numbers
     calls = len(world.scene().called)
     world.order[:calls] = [*card[:5], *world.order[5:calls]]

@@ -73,6 +73,14 @@ def test_a_guest_sees_who_drives_and_what_there_is_to_see(
     assert guest.pid == os.getpid()
 
 
+def test_the_first_look_waits_until_the_game_is_seen(
+    control: GameController, data_folder: Path
+) -> None:
+    guest = Guest(data_folder)
+    assert guest.look_first() and guest.view is not None
+    guest.close()
+
+
 def test_a_guest_sees_what_changes(guest: Guest, control: GameController) -> None:
     seen(guest)
     go_on_by_script(control, expert=False)
