@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.fault_file import load_faults
 from tangy_tui.monitoring.drill import ROUNDS, Drill
 from tangy_tui.monitoring.drill_policy import policy_for_drill
-from tangy_tui.monitoring.drill_rounds import Tabletop
+from tangy_tui.monitoring.drill_rounds import DrillSimulator
 
 if TYPE_CHECKING:
     from tangy_profiles.drill_sheet import Sheet
@@ -42,8 +42,10 @@ def open_drill(
     activity.need_cards()
     learnt = policy_for_drill(store, activity)
     faults = load_faults(robot)
-    tabletop = Tabletop(learnt.policy, learnt.effects, faults, robot, activity, workspace.names)
+    simulator = DrillSimulator(
+        learnt.policy, learnt.effects, faults, robot, activity, workspace.names
+    )
     return Drill(
-        tabletop, store,
+        simulator, store,
         who=who, seed=seed, rounds=rounds, clock=clock, note=learnt.note, past=past,
     )  # fmt: skip

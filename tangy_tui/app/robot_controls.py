@@ -22,7 +22,7 @@ from tangy_tui.learning.policy import Decision
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
-    from tangy_hw.robot_client.staff_eyes import StaffEyes
+    from tangy_hw.robot_client.staff_card_reports import StaffCardReports
 
 STOPPED, ENDED = "staff stopped it", "staff ended the game"
 UNCLEAR, UNCLEAR_SURE = "?", 0.5
@@ -129,7 +129,7 @@ class RobotControls:
             return StaffNote("not told", words=", ".join(sayable(robot.game)))
         return StaffNote("told", command.person or "", said)
 
-    def _tell_of_card(self, eyes: StaffEyes, command: Tell) -> StaffNote:
+    def _tell_of_card(self, eyes: StaffCardReports, command: Tell) -> StaffNote:
         """Report the state of the card beside a robot that cannot read cards."""
         person, said = eyes.asks, command.words
         if not person:

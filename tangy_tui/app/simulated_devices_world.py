@@ -18,7 +18,7 @@ from typing import Any
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_client.response_watch import PATIENCES
-from tangy_hw.robot_client.staff_eyes import ToldCard, told_card
+from tangy_hw.robot_client.staff_card_reports import ReportedCard, reported_card
 from tangy_profiles.behaviour import Action
 from tangy_profiles.effects import ABOUT_CARD, CORRECTS, DRIVES
 from tangy_profiles.faults import Remedy
@@ -87,14 +87,14 @@ class BenchedWorld(LiveWorld):
         self._open_tablet()
         return self
 
-    def _told_by_staff(self, person: str) -> ToldCard | None:
+    def _told_by_staff(self, person: str) -> ReportedCard | None:
         """Report a person's card as staff at the table would.
 
         After a request they wait until the card has changed, or the person has had time.
         """
         there = self.truth()["people"][person]
         numbers = self.numbers_on(there["card"]) or ()
-        told = told_card(self.activity, self.called, numbers, there["marked"])
+        told = reported_card(self.activity, self.called, numbers, there["marked"])
         assert self.eyes is not None  # noqa: S101 - they ask for it
         waited = self.link.time - self.eyes.began
         waits = told == self.eyes.before and waited < PATIENCES * self.activity.patience

@@ -63,7 +63,7 @@ def _go_through(drill: Drill, write: Write, read: Read, strict: bool) -> None:
     while (shown := drill.next()) is not None:
         write("")
         write(f"Round {shown.number} of {drill.rounds}")
-        for label, text in round_parts(drill.tabletop, shown):
+        for label, text in round_parts(drill.simulator, shown):
             write(f"  {label:9}  {text}")
         if not _answer_round(drill, shown, write, read, strict):
             drill.leave()
@@ -96,7 +96,7 @@ def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: 
         word = "quit" if line is None else line.strip().lower()
         if not word or word.startswith("#"):
             continue
-        command = read_teaching(word, words_of(drill.tabletop.activity.title))
+        command = read_teaching(word, words_of(drill.simulator.activity.title))
         if isinstance(command, Leave):
             return False
         if isinstance(command, StopCommand):
@@ -114,6 +114,6 @@ def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: 
             continue
         answered = drill.answer(word)
         if answered is not None:
-            for _, text in told_lines(drill.tabletop, shown, answered):
+            for _, text in told_lines(drill.simulator, shown, answered):
                 write(f"  {text}")
     return True

@@ -14,7 +14,7 @@ RIGHT, AGAIN, WRONG, NOTHING = "right", "again", "wrong cause", "no cause"
 
 
 @dataclass(frozen=True)
-class CommandMatch:
+class DiagnosisMatch:
     """A diagnosis, its verdict, and the induced fault it was matched to."""
 
     fault: Fault
@@ -26,12 +26,12 @@ class CommandMatch:
 class MatchCounts:
     """All diagnoses of a game, and the induced faults that were never diagnosed."""
 
-    matches: list[CommandMatch] = field(default_factory=list)
+    matches: list[DiagnosisMatch] = field(default_factory=list)
     missed: list[Induced] = field(default_factory=list)
     asked: int = 0
     """How often Tangy only asked what to do in an unknown situation."""
 
-    def of(self, induced: Induced) -> list[CommandMatch]:
+    def of(self, induced: Induced) -> list[DiagnosisMatch]:
         """Return the diagnoses of one induced fault."""
         return [match for match in self.matches if match.induced is induced]
 
@@ -64,12 +64,12 @@ def match_faults(induced: Sequence[Induced], faults: Sequence[Fault]) -> MatchCo
         same = [one for one in there if one.kind.code == fault.code]
         if new:
             known.append(new[0])
-            found.matches.append(CommandMatch(fault, RIGHT, new[0]))
+            found.matches.append(DiagnosisMatch(fault, RIGHT, new[0]))
         elif same:
-            found.matches.append(CommandMatch(fault, AGAIN, same[-1]))
+            found.matches.append(DiagnosisMatch(fault, AGAIN, same[-1]))
         elif unknown:
-            found.matches.append(CommandMatch(fault, WRONG, unknown[-1]))
+            found.matches.append(DiagnosisMatch(fault, WRONG, unknown[-1]))
         else:
-            found.matches.append(CommandMatch(fault, NOTHING, None))
+            found.matches.append(DiagnosisMatch(fault, NOTHING, None))
     found.missed = [one for one in induced if one not in known and one.could_show]
     return found

@@ -30,7 +30,7 @@ from tangy_tui.experiments.induced import (
 from tangy_tui.experiments.matching import (
     AGAIN,
     RIGHT,
-    CommandMatch,
+    DiagnosisMatch,
     MatchCounts,
     match_faults,
     seconds_to_recover,
@@ -133,7 +133,7 @@ def _induced(one: Induced, game: Supervision, matches: MatchCounts) -> dict[str,
     }
 
 
-def _diagnosed(match: CommandMatch, game: Supervision) -> dict[str, Any]:
+def _diagnosed(match: DiagnosisMatch, game: Supervision) -> dict[str, Any]:
     fault, induced = match.fault, match.induced
     right = recovery_of(induced.kind, game.book) if induced is not None else None
     recovered = fault.succeeded and len(fault.ladder) == 1

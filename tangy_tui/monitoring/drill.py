@@ -19,7 +19,7 @@ from tangy_profiles.game_records import DrillAnswered, DrillHeld
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.drill_log import read_sheets
 from tangy_tui.monitoring.drill_policy import DrillNote
-from tangy_tui.monitoring.drill_rounds import Round, Tabletop, draw_rounds
+from tangy_tui.monitoring.drill_rounds import DrillSimulator, Round, draw_rounds
 
 ROUNDS, MOST_ROUNDS = 6, 50
 
@@ -69,7 +69,7 @@ class Drill:
 
     def __init__(
         self,
-        tabletop: Tabletop,
+        simulator: DrillSimulator,
         store: Store,
         *,
         who: str,
@@ -82,7 +82,7 @@ class Drill:
         """Prepare a drill.
 
         Args:
-            tabletop: plays the rounds.
+            simulator: plays the rounds.
             store: the log that keeps the score sheet.
             who: the trainee.
             seed: the same seed draws the same rounds (default: one that no earlier drill used).
@@ -104,7 +104,7 @@ class Drill:
         mine = [sheet for sheet in earlier if sheet.by(who)]
         self.before = mine[-1] if mine else None
         """The sheet of the same person's previous drill."""
-        self.tabletop = tabletop
+        self.simulator = simulator
         self.rounds = rounds
         self.note = note
         self.round: Round | None = None
@@ -115,7 +115,7 @@ class Drill:
         self._who = who
         self._seed = seed
         self._clock = clock
-        self._plan = draw_rounds(tabletop.book, rounds, Random(f"{seed}/drill"))
+        self._plan = draw_rounds(simulator.book, rounds, Random(f"{seed}/drill"))
         self._given: dict[str, str] = {}
         self._since = 0.0
         self._answered = [] if past is None else list(past.answered)
@@ -135,7 +135,7 @@ class Drill:
     def sheet(self) -> Sheet:
         """The score so far."""
         return Sheet(
-            self._who, self.tabletop.activity.name, self._seed, self.rounds, tuple(self._answered)
+            self._who, self.simulator.activity.name, self._seed, self.rounds, tuple(self._answered)
         )
 
     def next(self) -> Round | None:
@@ -144,7 +144,7 @@ class Drill:
             return None
         at = len(self._answered)
         rng = Random(f"{self._seed}/drill/{at}")
-        self.round = self.tabletop.play(at + 1, self._plan[at], rng)
+        self.round = self.simulator.play(at + 1, self._plan[at], rng)
         self._given = {}
         self._ask(WHAT)
         self._since = self._clock()
@@ -201,7 +201,7 @@ class Drill:
             self._store.append(DrillHeld(sheet=self.sheet))
 
     def _judge(self, shown: Round, seconds: float) -> AnsweredRound:
-        rule, table = shown.rule, self.tabletop
+        rule, table = shown.rule, self.simulator
         answered = AnsweredRound(
             shown.number,
             shown.code,
@@ -220,7 +220,7 @@ class Drill:
     def _ask(self, kind: DrillAsks) -> None:
         if kind == WHAT and self.round is not None:
             choices = [
-                DrillOption(str(number), code, self.tabletop.rule_name(code))
+                DrillOption(str(number), code, self.simulator.rule_name(code))
                 for number, code in enumerate(self.round.choices, 1)
             ]
             choices.append(DrillOption(NOTHING, ""))

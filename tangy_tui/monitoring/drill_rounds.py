@@ -152,7 +152,7 @@ class Round:
         return "continue" if self.rule is None else self.rule.recovery[0]
 
 
-class Tabletop:
+class DrillSimulator:
     """Plays rounds in the simulator with a policy, its effects, the fault rules, and people."""
 
     def __init__(

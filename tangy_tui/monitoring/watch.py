@@ -13,11 +13,11 @@ from tangy_profiles.faults import LEAVE_TO_STAFF, Evidence, FaultBook
 from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.game_events import Acted, GameEvent, Unsure
 from tangy_tui.learning.effects import Mismatch
-from tangy_tui.monitoring.aftermath import Aftermath
 from tangy_tui.monitoring.detection import OTHERS, Detector, together
 from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
 from tangy_tui.monitoring.fault import BORNE, Fault, RecoveryEvent
 from tangy_tui.monitoring.recovery import Event, Recovery
+from tangy_tui.monitoring.secondary_symptoms import SecondarySymptoms
 
 NOT_SHOWN: Evidence = {"situation.shown": False}
 """The evidence that a situation was never demonstrated."""
@@ -39,14 +39,14 @@ class FaultWatch:
         self._detector = detector
         self._recovery = recovery
         self._seen: Evidence | None = None
-        self._aftermath = Aftermath(book, detector.devices)
+        self._secondary = SecondarySymptoms(book, detector.devices)
         recovery.hides_cards = self._hides_cards
 
     def begin(self) -> None:
         """Reset for a new game."""
         self.acted.clear()
         self._seen = None
-        self._aftermath.begin()
+        self._secondary.begin()
         self._detector.begin()
 
     @property
@@ -71,7 +71,7 @@ class FaultWatch:
 
     def look_after(self, fault: Fault) -> list[Event]:
         """Check the symptoms that a fault had explained, now that staff cleared it."""
-        if self._aftermath.end(fault.code):
+        if self._secondary.end(fault.code):
             self._seen = None
         return self.look()
 
@@ -152,9 +152,9 @@ class FaultWatch:
 
     def _diagnose(self, evidence: Evidence, mismatches: Sequence[Mismatch] = ()) -> list[Diagnosis]:
         """Diagnose the symptoms that no earlier fault explains."""
-        unexplained = self._aftermath.without(evidence, lambda: self._game.world.seconds)
+        unexplained = self._secondary.without(evidence, lambda: self._game.world.seconds)
         found = diagnose(self.book, unexplained, mismatches)
-        self._aftermath.take(found, unexplained)
+        self._secondary.take(found, unexplained)
         return found
 
     def _take(

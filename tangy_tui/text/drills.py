@@ -18,7 +18,7 @@ from tangy_tui.text.times import day_and_time
 if TYPE_CHECKING:
     from tangy_profiles.drill_sheet import AnsweredRound, Sheet
     from tangy_tui.monitoring.drill_policy import DrillNote
-    from tangy_tui.monitoring.drill_rounds import Round, Tabletop
+    from tangy_tui.monitoring.drill_rounds import DrillSimulator, Round
 
 Told = tuple[str, str]
 """A line and its ink (an ink of the screens: text, dim, strong, ...)."""
@@ -108,7 +108,7 @@ def asked_words(kind: DrillAsks) -> str:
             assert_never(forgotten)
 
 
-def round_parts(table: Tabletop, shown: Round) -> list[tuple[str, str]]:
+def round_parts(table: DrillSimulator, shown: Round) -> list[tuple[str, str]]:
     """Describe what staff see in a round: pairs of a label and a sentence."""
     activity, acted = table.activity, shown.acted
     just = "The game has only begun."
@@ -151,7 +151,7 @@ def question_words(question: Question, shown: Round) -> str:
     return asked_words(question.kind)
 
 
-def told_lines(table: Tabletop, shown: Round, answered: AnsweredRound) -> list[Told]:
+def told_lines(table: DrillSimulator, shown: Round, answered: AnsweredRound) -> list[Told]:
     """Tell the right answers of a round, the reasons, and the advice."""
     fault = shown.fault
     what = "nothing was wrong" if fault is None else fault.name
@@ -183,7 +183,7 @@ def _verdict(right: bool, was: str, said: str) -> Told:
     return "bad", f"Not quite. Right would be: {was}. You said: {said}."
 
 
-def _named(table: Tabletop, code: str) -> str:
+def _named(table: DrillSimulator, code: str) -> str:
     return table.rule_name(code) if code else "nothing is wrong"
 
 

@@ -27,7 +27,7 @@ from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.poses import HERE, between, compose, wrap
 from tangy_hw.navigation.scan_log import LoggedScan, read_log
-from tangy_hw.navigation.slip_detection import Disagreement
+from tangy_hw.navigation.slip_detection import SlipDetector
 
 FOLDER = "TANGY_LASER_LOG"
 MISSED = 1.4  # radians that wheels leave out once, where they slip
@@ -159,8 +159,8 @@ def kidnapped(map_: OccupancyMap, way: Sequence[Moment], seed: int) -> int | Non
 
 def disagreements(way: Sequence[Moment]) -> list[float]:
     """Return by how many metres wheels and laser disagree after each scan."""
-    disagreement = Disagreement()
-    return [disagreement.update(moment.odometry, moment.scan) for moment in way]
+    detector = SlipDetector()
+    return [detector.update(moment.odometry, moment.scan) for moment in way]
 
 
 def main() -> None:

@@ -15,7 +15,7 @@ from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
 from tangy_hw.navigation.poses import between, compose, wrap
 from tangy_hw.navigation.scan_matching import Reference
-from tangy_hw.navigation.slip_detection import Disagreement
+from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_profiles.room import load_room
 from tests.hw.raycast import Wheels, driven, look, room_sides, tour
 
@@ -130,16 +130,16 @@ class TestMatching:
         assert match.told == pytest.approx(np.diag([0.0, 1.0]), abs=0.01)
 
 
-class TestDisagreement:
+class TestSlipDetector:
     def slips(self, grip: float, seed: int = 0) -> list[float]:
         rng = np.random.default_rng(seed)
-        true, wheels, disagreement = Pose(2.0, 2.0, 0.0), Wheels(rng), Disagreement()
+        true, wheels, detector = Pose(2.0, 2.0, 0.0), Wheels(rng), SlipDetector()
         found = []
         for twist in ROUND[:80]:
             goes = Twist(twist.forward * grip, twist.turn * grip)
             true = driven(true, goes, 0.1)
             scan = look(SIDES, true, rng)
-            found.append(disagreement.update(wheels.turn(twist, 0.1), scan))
+            found.append(detector.update(wheels.turn(twist, 0.1), scan))
         return found
 
     @pytest.mark.parametrize("seed", [0, 1])
@@ -151,34 +151,34 @@ class TestDisagreement:
         assert max(self.slips(grip)) > 0.3
 
     def test_driving_backwards_counted_as_forwards_is_noticed(self) -> None:
-        true, counted, disagreement, found = START, Pose(0, 0, 0), Disagreement(), []
+        true, counted, detector, found = START, Pose(0, 0, 0), SlipDetector(), []
         for _ in range(40):
             true = driven(true, Twist(-0.2, 0.1), 0.1)
             counted = driven(counted, Twist(0.2, 0.1), 0.1)
-            found.append(disagreement.update(counted, look(SIDES, true)))
+            found.append(detector.update(counted, look(SIDES, true)))
         assert max(found) > 0.3
 
     def test_it_forgets_after_it_was_mended_and_after_a_while(self) -> None:
-        disagreement, counted = Disagreement(), Pose(0, 0, 0)
+        detector, counted = SlipDetector(), Pose(0, 0, 0)
         scan = look(SIDES, START)
         for _ in range(40):
             counted = driven(counted, Twist(0.3, 0), 0.1)
-            slipped = disagreement.update(counted, scan)
+            slipped = detector.update(counted, scan)
         assert slipped > 0.3
         for _ in range(60):
-            rested = disagreement.update(counted, scan)
+            rested = detector.update(counted, scan)
         assert rested == 0.0
-        disagreement.reset()
-        assert disagreement.metres == 0.0
+        detector.reset()
+        assert detector.metres == 0.0
 
     def test_being_carried_off_is_not_slipping(self) -> None:
-        disagreement, counted = Disagreement(), Pose(0, 0, 0)
-        disagreement.update(counted, look(SIDES, START))
+        detector, counted = SlipDetector(), Pose(0, 0, 0)
+        detector.update(counted, look(SIDES, START))
         carried = Pose(1.5, 3.5, 2.0)
         for number in range(20):
             counted = driven(counted, Twist(0.3, 0), 0.1)
             there = driven(carried, Twist(0.3, 0), 0.1 * (number + 1))
-            assert disagreement.update(counted, look(SIDES, there)) < 0.3
+            assert detector.update(counted, look(SIDES, there)) < 0.3
 
 
 def test_a_step_seen_from_a_pose_is_the_same_on_every_frame() -> None:

@@ -34,9 +34,9 @@ from tangy_tui.monitoring.drill_rounds import (
     CHOICES,
     QUIET,
     QUIET_KINDS,
+    DrillSimulator,
     Round,
     RoundKind,
-    Tabletop,
     draw_rounds,
     round_kinds,
 )
@@ -65,10 +65,10 @@ def learnt(tmp_path_factory: pytest.TempPathFactory, activity: Activity) -> Dril
 
 
 @pytest.fixture(scope="module")
-def table(learnt: DrillPolicy, activity: Activity, people: tuple[Person, ...]) -> Tabletop:
+def table(learnt: DrillPolicy, activity: Activity, people: tuple[Person, ...]) -> DrillSimulator:
     """A table-top with the four sample people."""
     names = {person.id: person.name for person in people}
-    return Tabletop(learnt.policy, learnt.effects, BOOK, load_robot(), activity, names)
+    return DrillSimulator(learnt.policy, learnt.effects, BOOK, load_robot(), activity, names)
 
 
 def right_keys(drill: Drill) -> list[str]:
@@ -122,7 +122,7 @@ def test_different_seeds_draw_different_drills() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
-def test_each_kind_of_fault_is_seen_and_alone(table: Tabletop, kind: RoundKind) -> None:
+def test_each_kind_of_fault_is_seen_and_alone(table: DrillSimulator, kind: RoundKind) -> None:
     shown = table.play(3, kind, Random(1))
     rule = BOOK.rule(kind.code)
     assert (shown.number, shown.kind, shown.rule) == (3, kind, rule)
@@ -141,16 +141,18 @@ def test_each_kind_of_fault_is_seen_and_alone(table: Tabletop, kind: RoundKind) 
 
 @pytest.mark.slow
 def test_no_round_is_at_the_end_of_its_game(
-    table: Tabletop, monkeypatch: pytest.MonkeyPatch
+    table: DrillSimulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     chosen: list[bool] = []
-    real = Tabletop.fault_round
+    real = DrillSimulator.fault_round
 
-    def look(self: Tabletop, number: int, kind: RoundKind, game: Supervision, *rest: Any) -> Round:
+    def look(
+        self: DrillSimulator, number: int, kind: RoundKind, game: Supervision, *rest: Any
+    ) -> Round:
         chosen.append(game.over)
         return real(self, number, kind, game, *rest)
 
-    monkeypatch.setattr(Tabletop, "fault_round", look)
+    monkeypatch.setattr(DrillSimulator, "fault_round", look)
     monkeypatch.setattr(drill_rounds, "SETS_IN", (40, 70))  # where most games end
     late = next(kind for kind in KINDS if kind.name == "request-withdrawn")
     for seed in range(8):
@@ -159,7 +161,7 @@ def test_no_round_is_at_the_end_of_its_game(
 
 
 @pytest.mark.slow
-def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: Tabletop) -> None:
+def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: DrillSimulator) -> None:
     for kind in KINDS:
         shown = table.play(1, kind, Random(2))
         assert shown.rule is not None
@@ -171,7 +173,9 @@ def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: Tabletop)
 
 
 @pytest.mark.slow
-def test_in_a_quiet_round_nothing_is_wrong_and_something_catches_the_eye(table: Tabletop) -> None:
+def test_in_a_quiet_round_nothing_is_wrong_and_something_catches_the_eye(
+    table: DrillSimulator,
+) -> None:
     rounds = [table.play(1, QUIET, Random(seed)) for seed in range(24)]
     assert {shown.quiet for shown in rounds} == set(QUIET_KINDS)
     for shown in rounds:
@@ -182,7 +186,7 @@ def test_in_a_quiet_round_nothing_is_wrong_and_something_catches_the_eye(table: 
 
 
 @pytest.mark.slow
-def test_whether_tangy_may_be_cleared_is_what_clearing_it_comes_to(table: Tabletop) -> None:
+def test_whether_tangy_may_be_cleared_is_what_clearing_it_comes_to(table: DrillSimulator) -> None:
     critical = [kind for kind in KINDS if BOOK.rule(kind.code).critical]
     right = Counter[bool]()
     for seed in range(3):
@@ -197,7 +201,7 @@ def test_whether_tangy_may_be_cleared_is_what_clearing_it_comes_to(table: Tablet
     assert min(right.values()) >= len(critical) // 2, "both come up"
 
 
-def test_the_same_seed_gives_the_same_rounds(table: Tabletop, store: Store) -> None:
+def test_the_same_seed_gives_the_same_rounds(table: DrillSimulator, store: Store) -> None:
     def seen() -> list[tuple[object, ...]]:
         drill = Drill(table, store, who="ada", seed=7, rounds=4)
         found: list[tuple[object, ...]] = []
@@ -210,19 +214,19 @@ def test_the_same_seed_gives_the_same_rounds(table: Tabletop, store: Store) -> N
 
 
 def test_what_cannot_come_about_is_replaced_by_something_of_its_class(
-    table: Tabletop, monkeypatch: pytest.MonkeyPatch
+    table: DrillSimulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wanted = next(kind for kind in KINDS if BOOK.rule(kind.code).recovery[0] == "user")
-    real = Tabletop.try_once
+    real = DrillSimulator.try_once
 
-    def hardly(self: Tabletop, number: int, kind: RoundKind, seed: int) -> Round | None:
+    def hardly(self: DrillSimulator, number: int, kind: RoundKind, seed: int) -> Round | None:
         return None if kind == wanted else real(self, number, kind, seed)
 
-    monkeypatch.setattr(Tabletop, "try_once", hardly)
+    monkeypatch.setattr(DrillSimulator, "try_once", hardly)
     shown = table.play(1, wanted, Random(1))
     assert shown.kind != wanted
     assert shown.recovery == "user"
-    monkeypatch.setattr(Tabletop, "try_once", lambda *_: None)
+    monkeypatch.setattr(DrillSimulator, "try_once", lambda *_: None)
     with pytest.raises(TangyError, match="No fault of Bingo could be brought about"):
         table.play(1, wanted, Random(1))
 
@@ -270,7 +274,7 @@ def test_an_activity_that_expects_nothing_must_be_taught_first(
 
 
 def test_right_answers_get_every_point_and_only_the_sheet_is_kept(
-    table: Tabletop, store: Store
+    table: DrillSimulator, store: Store
 ) -> None:
     clock = Clock()
     drill = Drill(table, store, who="ada", seed=2, rounds=6, clock=clock)
@@ -295,7 +299,7 @@ def test_right_answers_get_every_point_and_only_the_sheet_is_kept(
 
 
 def test_a_drill_that_was_interrupted_goes_on_with_the_rounds_it_would_have_had(
-    table: Tabletop, store: Store
+    table: DrillSimulator, store: Store
 ) -> None:
     whole = Drill(table, store, who="ada", seed=2, rounds=4)
     shown = []
@@ -325,7 +329,7 @@ def test_a_drill_that_was_interrupted_goes_on_with_the_rounds_it_would_have_had(
 
 
 def test_an_interrupted_drill_that_is_not_wanted_is_kept_unfinished(
-    table: Tabletop, store: Store
+    table: DrillSimulator, store: Store
 ) -> None:
     drill = Drill(table, store, who="ada", seed=2, rounds=4)
     drill.next()
@@ -337,7 +341,7 @@ def test_an_interrupted_drill_that_is_not_wanted_is_kept_unfinished(
     assert [len(sheet.answered) for sheet in read_sheets(store, "ada")] == [1]
 
 
-def test_each_wrong_answer_costs_its_point(table: Tabletop, store: Store) -> None:
+def test_each_wrong_answer_costs_its_point(table: DrillSimulator, store: Store) -> None:
     drill = Drill(table, store, who="ada", seed=2, rounds=4)
     while (shown := drill.next()) is not None:
         answered = None
@@ -363,7 +367,7 @@ def test_each_wrong_answer_costs_its_point(table: Tabletop, store: Store) -> Non
     assert all(one.advice for one in sheet.again if one.code)
 
 
-def test_the_time_begins_when_the_round_can_be_read(table: Tabletop, store: Store) -> None:
+def test_the_time_begins_when_the_round_can_be_read(table: DrillSimulator, store: Store) -> None:
     clock = Clock()
     drill = Drill(table, store, who="ada", seed=1, rounds=1, clock=clock)
     drill.next()
@@ -377,7 +381,7 @@ def test_the_time_begins_when_the_round_can_be_read(table: Tabletop, store: Stor
     assert drill.sheet.answered[0].seconds == 6
 
 
-def test_a_drill_that_is_left_keeps_what_was_answered(table: Tabletop, store: Store) -> None:
+def test_a_drill_that_is_left_keeps_what_was_answered(table: DrillSimulator, store: Store) -> None:
     drill = Drill(table, store, who="ada", seed=1, rounds=5)
     assert drill.leave() is None
     assert last_sheet(store) is None
@@ -393,7 +397,7 @@ def test_a_drill_that_is_left_keeps_what_was_answered(table: Tabletop, store: St
     assert "left after 1 of 5" in sheet_lines(kept)[0][1]
 
 
-def test_what_is_no_answer_is_refused(table: Tabletop, store: Store) -> None:
+def test_what_is_no_answer_is_refused(table: DrillSimulator, store: Store) -> None:
     drill = Drill(table, store, who="ada", seed=1, rounds=1)
     with pytest.raises(TangyError, match="Nothing is asked"):
         drill.answer("1")
@@ -406,7 +410,9 @@ def test_what_is_no_answer_is_refused(table: Tabletop, store: Store) -> None:
             Drill(table, store, who="ada", rounds=rounds)
 
 
-def test_without_a_seed_no_drill_is_like_an_earlier_one(table: Tabletop, store: Store) -> None:
+def test_without_a_seed_no_drill_is_like_an_earlier_one(
+    table: DrillSimulator, store: Store
+) -> None:
     for expected in (1, 2, 3):
         drill = Drill(table, store, who="ada", rounds=1)
         assert drill.sheet.seed == expected
@@ -414,7 +420,9 @@ def test_without_a_seed_no_drill_is_like_an_earlier_one(table: Tabletop, store: 
         right_keys(drill)
 
 
-def test_what_the_same_person_had_the_last_time_is_told(table: Tabletop, store: Store) -> None:
+def test_what_the_same_person_had_the_last_time_is_told(
+    table: DrillSimulator, store: Store
+) -> None:
     first = Drill(table, store, who="ada", rounds=1)
     assert first.before is None
     first.next()
@@ -432,7 +440,7 @@ def test_no_name_of_a_person_gets_into_the_log(
     learnt: DrillPolicy, store: Store, activity: Activity
 ) -> None:
     names = {f"user{number}": f"Xaver{number}" for number in range(1, 5)}
-    table = Tabletop(learnt.policy, learnt.effects, BOOK, load_robot(), activity, names)
+    table = DrillSimulator(learnt.policy, learnt.effects, BOOK, load_robot(), activity, names)
     drill = Drill(table, store, who="ada", seed=4, rounds=30)
     while drill.next() is not None:
         right_keys(drill)
@@ -491,7 +499,7 @@ def test_devices_are_told_by_the_ill_ones() -> None:
 
 
 def test_by_lines_a_slip_is_asked_again_and_the_end_of_lines_leaves(
-    table: Tabletop, store: Store
+    table: DrillSimulator, store: Store
 ) -> None:
     drill = Drill(table, store, who="ada", seed=3, rounds=4)
     told: list[str] = []
@@ -505,7 +513,7 @@ def test_by_lines_a_slip_is_asked_again_and_the_end_of_lines_leaves(
 
 @pytest.mark.parametrize("strict", [False, True])
 def test_by_lines_who_says_stop_hears_that_nothing_moves(
-    table: Tabletop, store: Store, strict: bool
+    table: DrillSimulator, store: Store, strict: bool
 ) -> None:
     told: list[str] = []
     lines = iter(["stop the robot", "stop the bingo"])
@@ -516,7 +524,7 @@ def test_by_lines_who_says_stop_hears_that_nothing_moves(
 
 
 def test_in_a_script_a_slip_ends_it_and_what_was_answered_stays(
-    table: Tabletop, store: Store
+    table: DrillSimulator, store: Store
 ) -> None:
     drill = Drill(table, store, who="ada", seed=3, rounds=4)
 

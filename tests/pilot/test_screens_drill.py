@@ -18,7 +18,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.drill import Drill
 from tangy_tui.monitoring.drill_log import last_sheet, read_sheets
 from tangy_tui.monitoring.drill_policy import DrillNote, DrillPolicy, policy_for_drill
-from tangy_tui.monitoring.drill_rounds import Tabletop
+from tangy_tui.monitoring.drill_rounds import DrillSimulator
 from tangy_tui.text.drills import option_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -63,7 +63,7 @@ def make(
     few = FaultBook(tuple(rule for rule in rules if rule.code in FEW), "few")
 
     def screen(rounds: int = 6, seed: int = 1, note: DrillNote | None = None) -> DrillScreen:
-        table = Tabletop(
+        table = DrillSimulator(
             learnt.policy,
             learnt.effects,
             few,

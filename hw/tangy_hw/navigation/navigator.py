@@ -31,7 +31,7 @@ from tangy_hw.navigation.planning import (
 )
 from tangy_hw.navigation.poses import HERE, Floats, between, lengths, placed
 from tangy_hw.navigation.pursuit import Pursuit
-from tangy_hw.navigation.slip_detection import Disagreement
+from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_hw.navigation.surroundings import Held, Surroundings
 from tangy_profiles.health import OK, Fact, Reading
 
@@ -91,7 +91,7 @@ class Navigator:
         self._radius, self._keep, self._laser = RADIUS + larger, KEEP + larger, laser
         self._localisation = Localisation(map_, rng, start, laser)
         self._around = Surroundings(map_, laser, self.limits)
-        self._disagreement = Disagreement(laser)
+        self._slip_detector = SlipDetector(laser)
         self.lets: Held = ""
         """Kind of person it is waiting for, if any."""
         self._pursuit: Pursuit | None = None
@@ -225,7 +225,7 @@ class Navigator:
             self._told = STILL
             return STILL
         estimate = self._estimate = self._localisation.update(odometry.pose, scan)
-        self.slip = self._disagreement.update(odometry.pose, scan)
+        self.slip = self._slip_detector.update(odometry.pose, scan)
         self._around.see(estimate, odometry.pose, scan, dt)
         self._told = self._command(estimate, odometry, scan, dt)
         return self._told

@@ -24,7 +24,7 @@ FARTHEST = 0.4  # metres off the odometry above which a match is rejected
 ARM = 0.25  # metres from the robot's centre to its wheels: converts a turn into metres
 
 
-class Disagreement:
+class SlipDetector:
     """Difference between wheel odometry and matched scans over the last stretch of the way."""
 
     def __init__(self, laser: Pose = HERE) -> None:

@@ -25,7 +25,7 @@ class Commands:
     def __init__(self, link: RobotLink) -> None:
         self.link = link
         self.diagnosed: Diagnosed = _nothing
-        self._heedless: frozenset[str] = frozenset()
+        self._ignored: frozenset[str] = frozenset()
 
     def do(self, do: Request, **what: Any) -> dict[str, Any]:
         """Execute a command; a critical reading of a device aborts it.
@@ -47,13 +47,13 @@ class Commands:
         return asked.result()
 
     @contextmanager
-    def heedless(self, *codes: str) -> Iterator[None]:
+    def ignoring_faults(self, *codes: str) -> Iterator[None]:
         """Ignore faults of these codes while the context is active."""
-        before, self._heedless = self._heedless, self._heedless | set(codes)
+        before, self._ignored = self._ignored, self._ignored | set(codes)
         try:
             yield
         finally:
-            self._heedless = before
+            self._ignored = before
 
     def perform(
         self,
@@ -81,7 +81,7 @@ class Commands:
         """Return the code of a critical fault that the devices show, "" if there is none."""
         found = self.diagnosed(self.link.health())
         return next(
-            (code for code, critical in found.items() if critical and code not in self._heedless),
+            (code for code, critical in found.items() if critical and code not in self._ignored),
             "",
         )
 

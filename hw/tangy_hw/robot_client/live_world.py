@@ -23,7 +23,7 @@ from tangy_hw.robot_client.help_requests import HelpRequestTracker
 from tangy_hw.robot_client.live_plan import LivePlan
 from tangy_hw.robot_client.recovery_actions import RecoveryActions
 from tangy_hw.robot_client.response_watch import LOOK_SECONDS, watch_response
-from tangy_hw.robot_client.staff_eyes import StaffEyes
+from tangy_hw.robot_client.staff_card_reports import StaffCardReports
 from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.activity import Activity
@@ -85,7 +85,7 @@ class LiveWorld(LivePlan):
         self.commands = Commands(link)
         self.cards = CardObservations(activity, self.commands)
         sees = reads_cards(robot) or not activity.deck.columns
-        self.eyes = None if sees else StaffEyes(activity, self.commands)
+        self.eyes = None if sees else StaffCardReports(activity, self.commands)
         """Staff who report the cards, if the robot has no camera that reads them."""
         self._remedies = RecoveryActions(self)
         self._robot = robot

@@ -85,7 +85,7 @@ class RecoveryActions:
         world = self._world
         place = world.tracker.place
         if not knows_place:
-            with world.commands.heedless(SLIPPED):  # localising ends this fault
+            with world.commands.ignoring_faults(SLIPPED):  # localising ends this fault
                 found = world.commands.do("spin").get("found")
             if not found:
                 raise DeviceError("The robot does not find its place.")

@@ -115,7 +115,7 @@ class DrillScreen(TangyScreen[None]):
         if answered is None or shown is None:
             self._show_question()
             return
-        self._show_told(shown, told_lines(self.drill.tabletop, shown, answered))
+        self._show_told(shown, told_lines(self.drill.simulator, shown, answered))
 
     def action_nothing(self) -> None:
         """Do nothing: `on_key` handles the keys, to check each of them."""
@@ -222,7 +222,7 @@ class DrillScreen(TangyScreen[None]):
 def _seen(drill: Drill, shown: Round, width: int) -> list[PageLine]:
     """Format the observations of a round, with labels."""
     lines: list[PageLine] = []
-    for label, text in round_parts(drill.tabletop, shown):
+    for label, text in round_parts(drill.simulator, shown):
         for number, part in enumerate(wrap(clean(text), max(8, width - LABEL))):
             name = label if number == 0 else ""
             ink = "strong" if label == "Noticed" else "text"

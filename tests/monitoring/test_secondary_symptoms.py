@@ -11,9 +11,9 @@ from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.devices import WELL
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.aftermath import GRACE_SECONDS, Aftermath
 from tangy_tui.monitoring.detection import device_evidence
 from tangy_tui.monitoring.diagnosis import diagnose
+from tangy_tui.monitoring.secondary_symptoms import GRACE_SECONDS, SecondarySymptoms
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text.faults import still_there_words
 from tests.support.games import codes, moves
@@ -29,16 +29,16 @@ def silent(*devices: str) -> Health:
 
 
 class Seen:
-    """The faults that an aftermath lets be seen, as devices come and go."""
+    """The faults left after secondary symptoms are removed, as devices come and go."""
 
     def __init__(self) -> None:
         self.book: FaultBook = load_faults(ROBOT)
-        self.aftermath = Aftermath(self.book, ROBOT.devices)
+        self.secondary = SecondarySymptoms(self.book, ROBOT.devices)
 
     def at(self, now: float, health: Health) -> list[str]:
-        evidence: Evidence = self.aftermath.without(device_evidence(ROBOT, health), lambda: now)
+        evidence: Evidence = self.secondary.without(device_evidence(ROBOT, health), lambda: now)
         found = diagnose(self.book, evidence)
-        self.aftermath.take(found, evidence)
+        self.secondary.take(found, evidence)
         return [one.rule.code for one in found]
 
 

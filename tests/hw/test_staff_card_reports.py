@@ -9,7 +9,7 @@ import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_hw.robot_client.staff_eyes import ToldCard, read_told, told_card
+from tangy_hw.robot_client.staff_card_reports import ReportedCard, read_told, reported_card
 from tangy_profiles.activity import load_activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.robot import load_robot
@@ -108,11 +108,11 @@ def test_a_stop_ends_the_waiting_and_staff_are_asked_no_more(staffed: Staffed) -
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ("all correct", ToldCard("correctly marked")),
-        ("Correctly  marked", ToldCard("correctly marked")),
-        ("bingo", ToldCard("bingo")),
-        ("wrong marks B-7, o70", ToldCard("incorrectly marked", (7, 70))),
-        ("missed numbers 5 and 20", ToldCard("missing numbers", (5, 20))),
+        ("all correct", ReportedCard("correctly marked")),
+        ("Correctly  marked", ReportedCard("correctly marked")),
+        ("bingo", ReportedCard("bingo")),
+        ("wrong marks B-7, o70", ReportedCard("incorrectly marked", (7, 70))),
+        ("missed numbers 5 and 20", ReportedCard("missing numbers", (5, 20))),
         ("wrong marks", None),  # of which?
         ("wrong marks 5", None),  # that was called
         ("missed numbers 7", None),  # that was not
@@ -122,7 +122,9 @@ def test_a_stop_ends_the_waiting_and_staff_are_asked_no_more(staffed: Staffed) -
         ("so so", None),
     ],
 )
-def test_words_tell_a_state_with_the_numbers_it_needs(words: str, told: ToldCard | None) -> None:
+def test_words_tell_a_state_with_the_numbers_it_needs(
+    words: str, told: ReportedCard | None
+) -> None:
     assert read_told(BINGO, words, CALLED) == told
 
 
@@ -138,8 +140,8 @@ def test_every_word_that_is_offered_is_understood(staffed: Staffed) -> None:
 def test_who_sees_a_card_tells_what_can_be_told() -> None:
     face = BINGO.deck.deal(iter([i / 60 for i in range(60)]).__next__)
     called = [face[0]]
-    assert told_card(BINGO, called, face, 0).numbers == (face[0],)
-    assert told_card(BINGO, called, face, 0b11).state == "incorrectly marked"
+    assert reported_card(BINGO, called, face, 0).numbers == (face[0],)
+    assert reported_card(BINGO, called, face, 0b11).state == "incorrectly marked"
 
 
 def test_a_robot_with_a_camera_asks_staff_nothing() -> None:

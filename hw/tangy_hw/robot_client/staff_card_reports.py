@@ -22,33 +22,33 @@ NEEDED = {"wrong marks": False, "missing marks": True}
 """By checker: states whose report needs numbers, and whether these must have been called."""
 
 
-class ToldCard(NamedTuple):
+class ReportedCard(NamedTuple):
     """A card as reported by staff: its user activity state, and the numbers concerned."""
 
     state: str
     numbers: tuple[int, ...] = ()
 
 
-class StaffEyes:
+class StaffCardReports:
     """Asks staff for the state of cards, and keeps the report on the card beside the robot."""
 
     def __init__(self, activity: Activity, commands: Commands) -> None:
         """Set the activity, and the robot's commands."""
         self.asks = ""
         """Person whose card staff are to report, "" if none."""
-        self.answer: Callable[[str], ToldCard | None] = lambda person: self._told
+        self.answer: Callable[[str], ReportedCard | None] = lambda person: self._told
         """Returns staff's report on a person's card; None: not yet."""
         self.asked_last = ""
         """Person whose card staff were asked about last."""
-        self.before: ToldCard | None = None
+        self.before: ReportedCard | None = None
         """Previous report on the same card, in this visit."""
         self.began = 0.0
         """Time of the question, in s of the robot's clock."""
         self._activity = activity
         self._commands = commands
         self._called: Sequence[int] = ()
-        self._told: ToldCard | None = None
-        self._last: ToldCard | None = None
+        self._told: ReportedCard | None = None
+        self._last: ReportedCard | None = None
 
     def ask(self, person: str, called: Sequence[int]) -> str:
         """Ask staff for the state of a person's card, and wait for the answer.
@@ -140,7 +140,7 @@ class StaffEyes:
         return next(s.checker for s in self._activity.card_states if s.name == state)
 
 
-def read_told(activity: Activity, words: str, called: Sequence[int]) -> ToldCard | None:
+def read_told(activity: Activity, words: str, called: Sequence[int]) -> ReportedCard | None:
     """Parse words about a card; None if they lack the state or its numbers.
 
     Args:
@@ -159,13 +159,13 @@ def read_told(activity: Activity, words: str, called: Sequence[int]) -> ToldCard
                 return None
             if any((number in called) is not wanted for number in numbers):
                 return None
-            return ToldCard(state.name, numbers)
+            return ReportedCard(state.name, numbers)
     return None
 
 
-def told_card(
+def reported_card(
     activity: Activity, called: Sequence[int], numbers: Sequence[int], marked: int
-) -> ToldCard:
+) -> ReportedCard:
     """Convert a report by a person who sees a card.
 
     Args:
@@ -178,7 +178,7 @@ def told_card(
     state = judge(activity.card_states, activity.deck, marked, cells)
     checker = next(one.checker for one in activity.card_states if one.name == state)
     about = {"wrong marks": marked & ~cells, "missing marks": cells & ~marked}.get(checker, 0)
-    return ToldCard(state, tuple(n for cell, n in enumerate(numbers) if about >> cell & 1))
+    return ReportedCard(state, tuple(n for cell, n in enumerate(numbers) if about >> cell & 1))
 
 
 def _numbers(activity: Activity, said: str) -> tuple[int, ...] | None:

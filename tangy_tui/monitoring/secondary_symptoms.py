@@ -27,7 +27,7 @@ class _Cause:
     over_since: float | None = None
 
 
-class Aftermath:
+class SecondarySymptoms:
     """Removes symptoms that an earlier fault explains; call `begin` for each game."""
 
     def __init__(self, book: FaultBook, devices: Iterable[str]) -> None:
