@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import FrozenInstanceError, dataclass, fields
 from typing import Any, ClassVar, Literal, TypeAlias, TypeVar, dataclass_transform
 
 from tangy_profiles import codec
@@ -21,15 +21,29 @@ VERSION_KEY = "v"
 class EventRecord:
     """The body of one kind of event, typed and frozen; declare one with `@kind`.
 
-    Equality, hash and repr are implemented once here, not generated for each class, which took a
-    tenth of the start-up time.
+    Methods are implemented once here, and `__init__` is generated when it is first called: to
+    generate all for each class took a tenth of the start-up time.
     """
 
     __slots__ = ()
+    DECLARED: ClassVar[type]
     KIND: ClassVar[str]
     VERSION: ClassVar[int]
     ABOUT: ClassVar[About]
     OLDER: ClassVar[Older]
+
+    def __init__(self, **values: Any) -> None:
+        """Create the record of an event from the values of its fields."""
+        made = type(self)
+        declared: Any = dataclass(frozen=True, kw_only=True, eq=False, repr=False)(made.DECLARED)
+        made.__init__ = declared.__init__  # type: ignore[method-assign]
+        self.__init__(**values)  # type: ignore[misc]  # the one of this class from now on
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise FrozenInstanceError(f"cannot assign to field {name!r}")
+
+    def __delattr__(self, name: str) -> None:
+        raise FrozenInstanceError(f"cannot delete field {name!r}")
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and self._values() == EventRecord._values(other)
@@ -61,11 +75,12 @@ class Unknown(EventRecord):
     """An event of an unknown kind: it only has a body."""
 
     __slots__ = ("KIND", "_body")
+    _body: dict[str, Any]
     VERSION, ABOUT = 1, "nobody"
 
     def __init__(self, kind: str = "", body: Mapping[str, Any] | None = None) -> None:
-        self.KIND = kind  # type: ignore[misc]  # per instance
-        self._body = dict(body or {})
+        object.__setattr__(self, "KIND", kind)  # per instance
+        object.__setattr__(self, "_body", dict(body or {}))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Unknown) and (self.KIND, self.body) == (other.KIND, other.body)
@@ -98,7 +113,9 @@ def kind(
     def make(cls: type[R]) -> type[R]:
         if name in KINDS:
             raise TypeError(f"{KINDS[name].__name__} is the record of {name!r} already.")
-        made = dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)(cls)
+        declared = type(cls.__name__, (), {**cls.__dict__})
+        made = dataclass(init=False, slots=True, kw_only=True, eq=False, repr=False)(cls)
+        made.DECLARED = declared
         made.KIND, made.VERSION, made.ABOUT = name, version, about
         made.OLDER = staticmethod(older)
         KINDS[name] = made
