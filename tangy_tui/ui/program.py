@@ -21,7 +21,6 @@ from tangy_tui.ui.first_start import change_teacher, first_start, rename_teacher
 from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.policy_comparison import compare_policies
-from tangy_tui.ui.progress_summary import how_far
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.showing_again import show_again
 from tangy_tui.ui.sounding import SoundingApp
@@ -79,6 +78,8 @@ class Program(SoundingApp):
 
     def _home(self) -> Screen[Any]:
         def far() -> Mapping[str, str]:
+            from tangy_tui.ui.progress_summary import how_far  # not before the first frame
+
             found = how_far(self.workspace)
             self.call_later(self._tell_of_log)
             return found

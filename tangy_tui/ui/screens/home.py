@@ -218,10 +218,13 @@ class HomeScreen(TangyScreen[None]):
         """Show the title of the present activity."""
         self._note = title
         self.query_one(StatusLine).show(Status(mode="home", note=title))
-        self._menu.show(self._states())
+        self._show_progress()
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
-        """Update the progress."""
+        """Update the progress once the choices are drawn, which need not wait for it."""
+        self.call_after_refresh(self._show_progress)
+
+    def _show_progress(self) -> None:
         self._menu.show(self._states())
 
     def on_menu_chosen(self, event: Menu.Chosen) -> None:
