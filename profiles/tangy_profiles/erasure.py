@@ -20,7 +20,7 @@ from typing import Any
 from urllib.parse import quote
 
 from tangy_profiles.codec import keys_of
-from tangy_profiles.events import KINDS
+from tangy_profiles.events import kinds
 from tangy_profiles.reading import read_toml
 from tangy_profiles.shipped import SHIPPED
 
@@ -236,7 +236,7 @@ def _kept_in(kind: str, key: str) -> str:
         return "exact"
     if key in FREE_TEXT:
         return "" if key == "what" and kind in OWN_WORDS else "running"
-    known = keys_of(KINDS[kind]) if kind in KINDS else frozenset()
+    known = keys_of(kinds()[kind]) if kind in kinds() else frozenset()
     return "" if key in known or key in WHOSE else "running"
 
 

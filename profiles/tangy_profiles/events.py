@@ -6,11 +6,52 @@ not define.
 
 from __future__ import annotations
 
-from tangy_profiles import game_records, people_records, staff_records, teaching_records
-from tangy_profiles.records import KINDS as KINDS
+from collections.abc import Mapping
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from tangy_profiles import codec
+from tangy_profiles.codec import Unreadable
+from tangy_profiles.records import KINDS, VERSION_KEY
 from tangy_profiles.records import EventRecord as EventRecord
 from tangy_profiles.records import Unknown as Unknown
-from tangy_profiles.records import read_record as read_record
 
-MODULES = (people_records, teaching_records, game_records, staff_records)
-"""Where the records are."""
+MODULES = ("people_records", "teaching_records", "game_records", "staff_records")
+"""Where the records are. They are imported when needed: a new log needs few of them."""
+
+
+@cache
+def kinds() -> Mapping[str, type[EventRecord]]:
+    """Return the record class of each kind, by its name."""
+    for module in MODULES:
+        import_module(f"tangy_profiles.{module}")
+    return KINDS
+
+
+def record_class(name: str) -> type[EventRecord]:
+    """Return the record class of a kind, `Unknown` if there is none."""
+    return KINDS.get(name) or kinds().get(name, Unknown)
+
+
+def read_record(
+    name: str, person: str | None, strategy: str | None, body: Mapping[str, Any]
+) -> EventRecord:
+    """Return the record of an event.
+
+    Raises:
+        Unreadable: the event is invalid; the text is the tail of a sentence.
+    """
+    known = record_class(name)
+    if known is Unknown:
+        return Unknown(name, body)
+    if known.ABOUT != "nobody" and person is None:
+        raise Unreadable("says of nobody whom it is about")
+    if known.ABOUT == "strategy" and strategy is None:
+        raise Unreadable("has no strategy")
+    version = body.get(VERSION_KEY, 1) if isinstance(body, dict) else 1
+    if version != known.VERSION:
+        if type(version) is not int or not 1 <= version < known.VERSION:
+            raise Unreadable(f"is of version {str(version)[:20]!r}, and this Tangy knows none such")
+        body = known.OLDER(version, dict(body))
+    return codec.read(known, body)

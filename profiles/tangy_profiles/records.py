@@ -7,7 +7,6 @@ from dataclasses import FrozenInstanceError, dataclass, fields
 from typing import Any, ClassVar, Literal, TypeAlias, TypeVar, dataclass_transform
 
 from tangy_profiles import codec
-from tangy_profiles.codec import Unreadable
 
 About: TypeAlias = Literal["nobody", "person", "strategy"]
 """The subject of an event: none, a person, or a person and a strategy."""
@@ -68,7 +67,7 @@ class EventRecord:
 R = TypeVar("R", bound=EventRecord)
 
 KINDS: dict[str, type[EventRecord]] = {}
-"""The record class of each kind; importing `events` registers all."""
+"""The record class of each kind whose module is imported; `events.kinds` has all."""
 
 
 class Unknown(EventRecord):
@@ -127,26 +126,3 @@ def kind(
 def name_of(kind: type[EventRecord] | str) -> str:
     """Return the name of a kind of event in the log."""
     return kind if isinstance(kind, str) else kind.KIND
-
-
-def read_record(
-    name: str, person: str | None, strategy: str | None, body: Mapping[str, Any]
-) -> EventRecord:
-    """Return the record of an event.
-
-    Raises:
-        Unreadable: the event is invalid; the text is the tail of a sentence.
-    """
-    known = KINDS.get(name)
-    if known is None:
-        return Unknown(name, body)
-    if known.ABOUT != "nobody" and person is None:
-        raise Unreadable("says of nobody whom it is about")
-    if known.ABOUT == "strategy" and strategy is None:
-        raise Unreadable("has no strategy")
-    version = body.get(VERSION_KEY, 1) if isinstance(body, dict) else 1
-    if version != known.VERSION:
-        if type(version) is not int or not 1 <= version < known.VERSION:
-            raise Unreadable(f"is of version {str(version)[:20]!r}, and this Tangy knows none such")
-        body = known.OLDER(version, dict(body))
-    return codec.read(known, body)

@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
 
 from tangy_profiles.codec import Unreadable
-from tangy_profiles.events import KINDS, EventRecord, Unknown, read_record
+from tangy_profiles.events import EventRecord, Unknown, read_record, record_class
 from tangy_profiles.reading import plain
 
 LARGEST_BODY = 8_000_000
@@ -88,7 +88,7 @@ def read_row(row: Sequence[Any]) -> Event[EventRecord]:
 def _empty(kind: str) -> EventRecord:
     """Return an empty record for an event whose body is invalid."""
     try:
-        return KINDS.get(kind, Unknown)()
+        return record_class(kind)()
     except TypeError:  # it has required fields
         return Unknown()
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.defaults import REGISTERED, USUAL_ROBOT
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.process_log import logging_to
 from tangy_profiles.robot import Robot, load_robot
@@ -246,6 +245,8 @@ class Workspace(Participants):
         """Return a seed: the given one, or one that no game has used."""
         if seed is not None:
             return seed
+        from tangy_profiles.game_records import GameBeginning
+
         games = self.store.events(GameBeginning)
         return 1 + max((game.record.seed for game in games), default=0)
 

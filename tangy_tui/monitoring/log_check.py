@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.events import KINDS
+from tangy_profiles.events import kinds
 from tangy_profiles.game_records import GameBeginning, GameChange, GameStep
 from tangy_profiles.reading import plain
 from tangy_profiles.rows import wrong_row
@@ -95,7 +95,7 @@ def unknown_kinds(store: Store) -> list[str]:
     return [
         plain(f"tangy.db: events of the kind {kind[:60]!r} are not known and left out.")
         for kind in store.kinds()
-        if kind not in KINDS
+        if kind not in kinds()
     ]
 
 

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
-from tangy_profiles.events import KINDS
+from tangy_profiles.events import kinds
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.doctor import examine
@@ -150,7 +150,7 @@ def _is_list(value: Any) -> bool:
 @st.composite
 def damages(draw: st.DrawFn) -> Callable[[sqlite3.Connection], None]:
     """Draw something that can happen to one row."""
-    kind, place = draw(st.sampled_from(sorted(KINDS))), draw(st.integers(0, 10**6))
+    kind, place = draw(st.sampled_from(sorted(kinds()))), draw(st.integers(0, 10**6))
     how = draw(st.sampled_from(["inside", "inside", "inside", "body", "column"]))
     value, gone = draw(ODD), draw(st.booleans())
     broken, column = draw(BROKEN), draw(COLUMNS)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tangy_hw.perception.faces import face_store
 from tangy_profiles.drill_sheet import AnsweredRound, Sheet
-from tangy_profiles.events import KINDS
+from tangy_profiles.events import kinds
 from tangy_profiles.game_records import (
     AnswerNotClear,
     CallMade,
@@ -53,7 +53,7 @@ def write_every_kind(folder: Path) -> None:
             _play(workspace)
             _tell_of_people(workspace)
             _rehearse(workspace)
-        missing = KINDS.keys() - workspace.store.kinds().keys()
+        missing = kinds().keys() - workspace.store.kinds().keys()
         assert not missing, f"write_every_kind writes none of {sorted(missing)}"
         assert workspace.store.check() == []
     finally:
