@@ -48,10 +48,10 @@ def call_words(state: CallState) -> str:
         case "failed":
             words = f"Tangy cannot reach {contact.name} ({state.said}). {then}"
         case "answered" if state.way:
-            words = f"{contact.name} has answered on the {state.way}."
+            words = f"{contact.name} was reached: they answered on the {state.way}."
         case "answered":
             said = f": {state.said.rstrip('.')}" if state.said else ""
-            words = f"{contact.name} has answered{said}."
+            words = f"{contact.name} was reached, and answered{said}."
         case "reached":
             words = f"{contact.name} was reached, by {state.said}."
         case forgotten:
@@ -66,7 +66,7 @@ def logged_words(role: str, way: str, stage: str, said: str) -> str:
     stages = {
         "tried": "a message is being sent",
         "sent": "a message was sent, and not answered yet",
-        "answered": "answered",
+        "answered": "was reached, and answered",
         "failed": "could not be reached",
     }
     told = f": {said}" if said else ""
@@ -81,6 +81,12 @@ def expert_words(game: Supervision) -> str:
     if (contact := None if game.calls is None else game.calls.to_call(EXPERT)) is not None:
         return calling_words(contact)
     return f"{whom_to_call(game.robot)} {CALLS_NOBODY}"
+
+
+def advised_call(game: Supervision) -> str:
+    """Tell whom staff call for what they cannot repair, or that this person was reached."""
+    state = None if game.calls is None else game.calls.state(EXPERT)
+    return call_words(state) if state is not None and state.over else whom_to_call(game.robot)
 
 
 def staff_words(game: Supervision) -> str:

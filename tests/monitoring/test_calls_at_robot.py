@@ -56,7 +56,7 @@ def test_a_press_on_the_chest_screen_reaches_the_console_and_the_log(
         assert posted(link.screen, target)[0] == 403  # a stranger's browser
         wait_until(pressed, "the button is there")
         wait_until(lambda: AT_ROBOT in staff_words(game), "the console says so")
-        assert staff_words(game) == "Station 2 has answered on the chest screen."
+        assert staff_words(game) == "Station 2 was reached: they answered on the chest screen."
         assert calls.state(EXPERT) is None
         wait_until(lambda: not pressed(), "the button has gone")
     made = [e.record for e in workspace.store.events(CallMade)]

@@ -213,7 +213,9 @@ async def test_the_dialog_says_what_came_of_each_call_and_calls_again_after_one_
         await pilot.press("e")  # that call still waits for an answer
         assert len(line.messages) == 2
         line.says("Anna Berg", "answered", "I am on my way")
-        await until_shown(pilot, lambda: "Anna Berg has answered: I am on my way." in seen(pilot))
+        await until_shown(
+            pilot, lambda: "Anna Berg was reached, and answered: I am on my way." in seen(pilot)
+        )
         await until_shown(pilot, lambda: "R reached" not in seen(pilot))
     calls = [e.record for e in workspace.store.events(CallMade) if e.record.role == EXPERT]
     assert [(call.stage, call.said) for call in calls] == [
@@ -242,7 +244,7 @@ async def test_the_dialog_says_who_answered_on_the_chest_screen(
         await pilot.press("e")
         await until_shown(pilot, lambda: len(link.offered) == 2)
         link.on_answer(staff)
-        told = "! Station 2 has answered on the chest screen."
+        told = "! Station 2 was reached: they answered on the chest screen."
         await until_shown(pilot, lambda: told in seen(pilot))
         assert list(link.offered.values()) == ["Anna Berg"]
         link.ail("stop_button")
@@ -276,4 +278,4 @@ async def test_the_screen_lives_while_the_first_news_of_a_call_is_waited_for(
             await until_shown(pilot, lambda: "stop: staff stopped it" in link.told)
         finally:
             line.says("Anna Berg", "answered")
-        await until_shown(pilot, lambda: "Anna Berg has answered." in seen(pilot))
+        await until_shown(pilot, lambda: "Anna Berg was reached, and answered." in seen(pilot))

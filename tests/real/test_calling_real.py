@@ -1,16 +1,19 @@
-"""Calling an expert on a terminal: a call that fails, one answered late, one answered at once."""
+"""Calls on a terminal: one that fails, is answered late, at once, and on the chest screen."""
 
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 from pathlib import Path
 
 import pytest
 
+from tangy_sim.device_simulator.tablet import Tablet
 from tangy_tui.app.device_simulator import DeviceSimulator
 from tests.real.test_live_robot_file import begin, bench, program, robot_file
 from tests.support.terminal import TANGY, Terminal
+from tests.support.waiting import wait_until
 
 __all__ = ["bench"]  # the robot beside the program
 
@@ -24,6 +27,15 @@ case "$(wc -l < calls)" in
     2) until [ -e picked-up ]; do sleep 0.1; done; echo "answered: I am on my way" ;;
     *) echo "answered: I see it" ;;
 esac
+"""
+SENT = """
+[expert]
+name = "Anna Berg"
+telephone = "030 901820"
+command = ["true"]
+[staff]
+name = "Station 2"
+command = ["true"]
 """
 CALLED = """
 [expert]
@@ -48,19 +60,30 @@ def cleared(terminal: Terminal, bench: DeviceSimulator) -> None:
     terminal.until(lambda text: "Tangy stands still" not in text)
 
 
+def names(monkeypatch: pytest.MonkeyPatch, contacts: str) -> None:
+    """Let the robot's file name contacts."""
+
+    def with_contacts(bench: DeviceSimulator, folder: Path) -> Path:
+        file = robot_file(bench, folder)
+        file.write_text(file.read_text() + contacts)
+        return file
+
+    monkeypatch.setattr("tests.real.test_live_robot_file.robot_file", with_contacts)
+
+
+def log(folder: Path, *options: str) -> str:
+    """Return what `tangy log show last` prints."""
+    show = [TANGY, "log", "show", "last", "--data", str(folder), *options]
+    return subprocess.run(show, check=True, capture_output=True, text=True).stdout  # noqa: S603
+
+
 def test_the_dialog_and_the_log_say_what_came_of_each_call(
     folder: Path, bench: DeviceSimulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     command = folder / "ring"
     command.write_text(COMMAND)
     command.chmod(0o755)
-
-    def with_an_expert(bench: DeviceSimulator, folder: Path) -> Path:
-        file = robot_file(bench, folder)
-        file.write_text(file.read_text() + CALLED.format(command=json.dumps(str(command))))
-        return file
-
-    monkeypatch.setattr("tests.real.test_live_robot_file.robot_file", with_an_expert)
+    names(monkeypatch, CALLED.format(command=json.dumps(str(command))))
     terminal = program(bench, folder)
     try:
         begin(terminal)
@@ -72,20 +95,18 @@ def test_the_dialog_and_the_log_say_what_came_of_each_call(
         terminal.until("Tangy is sending a message to Anna Berg.")
         assert "call Anna Berg: 030 901820" in " ".join(terminal.text.replace("┃", "").split())
         (folder / "picked-up").touch()
-        terminal.until("Anna Berg has answered: I am on my way.")
+        terminal.until("Anna Berg was reached, and answered: I am on my way.")
         cleared(terminal, bench)
 
         halted(terminal, bench)
         terminal.type("e")
-        terminal.until("Anna Berg has answered: I see it.")
+        terminal.until("Anna Berg was reached, and answered: I see it.")
         cleared(terminal, bench)
     finally:
         terminal.end()
 
-    show = [TANGY, "log", "show", "last", "--json", "--data", str(folder)]
-    done = subprocess.run(show, check=True, capture_output=True, text=True)  # noqa: S603
-    calls = [one for one in json.loads(done.stdout)["moments"] if one["kind"] == "call"]
-    told = [(one["stage"], one.get("said", "")) for one in calls]
+    calls = json.loads(log(folder, "--json"))["moments"]
+    told = [(one["stage"], one.get("said", "")) for one in calls if one["kind"] == "call"]
     assert told == [
         ("tried", ""),
         ("failed", "it ended with status 3: no line to the outside"),
@@ -95,3 +116,41 @@ def test_the_dialog_and_the_log_say_what_came_of_each_call(
         ("answered", "I see it"),
     ]
     assert "Somebody pressed the emergency stop." in (folder / "messages").read_text()
+
+
+def test_who_presses_the_button_on_the_chest_screen_was_reached(
+    folder: Path, bench: DeviceSimulator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names(monkeypatch, SENT)
+    terminal, tablet = program(bench, folder), None
+    where = re.compile(r"chest screen (http://[\d.:]+/) code (\d{4}-\d{4})")
+    try:
+        begin(terminal)
+        found = where.search(terminal.until(lambda text: where.search(text) is not None))
+        assert found is not None
+        tablet = Tablet(found[1], found[2])
+        wait_until(lambda: bool(tablet.picture), "the tablet is paired")
+
+        halted(terminal, bench)
+        terminal.until("Tangy has sent a message to Station 2. Nobody has answered yet")
+        terminal.type("e")
+        terminal.until("Tangy has sent a message to Anna Berg. Nobody has answered yet")
+        wait_until(lambda: len(tablet.calls) == 2, "a button for each call")
+        assert list(tablet.calls.values()) == ["Station 2", "Anna Berg"]
+        staff, expert = tablet.calls
+        assert tablet.press(expert)
+        terminal.until("! Anna Berg was reached: they answered on the chest screen.")
+        assert "Call the expert" not in terminal.text
+        assert tablet.press(staff)
+        terminal.until("! Station 2 was reached: they answered on the chest screen.")
+        wait_until(lambda: not tablet.calls, "the buttons are gone")
+        assert not tablet.press(staff)
+        cleared(terminal, bench)
+    finally:
+        if tablet is not None:
+            tablet.close()
+        terminal.end()
+
+    told = log(folder)
+    assert "The expert (chest screen): was reached, and answered." in told
+    assert "The staff (chest screen): was reached, and answered." in told

@@ -10,9 +10,9 @@ import json
 import threading
 from collections.abc import Callable
 from contextlib import suppress
-from http.client import OK, HTTPConnection, HTTPException
+from http.client import NO_CONTENT, OK, HTTPConnection, HTTPException
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import urlencode, urlsplit
 
 SECONDS = 2.0  # without an event, after which the page is opened again
 
@@ -32,6 +32,8 @@ class Tablet:
         parts = urlsplit(url)
         self._place = (parts.hostname or "127.0.0.1", parts.port or 80)
         self.picture: dict[str, Any] = {}
+        self.calls: dict[str, str] = {}
+        """Whom a button is shown for, by the key of their call."""
         self.on = True
         """Whether it is switched on; otherwise it answers and shows nothing."""
         self._over = threading.Event()
@@ -42,6 +44,16 @@ class Tablet:
         """Close the page."""
         self._over.set()
         self._thread.join()
+
+    def press(self, key: str) -> bool:
+        """Press the button of a call; return whether the robot took the answer."""
+        asks = HTTPConnection(*self._place, timeout=SECONDS)
+        try:
+            head = {"Cookie": self._cookie}
+            asks.request("POST", f"/answer?{urlencode({'call': key})}", headers=head)
+            return asks.getresponse().status == NO_CONTENT
+        finally:
+            asks.close()
 
     def _run(self) -> None:
         while not self._over.wait(0.05):
@@ -81,6 +93,9 @@ class Tablet:
         return bool(self._cookie)
 
     def _answer(self, answers: HTTPConnection, kind: str, data: str) -> None:
+        if kind == "calls":
+            self.calls = json.loads(data)
+            return
         number = data
         if kind == "show":
             self.picture = json.loads(data)

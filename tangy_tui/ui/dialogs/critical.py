@@ -18,7 +18,7 @@ from tangy_tui.monitoring.calls import CallState
 from tangy_tui.monitoring.fault import OVER, Fault
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text import halts
-from tangy_tui.text.calls import calling_words, staff_words, whom_to_call
+from tangy_tui.text.calls import advised_call, calling_words, staff_words
 from tangy_tui.text.fault_views import ALSO_WRONG, HOW_KNOWN
 from tangy_tui.text.faults import (
     ages_of,
@@ -157,9 +157,12 @@ class CriticalDialog(Dialog[None]):
         for line in self.query(StatusLine):
             line.show(status)
         self.look()
+        self._show_page()
+        self._show_keys()
+
+    def _show_page(self) -> None:
         for page in self.query(Page):
             page.show(self._write, None)
-        self._show_keys()
 
     def _show_keys(self) -> None:
         for keys in self.query(KeyLine):
@@ -172,11 +175,11 @@ class CriticalDialog(Dialog[None]):
         if self._call != self._call_state() is not None:
             self.say(self._whom_to_call(False))
             self._show_keys()
+            self._show_page()
         if self._staff != (staff := staff_words(self._desk.supervision)):
             self._staff = staff
             self.say(staff)
-            for page in self.query(Page):
-                page.show(self._write, None)
+            self._show_page()
         before = self._now
         words = self._is_there()
         if words != before:
@@ -333,7 +336,7 @@ class CriticalDialog(Dialog[None]):
             lines += paragraph(clean(halts.last_move_words(fault.moves[-1])), width, "dim")
         lines += heading(halts.WHOM_TO_CALL)
         lines += advice_lines(fault.advice, width)
-        lines += paragraph(clean(whom_to_call(self._robot)), width)
+        lines += paragraph(clean(advised_call(supervision)), width)
         if staff := staff_words(supervision):
             lines += paragraph(clean(staff), width)
         pieces = evidence_of(fault, book, robot)
