@@ -17,6 +17,7 @@ from typing import Any
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.worker_process import WorkerError, WorkerProcess
 from tangy_profiles.errors import TangyError
+from tangy_sim.servers.link_relay import LinkQuality
 
 CHILD = (sys.executable, "-P", "-m", "tangy_sim.device_simulator")
 END_SECONDS = 3.0
@@ -55,6 +56,7 @@ class DeviceSimulator:
         activity: str,
         robot: str,
         room: str = "common-room",
+        link: LinkQuality | None = None,
         log: Path | None = None,
         cancellation: Cancellation | None = None,
     ) -> None:
@@ -67,6 +69,7 @@ class DeviceSimulator:
             activity: the activity's name, or its file.
             robot: the name of the simulated robot's profile.
             room: the name of the room's profile.
+            link: the quality of the robot's link to its devices, unless the bench is stepped.
             log: file for the errors of the process.
             cancellation: cancels the start.
 
@@ -80,6 +83,8 @@ class DeviceSimulator:
         command = [*CHILD, "--seed", str(seed), "--room", room]
         command += [f"--person={id}={name}" for id, name in people.items()]
         command += ["--activity", activity, "--robot", robot, *(["--stepped"] if stepped else [])]
+        if link is not None:
+            command += ["--link-delay", str(link.delay), "--link-loss", str(link.loss)]
         try:
             self._worker = WorkerProcess(command, read=_answer, lost=_ended, log=log)
         except WorkerError as error:

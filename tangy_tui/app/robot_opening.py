@@ -19,6 +19,7 @@ from tangy_profiles.known_devices import driven, reads_cards
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
+from tangy_sim.servers.link_relay import LinkQuality
 from tangy_sim.worlds.injection import Injection
 from tangy_tui.app.declared_bench_world import BenchedDeclaredWorld
 from tangy_tui.app.device_simulator import DeviceSimulator
@@ -48,6 +49,7 @@ def opening_of(
     *,
     bench: bool,
     injections: Sequence[Injection] = (),
+    link: LinkQuality | None = None,
     own: Mapping[str, Any] | None = None,
     **both: Any,
 ) -> WorldOpening:
@@ -57,6 +59,7 @@ def opening_of(
         workspace: the workspace with the robot.
         bench: simulate its devices.
         injections: the faults to inject on the bench.
+        link: the quality of the robot's link to its devices on the bench.
         own: options for a real robot only: its cameras, request sensor, and cards.
         both: options for both; see `open_bench` and `open_robot`.
     """
@@ -69,7 +72,8 @@ def opening_of(
         told: dict[str, Any] = {"book": load_faults(workspace.robot), "cancellation": cancellation}
         if bench:
             told["kind"] = BenchedDeclaredWorld if _is_declared(workspace) else BenchedWorld
-            return open_bench(workspace, stepped=stepped, injections=injections, **told, **both)
+            told |= {"injections": injections, "link": link}
+            return open_bench(workspace, stepped=stepped, **told, **both)
         return open_robot(workspace, **told, **(own or {}), **both)
 
     return opening
@@ -93,6 +97,7 @@ def open_bench(
     kind: type[B] = BenchedWorld,  # type: ignore[assignment]
     map_: str = "",
     lost: bool = False,
+    link: LinkQuality | None = None,
     cancellation: Cancellation | None = None,
 ) -> Iterator[B]:
     """Open a bench that simulates the robot's devices.
@@ -107,6 +112,7 @@ def open_bench(
         kind: the kind of world.
         map_: localise by this map file, not by the geometry of the room.
         lost: do not tell the robot its initial pose.
+        link: the quality of the robot's link to its devices, unless it is stepped.
         cancellation: cancels the opening.
 
     Raises:
@@ -122,6 +128,7 @@ def open_bench(
         activity=workspace.profile,
         robot=str(workspace.robot.file),
         room=str(workspace.room.file),
+        link=link,
         log=folder / BENCH_LOG,
         cancellation=cancellation,
     )

@@ -19,6 +19,7 @@ from tangy_tui.text.live_games import part_words
 from tangy_tui.text.outcomes import faults_logged, score_lines
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.verbs import common
+from tangy_tui.verbs.bench_options import LinkDelay, LinkLoss, Load, check_load, link_of
 from tangy_tui.verbs.hearing import HandsFree, Listening, Mic, Mode, SpokenAnswers
 from tangy_tui.verbs.opening import full_screen, open_workspace
 from tangy_tui.verbs.playing import (
@@ -106,14 +107,9 @@ def live(
             "Otherwise it learns the card when it first sees one there. Repeatable.",
         ),
     ] = None,
-    load: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            max=64,
-            help="Keep this many processes busy beside a bench game, to try it on a busy machine.",
-        ),
-    ] = 0,
+    load: Load = 0,
+    link_delay: LinkDelay = 0.0,
+    link_loss: LinkLoss = 0.0,
     mic: Mic = None,
     hands_free: HandsFree = False,
     spoken_answers: SpokenAnswers = False,
@@ -150,8 +146,8 @@ def live(
     if bench and (camera or requests or table or card):
         options = "--camera, --requests, --table, --card"
         raise TangyError(f"{options}: the bench brings its own; leave them out.")
-    if load and not bench:
-        raise TangyError("--load: only a bench game is played on a busy machine: add --bench.")
+    check_load(load, bench=bench)
+    link = link_of(link_delay, link_loss, bench=bench)
     faults = _listed(inject or [])
     listens = mic == "-" and not (headless or as_json)
     sound = keys_from_terminal(None) if listens else 0  # before checking for a screen
@@ -188,7 +184,8 @@ def live(
 
         def opening(seed: int) -> WorldOpening:
             both: dict[str, Any] = {"seed": seed, "pace": pace, "map_": map_, "lost": lost}
-            return opening_of(workspace, bench=bench, injections=faults, own=own, **both)
+            both |= {"injections": faults, "link": link}
+            return opening_of(workspace, bench=bench, own=own, **both)
 
         if screen:
             from tangy_tui.ui.run import run_live
@@ -234,7 +231,8 @@ def live(
             if plain_lines:
                 print(plain(f"  {part_words(part, workspace.robot)} ..."), file=sys.stderr)
 
-        with switched_on(switched, stepped=bench and not plain_lines, tell=tell) as there:
+        stepped = bench and not plain_lines and link is None  # a delay takes real time
+        with switched_on(switched, stepped=stepped, tell=tell) as there:
             if not as_json and (plain_lines or not bench) and there.link.screen:
                 print(plain(screen_words(there.link.screen, there.link.code)), file=sys.stderr)
             told_missing = missing_words(workspace.robot, workspace.activity)

@@ -40,6 +40,7 @@ Tangy = Callable[..., CompletedProcess[str]]
         (("people", "rename", "user1", "x" * 41), "at most 40"),
         (("live", "--bench", "--camera", "camera=0"), "the bench brings its own"),
         (("live", "--load", "2"), "add --bench"),
+        (("live", "--link-delay", "80"), "only the bench's link is bad: add --bench"),
     ],
 )
 def test_bad_input_is_status_two_and_one_sentence(

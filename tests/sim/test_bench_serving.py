@@ -27,6 +27,7 @@ from tangy_profiles.health import ERROR
 from tangy_sim.device_simulator.__main__ import main
 from tangy_sim.device_simulator.device_servers import DeviceServers
 from tangy_sim.device_simulator.lidar import Lidar
+from tangy_sim.servers.link_relay import LinkQuality
 from tests.sim.bench_game import ROBOT, bench
 
 FACES = {f"user{number}": number for number in range(1, 5)}
@@ -91,9 +92,11 @@ class Peer:
 
 
 @asynccontextmanager
-async def served(*, stepped: bool = True) -> AsyncIterator[tuple[DeviceServers, dict[str, Any]]]:
+async def served(
+    *, stepped: bool = True, link: LinkQuality | None = None
+) -> AsyncIterator[tuple[DeviceServers, dict[str, Any]]]:
     """Serve a bench in this process."""
-    one = DeviceServers(bench(3), stepped=stepped, faces=FACES)
+    one = DeviceServers(bench(3), stepped=stepped, faces=FACES, link=link)
     wires = await one.start()
     try:
         yield one, wires
@@ -288,6 +291,30 @@ class TestMachineTime:
             with pytest.raises(DeviceError):
                 await link.call("/bench/advance", {"seconds": 0.1})
             passing.cancel()
+            await base.close()
+            await link.close()
+
+
+class TestBadLink:
+    async def test_drivers_are_served_through_it_and_drive_late(self) -> None:
+        async with served(stepped=False, link=LinkQuality(0.1, 0.05)) as (one, wires):
+            assert wires["rosbridge"] != one.ros.url and wires["scip"] != one.scip.url
+            assert wires["head"] != one.film.url("/head")
+            passing = asyncio.create_task(one.run())
+            link = Rosbridge(wires["rosbridge"])
+            base, laser = RosBase(link), ScipLaser(wires["scip"], stale_after=5.0)
+            await base.start()
+            await laser.start()
+            async with asyncio.timeout(20.0):
+                while base.odometry is None or laser.scan is None:  # noqa: ASYNC110
+                    await asyncio.sleep(0.02)
+                told = asyncio.get_running_loop().time()
+                while one.world.wheels.forward == 0.0:
+                    await base.drive(Twist(0.2, 0.0))
+                    await asyncio.sleep(0.02)
+            assert asyncio.get_running_loop().time() - told >= 0.1
+            passing.cancel()
+            await laser.close()
             await base.close()
             await link.close()
 

@@ -25,6 +25,7 @@ from tangy_profiles.room import load_room
 from tangy_profiles.worker_lines import AnswerWriter, Asked, coming, open_lines
 from tangy_sim.device_simulator.device_servers import DeviceServers
 from tangy_sim.device_simulator.world import BenchWorld
+from tangy_sim.servers.link_relay import LinkQuality
 
 _LOG = logging.getLogger("tangy_sim.device_simulator")
 
@@ -47,7 +48,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     faces = {person.id: number for number, person in enumerate(people, 1)}
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # its parent closes its stdin
-    asyncio.run(_serve(DeviceServers(world, stepped=told.stepped, faces=faces, seed=told.seed)))
+    link = LinkQuality(told.link_delay, told.link_loss)
+    servers = DeviceServers(world, stepped=told.stepped, faces=faces, seed=told.seed, link=link)
+    asyncio.run(_serve(servers))
     return 0
 
 
@@ -61,6 +64,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--room", default="common-room")
     parser.add_argument("--robot", default="tangy")
     parser.add_argument("--activity", required=True)
+    parser.add_argument("--link-delay", type=float, default=0.0, help="s in each direction")
+    parser.add_argument("--link-loss", type=float, default=0.0, help="the share of packets lost")
     return parser
 
 

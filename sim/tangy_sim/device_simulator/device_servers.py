@@ -3,7 +3,8 @@
 On a stepped bench, the service `/bench/advance` {"seconds": dt} advances the time: `/clock` is
 published, then all due messages are sent on all connections, then the answer {"time": t, "sent":
 {...}}, with the numbers of scans and frames sent so far. The service and the clock also work while
-the robot's link is lost. Otherwise the bench runs in real time.
+the robot's link is lost. Otherwise the bench runs in real time, and the link can be a bad one
+(`LinkQuality`).
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from tangy_sim.device_simulator.camera_streams import Film
 from tangy_sim.device_simulator.house_rules import tell
 from tangy_sim.device_simulator.lidar import Lidar
 from tangy_sim.device_simulator.world import BenchWorld
+from tangy_sim.servers.link_relay import LinkQuality, LinkRelays
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tangy_sim.servers.scip_server import ScipServer
 from tangy_sim.servers.scip_session import Scanner
@@ -36,7 +38,13 @@ class DeviceServers:
     """Serves a world. After `start`, call `run` (real time), or advance it (stepped)."""
 
     def __init__(
-        self, world: BenchWorld, *, stepped: bool, faces: Mapping[str, int], seed: int = 1
+        self,
+        world: BenchWorld,
+        *,
+        stepped: bool,
+        faces: Mapping[str, int],
+        seed: int = 1,
+        link: LinkQuality | None = None,
     ) -> None:
         self.world, self.stepped = world, stepped
         self.faces = dict(faces)
@@ -44,6 +52,7 @@ class DeviceServers:
         self.ros = RosbridgeServer(clock=lambda: world.now)
         self.scip = ScipServer(SCANNER)
         self.film = Film(world, faces, seed=seed)
+        self._relays = LinkRelays(link or LinkQuality(), seed)
         self._due = dict.fromkeys(EVERY, 0.0)
         self._turn = asyncio.Lock()
         self._lost = False  # whether the link is lost
@@ -73,17 +82,19 @@ class DeviceServers:
         await ros.start()
         await self.scip.start()
         await self.film.start()
+        relayed = self._relays.relayed
         return {
-            "rosbridge": ros.url,
-            "scip": self.scip.url,
-            "head": self.film.url("/head"),
-            "infrared": self.film.url("/infrared"),
+            "rosbridge": await relayed(ros.url),
+            "scip": await relayed(self.scip.url),
+            "head": await relayed(self.film.url("/head")),
+            "infrared": await relayed(self.film.url("/infrared")),
             "corners": [list(corner) for corner in self.film.corners],
             "faces": self.faces,
         }
 
     async def close(self) -> None:
         """Stop all servers."""
+        await self._relays.close()
         await self.film.close()
         await self.scip.close()
         await self.ros.close()
