@@ -108,7 +108,7 @@ def need_policy(store: Store, activity: Activity, wanted: str = "") -> PolicyLea
     if not kept:
         raise NoPolicy(
             f"Tangy has not learnt {activity.title} yet: "
-            "demonstrate it with `tangy teach`, then run `tangy learn`."
+            "demonstrate it with Teach (`tangy teach`), then choose Learn (`tangy learn`)."
         )
     place = place_of(wanted or "last")
     if place is not None:

@@ -174,7 +174,8 @@ def learn_policy(
         )
     if not rows:
         raise NothingToLearnFrom(
-            "There is nothing to learn from yet: demonstrate a game first, with tangy teach."
+            "There is nothing to learn from yet: demonstrate a game first, with Teach "
+            "(`tangy teach`)."
         )
     forest = (grow or grown)(settings, tuple(rows), tuple(situations))
     seen = Counter(situation for situation, _ in shown)

@@ -71,7 +71,7 @@ def test_what_was_not_learnt_yet_cannot_be_shown_or_played(
 ) -> None:
     done = tangy(verb, "--data", tmp_path / "empty")
     assert (done.returncode, done.stdout) == (2, "")
-    assert "`tangy teach`, then run `tangy learn`" in done.stderr
+    assert "`tangy teach`), then choose Learn (`tangy learn`)" in done.stderr
 
 
 def test_from_no_demonstration_nothing_is_learnt(tangy: Tangy, tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -15,7 +15,8 @@ from textual.content import Content
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.page import Page, PageLine
-from tangy_tui.ui.widgets.rows import fit, shorten
+from tangy_tui.ui.widgets.rows import fit
+from tangy_tui.ui.widgets.wrapping import wrap
 
 UNFILTERED = "letters filter   enter takes it   esc goes back"
 FILTERED = "/{}_   enter takes it   esc shows all"
@@ -48,7 +49,7 @@ class ChooseDialog(Dialog[str | None]):
     """
 
     DEFAULT_CSS = """
-    ChooseDialog > .box { width: 70; padding: 0 1; }
+    ChooseDialog > .box { width: 78; padding: 0 1; }
     ChooseDialog Page { height: auto; max-height: 1fr; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -87,13 +88,15 @@ class ChooseDialog(Dialog[str | None]):
     def _write(self, width: int) -> list[PageLine]:
         label = min(width // 2, max((cell_len(clean(o.name)) for o in self._options), default=0))
         return [
-            PageLine(
-                (
-                    (" ", "text"),
-                    (fit(clean(option.name), label), "strong"),
-                    (shorten(f"  {clean(option.note)}", width - label - 1), "dim"),
-                ),
-                number,
-            )
+            PageLine((("  ", "text"), (fit(name, label), "strong"), (f"  {note}", "dim")), number)
             for number, option in enumerate(self._options)
+            for name, note in _lines(option, width - label - 5)
         ]
+
+
+def _lines(option: Option, width: int) -> Iterator[tuple[str, str]]:
+    """Yield the lines of an option: its name and a part of its note, wrapped to a width."""
+    name = clean(option.name)
+    for line in wrap(clean(option.note), width) or [""]:
+        yield name, line
+        name = ""
