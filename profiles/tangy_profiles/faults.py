@@ -50,7 +50,7 @@ CONTEXT: Mapping[str, str] = MappingProxyType(
 
 SYMPTOMS: Mapping[str, str] = MappingProxyType(
     {
-        "person.refusals": "how often in a row a person did not follow",
+        "person.refusals": "how often in a row a person would rather not",
         "person.spent": "whether a person was asked as often as the activity allows",
         "person.unchanged": "how often what was asked for looked as before, and nobody refused",
         "visit.fruitless": "behaviours in a row after which nothing had changed",

@@ -25,9 +25,9 @@ from tangy_tui.monitoring.player_facts import PlayerFacts, player_facts
 from tangy_tui.monitoring.replay import GameReplay, Noted, read_replays
 
 RESULTS = (
-    ("complied", "complied"),
-    ("late", "followed late"),
-    ("refused", "did not follow"),
+    ("complied", "did it"),
+    ("late", "did it late"),
+    ("refused", "would rather not"),
     ("void", "void"),
     ("awaited", "without an answer"),
 )

@@ -86,9 +86,9 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 KEY = (
     ('<rect class="visit" x="1" y="2" width="18" height="12" rx="3"/>', say.VISIT),
     ('<rect class="asks" x="1" y="6" width="18" height="4"/>', "asks for help"),
-    ('<circle class="yes" cx="10" cy="8" r="5"/>', "complied"),
-    ('<circle class="late" cx="10" cy="8" r="4.4"/>', "followed late"),
-    ('<path class="no" d="M6 4L14 12M6 12L14 4"/>', "did not follow"),
+    ('<circle class="yes" cx="10" cy="8" r="5"/>', "did it"),
+    ('<circle class="late" cx="10" cy="8" r="4.4"/>', "did it late"),
+    ('<path class="no" d="M6 4L14 12M6 12L14 4"/>', "would rather not"),
     ('<circle class="open" cx="10" cy="8" r="4.4"/>', "without an answer"),
     ('<line class="tick" x1="6" x2="6" y1="4" y2="12"/>'
      '<line class="tick" x1="14" x2="14" y1="0" y2="16"/>', "number called, anything else"),

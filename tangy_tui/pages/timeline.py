@@ -227,18 +227,16 @@ def _answer(x: float, y: float, answer: AnsweredRequest) -> str:
     An unknown response is a broken ring.
     """
     if answer.complied:
-        return f'<circle class="yes" cx="{x:.1f}" cy="{y}" r="5"><title>complied</title></circle>'
+        return f'<circle class="yes" cx="{x:.1f}" cy="{y}" r="5"><title>did it</title></circle>'
     if answer.followed or answer.complied is None:
-        kind, words = (
-            ("late", "followed late") if answer.followed else ("open", "without an answer")
-        )
+        kind, words = ("late", "did it late") if answer.followed else ("open", "without an answer")
         mark = f'<circle class="{kind}" cx="{x:.1f}" cy="{y}" r="4.4">'
         return f"{mark}<title>{words}</title></circle>"
     arm = 4.2
     return (
         f'<path class="no" d="M{x - arm:.1f} {y - arm:.1f}L{x + arm:.1f} {y + arm:.1f}'
         f'M{x - arm:.1f} {y + arm:.1f}L{x + arm:.1f} {y - arm:.1f}">'
-        "<title>did not follow</title></path>"
+        "<title>would rather not</title></path>"
     )
 
 

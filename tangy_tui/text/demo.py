@@ -20,7 +20,7 @@ SCENES = (
     "A command and its question",
     "A mistake, taken back",
     "What Tangy learnt, and why",
-    "Somebody says no",
+    "A person would rather not",
     "Something goes wrong",
     "Your turn",
 )
@@ -56,8 +56,8 @@ THINKS = "The game is over. Tangy learns from it."
 BEGINS = "Now Tangy runs a game by itself, with what it has learnt."
 PLAYS = "It calls, notices when a person needs help, and goes there."
 SAYS_IT = "Tangy can ask in several ways. Now it {}."
-REFUSED = "{} does not do it. Tangy notes that, and does not insist."
-LATE = "{} takes so long that Tangy counts it as a no. Tangy does not insist."
+REFUSED = "{} would rather not just now. Tangy notes that, and leaves it."
+LATE = "{} does it a little late, which does not count. Tangy does not press."
 ANOTHER_WAY = "Next time it asks in another way: it {}."
 COMPLIED = "That worked. Tangy will ask {} this way more often."
 AT_ONCE = "{} does it. Tangy notes which way of asking worked."

@@ -65,11 +65,11 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
         case Diagnosed() | Moved():
             return fault_lines(event)
         case BeliefUpdated(response, belief):
-            what = "did not follow, which counts as no"
+            what = "would rather not just now"
             if response.followed:
-                what = "followed, but late, which counts as no"
+                what = "did it a little late, which does not count"
             if response.complied:
-                what = "complied"
+                what = "did it"
             profile = supervision.persuasion.beliefs[response.person]
             best = max(profile, key=lambda strategy: profile[strategy].mean)
             worked = f"; best so far: {best}" if profile[best].complied else ""
@@ -162,7 +162,7 @@ def stopped_words(reason: str, then: str) -> str:
 
 def response_words(response: Response, belief: Beta, name: Name) -> str:
     """Tell a person's response, and how often the strategy has worked."""
-    what = "complied" if response.complied else "followed, but late"
+    what = "did it" if response.complied else "did it a little late"
     worked = f"{response.strategy} has worked {belief.complied} of {belief.trials} times."
     return f"{name(response.person)} {what}: {worked}"
 

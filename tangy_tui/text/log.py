@@ -119,8 +119,8 @@ def answer_words(answer: AnsweredRequest) -> str:
     if answer.complied is None:
         return "was asked; what they did was not known yet"
     if answer.complied:
-        return "complied"
-    return "followed, but late" if answer.followed else "did not follow"
+        return "did it"
+    return "did it a little late" if answer.followed else "would rather not just then"
 
 
 def session_lines(session: Session) -> Iterator[str]:

@@ -34,7 +34,7 @@ def _what_works(record: Record) -> str:
     if len(record.on) == 1:
         return _only(record)
     if responses and not complied:
-        return f"{name} has not complied yet: {complied} of {responses}"
+        return f"nothing has worked with {name} yet: {complied} of {responses}"
     if best is None:
         if not responses:
             return f"nothing is known of {name} yet"
@@ -103,7 +103,7 @@ def entry_words(entry: FeedbackEntry) -> str:
     """Tell the response to one request."""
     if entry.complied is None:
         return "answered later" if entry.settled else "no response yet"
-    words = "complied" if entry.complied else "did not comply"
+    words = "did it" if entry.complied else "would rather not"
     if entry.late:
         words += ", said later"
     if entry.void:
@@ -115,7 +115,7 @@ def change_words(change: Event[EventRecord]) -> str:
     """Describe a change that can be undone."""
     match change.record:
         case FeedbackGiven():
-            did = "complied" if change.complied else "did not comply"
+            did = "did it" if change.complied else "would rather not"
             return f"the late response: {change.strategy}, {did}"
         case ResponseVoided():
             return f"that a response to {change.strategy} is void"
@@ -187,7 +187,7 @@ def void_detail(entry: FeedbackEntry, name: str) -> str:
 
 def comply_words(entry: FeedbackEntry, name: str) -> tuple[str, str]:
     """Ask whether a person complied, and with which request."""
-    return f"Did {name} comply?", f"The request with {entry.strategy}, {on_day(entry.at)}."
+    return f"Did {name} do it?", f"The request with {entry.strategy}, {on_day(entry.at)}."
 
 
 def switch_words(strategy: str, name: str, *, on: bool) -> tuple[str, str]:

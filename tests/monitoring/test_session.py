@@ -180,7 +180,7 @@ def test_who_was_asked_and_has_not_answered_is_told_so_and_not_as_a_no(
     (line,) = [line for line in session_lines(session) if line.startswith(person.name)]
     (neutral,) = [part for part in line.split("; ") if "neutral: " in part]
     assert "1 without an answer (" in neutral
-    assert f"{person.strategies['neutral'].refused} did not follow" in neutral or not (
+    assert f"{person.strategies['neutral'].refused} would rather not" in neutral or not (
         person.strategies["neutral"].refused
     )
     page = session_page(session)

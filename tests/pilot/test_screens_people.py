@@ -171,7 +171,7 @@ async def test_a_request_without_a_response_is_answered_late(
     async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("down", "F")
         await pilot.pause()
-        assert "Did User 2 comply?" in pilot.text()
+        assert "Did User 2 do it?" in pilot.text()
         await pilot.press("escape")
         await pilot.pause()
         assert complied(workspace, "user2", "suggestion") == (1, 0)
@@ -343,7 +343,7 @@ async def test_at_every_size_the_chosen_person_is_told_of_in_full(
     async with run(PeopleScreen(workspace), size=size) as pilot:
         text = pilot.text()
         assert "praise works with Rosa: 7 of 9" in text
-        for words in ("0 of 3", "★ settled", ".49-.91", "did not comply"):
+        for words in ("0 of 3", "★ settled", ".49-.91", "would rather not"):
             assert words in text
 
 

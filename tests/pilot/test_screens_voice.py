@@ -249,7 +249,7 @@ async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
         await until_shown(pilot, lambda: steps.count == 2)
         await pilot.press("full_stop")
         await until_shown(pilot, lambda: steps.count == 3)
-        said = [s for s in screen.query_one(LogView).sentences if "complied" not in s]
+        said = [s for s in screen.query_one(LogView).sentences if " did it" not in s]
         await until_shown(pilot, lambda: voices[0].lines[-1] in said[-1])
         assert voices[0].hushed >= 2
 

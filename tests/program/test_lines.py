@@ -304,8 +304,8 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(
     assert said[0] == "Game 1 begins."
     assert said[1] == "1. the game has not begun -> greet everyone, as shown 2 times"
     assert sum(line.startswith("The game is over after ") for line in said) == 3
-    late = " followed, but late, which counts as no ("
-    learnt = [line for line in said if " complied (" in line or late in line]
+    late = " did it a little late, which does not count ("
+    learnt = [line for line in said if " did it (" in line or late in line]
     assert any(late in line for line in learnt)
     assert any("best so far: " in line for line in learnt)
     assert said[-4:] == belief_lines(supervision, workspace.name)
@@ -313,7 +313,7 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(
     assert all(line.isprintable() for line in said)
 
 
-def test_what_counts_as_no_is_said_to(workspace: Workspace, cover: Cover) -> None:
+def test_what_people_did_is_said_kindly(workspace: Workspace, cover: Cover) -> None:
     policy = learn_policy(
         workspace.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5)
     )
@@ -323,10 +323,10 @@ def test_what_counts_as_no_is_said_to(workspace: Workspace, cover: Cover) -> Non
         response = Response("user2", "praise", followed, complied, 12.0)
         return game_lines(BeliefUpdated(response, Beta(1, 2)), supervision, workspace.name)[0]
 
-    assert line(followed=True, complied=True).startswith("   User 2 complied (praise now ")
-    late = "   User 2 followed, but late, which counts as no (praise now "
+    assert line(followed=True, complied=True).startswith("   User 2 did it (praise now ")
+    late = "   User 2 did it a little late, which does not count (praise now "
     assert line(followed=True, complied=False).startswith(late)
-    never = "   User 2 did not follow, which counts as no (praise now "
+    never = "   User 2 would rather not just now (praise now "
     assert line(followed=False, complied=False).startswith(never)
 
 

@@ -141,10 +141,10 @@ def test_a_response_is_void_by_its_number_and_counts_again_after_undo(people: Ta
 def test_it_is_said_what_is_void_and_what_was_said(people: Tangy) -> None:
     last, first = people("void", "Rosa").stdout, people("void", "Rosa", 1).stdout
     when = r"\d+ \w+ \d{4} \d\d:\d\d"
-    assert re.match(rf"Void: number 16, scarcity, {when}, did not comply\.\nNow: ", last)
-    assert re.match(rf"Void: number 1, praise, {when}, complied\.\nNow: ", first)
+    assert re.match(rf"Void: number 16, scarcity, {when}, would rather not\.\nNow: ", last)
+    assert re.match(rf"Void: number 1, praise, {when}, did it\.\nNow: ", first)
     said = people("feedback", "Rosa", "suggestion", "yes").stdout
-    assert re.match(rf"Said: number 18, suggestion, {when}, complied, said later\.\nNow: ", said)
+    assert re.match(rf"Said: number 18, suggestion, {when}, did it, said later\.\nNow: ", said)
 
 
 def test_a_reason_of_undecodable_bytes_is_kept_and_shown_all_the_same(people: Tangy) -> None:

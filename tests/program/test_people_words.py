@@ -72,8 +72,8 @@ def test_an_activity_with_one_strategy_has_none_that_is_settled(
 @pytest.mark.parametrize(
     ("counts", "said"),
     [
-        ({"praise": (0, 1)}, "Rosa has not complied yet: 0 of 1"),
-        (dict.fromkeys(NAMES[1:], (0, 40)) | {"neutral": (0, 1)}, "Rosa has not complied yet"),
+        ({"praise": (0, 1)}, "nothing has worked with Rosa yet: 0 of 1"),
+        (dict.fromkeys(NAMES[1:], (0, 40)) | {"neutral": (0, 1)}, "nothing has worked"),
         (dict.fromkeys(NAMES[1:], (1, 60)) | {"neutral": (0, 1)}, "not clear yet what works"),
         ({"praise": (9, 1), "neutral": (0, 4), "suggestion": (0, 4), "scarcity": (0, 4)},
          "praise works with Rosa: 9 of 10"),

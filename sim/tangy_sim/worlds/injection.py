@@ -87,7 +87,7 @@ _KINDS = (
          otherwise("arms", hardware_error=True)),
     Kind("voice-dead", "the voice ends", "voice-dead", AT_ONCE, dead("voice")),
     Kind("screen-dead", "the chest screen goes dark", "screen-dead", AT_ONCE, dead("screen")),
-    Kind("never-complies", "a person follows no request any more", "never-complies", ASKING),
+    Kind("never-complies", "a person says no to every request", "never-complies", ASKING),
     Kind("no-effect", "a behaviour comes to nothing, and no sensor says why", "unexplained",
          MOVING_ON),
 )  # fmt: skip

@@ -19,12 +19,12 @@ class AnswerDialog(Dialog[bool | None]):
     """Asks whether a person complied: y, n, or esc to leave it open. Ignores keys typed ahead."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("y", "nothing", "They complied"),
-        Binding("n", "nothing", "They did not"),
+        Binding("y", "nothing", "They did it"),
+        Binding("n", "nothing", "They would rather not"),
         Binding("escape", "nothing", "Leave it open"),
     ]
     HELP = (
-        "Complied means: they did what they were asked, in time, after it was said this way. "
+        "They did it if they did what they were asked, in time, after it was said this way. "
         "Press y if they did, n if they did not, and esc to leave it open."
     )
 
@@ -40,7 +40,11 @@ class AnswerDialog(Dialog[bool | None]):
         parts: list[str | tuple[str, str] | Content] = [(self._question, "bold")]
         if self._detail:
             parts += ["\n\n", self._detail]
-        for key, word in (("Y", "they complied"), ("N", "they did not"), ("esc", "leave it open")):
+        for key, word in (
+            ("Y", "they did it"),
+            ("N", "they would rather not"),
+            ("esc", "leave it open"),
+        ):
             parts += ["\n\n" if key == "Y" else "\n", (f"{key:<3}", "$primary bold"), f"  {word}"]
         yield Static(Content.assemble(*parts), id="answer", classes="box")
 
