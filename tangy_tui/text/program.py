@@ -9,12 +9,12 @@ TAGLINE = "Teach a robot a group activity, and let it run that activity."
 NOTHING_MOVES = "Nothing is moving."
 MOUSE_ON = "Mouse on. Press {mouse} to turn it off and select text."
 MOUSE_OFF = "Mouse off: you can select text. Press {mouse} to turn it on again."
-COLOURS = {
-    "Dark colours": "High contrast on black",
-    "Light colours": "Dark on paper",
-    "The terminal's colours": "Its own sixteen",
+THEMES = {
+    "Dark theme": "Light colours on black",
+    "Light theme": "Dark colours on white",
+    "Theme of the terminal": "Its own sixteen colours",
 }
-"""The names and descriptions of the colour schemes."""
+"""The names and descriptions of the themes."""
 COMPARE_POLICIES = ("Compare policies", "Teacher against teacher, before against after")
 VOICE = ("Voice on or off", "Tangy speaks what it says")
 """Commands of the palette, with descriptions."""

@@ -336,7 +336,7 @@ class TangyApp(App[None]):
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """List the commands of the palette that have no key."""
-        for (name, like), theme in zip(text.COLOURS.items(), (DARK, LIGHT, ANSI), strict=True):
+        for (name, like), theme in zip(text.THEMES.items(), (DARK, LIGHT, ANSI), strict=True):
             yield SystemCommand(name, like, self._themed(theme.name))
 
     def action_command_palette(self) -> None:
