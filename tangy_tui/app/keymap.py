@@ -236,9 +236,9 @@ def _read(table: Table, id: str, action: KeyAction) -> Iterator[str]:
         key = written.strip()
         key = key if len(key) == 1 else key.lower()
         if key not in KNOWN:
-            raise table.wrong(id, f"names no key; {nearest(key, KNOWN)}")
+            raise table.wrong(id, f"{written!r} is no key; {nearest(key, KNOWN)}")
         if key in OF_THE_LINE:
-            raise table.wrong(id, "edits the line you type in.")
+            raise table.wrong(id, f"{key} edits the line you type in.")
         key = NAMED.get(key, key)
         if action.with_line and is_letter(key) and key not in action.keys:
             raise table.wrong(id, "works while you type: give it a function or control key.")

@@ -57,7 +57,7 @@ def test_a_user_changes_keys(tmp_path: Path, written: str, id: str, keys: tuple[
     ("written", "told"),
     [
         ('undoo = "f12"', r"keys\.undoo.*undo"),
-        ('undo = "f13"', r"keys\.undo.* names no key"),
+        ('undo = "f13"', r"keys\.undo.* 'f13' is no key"),
         ('undo = "u"', r"keys\.undo.* works while you type"),
         ('undo = "f5"', r"keys\.undo.* is the key of learn"),
         ('undo = "ctrl+w"', r"keys\.undo.* edits"),
