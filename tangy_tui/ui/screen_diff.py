@@ -220,6 +220,8 @@ def _change(before: str, after: str) -> str:
         codes.append(new_ink or "39")
     if paper != new_paper:
         codes.append(new_paper or "49")
+    if not codes:  # the same colours, written in another way
+        return ""
     change = f"\x1b[{';'.join(codes)}m"
     return change if len(change) < len(whole) else whole
 

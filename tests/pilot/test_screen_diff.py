@@ -51,7 +51,9 @@ def visible(cell: Any) -> Any:
 
 
 TEXTS = st.text("ab  ─é世🙂", min_size=1, max_size=8)
-COLOURS = st.sampled_from([None, "red", "bright_blue", "#102030", "#a0b0c0", "color(99)"])
+COLOURS = st.sampled_from(
+    [None, "default", "red", "bright_blue", "#102030", "#a0b0c0", "color(99)"]
+)
 STYLES = st.builds(
     lambda ink, paper, bold, dim, reverse, underline: Style(
         color=ink, bgcolor=paper, bold=bold, dim=dim, reverse=reverse, underline=underline
@@ -128,6 +130,15 @@ def test_what_is_forgotten_is_written_again() -> None:
     assert diff.difference(update, console) == ""
     diff.forget()
     assert diff.difference(update, console) == once
+
+
+def test_a_colour_that_is_left_out_and_a_default_one_are_the_same() -> None:
+    console, terminal = Console(color_system="standard", force_terminal=True), Terminal(WIDTH, 1)
+    left_out = Segment("one", Style(reverse=True))
+    default = Segment("two", Style(reverse=True, color="default", bgcolor="default"))
+    update = LayoutUpdate([[Strip([left_out, default])]], Region(0, 0, 6, 1))
+    terminal.write(ScreenDiff().difference(update, console))
+    assert [cell.reverse for cell in terminal.screen.buffer[0].values()] == [True] * 6
 
 
 def test_one_letter_costs_no_more_than_a_move_and_a_letter() -> None:
