@@ -146,6 +146,24 @@ async def test_where_it_finds_no_way_somebody_is_given_the_time_to_clear_it(
         assert one.facts("navigator") == {"path": "clear"}
 
 
+async def test_a_way_that_was_blocked_before_a_stop_may_still_be_blocked_after_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(external_navigator, "CLEARING_SECONDS", 1e9)
+    async with living(monkeypatch) as one:
+        going = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: one.base.goals)
+        one.base.end(4, "no path")
+        assert await soon(going) is False
+        await one.robot.stop("the laser scanner is silent")
+        one.robot.release()
+        assert one.facts("navigator") == {"path": "none"}
+        monkeypatch.setattr(external_navigator, "CLEARING_SECONDS", 0.0)
+        await one.robot.stop("the laser scanner is silent")
+        one.robot.release()
+        assert one.facts("navigator") == {"path": "clear"}
+
+
 async def test_a_goal_that_is_refused_is_no_blocked_way(monkeypatch: pytest.MonkeyPatch) -> None:
     async with living(monkeypatch) as one:
         going = asyncio.create_task(one.robot.go(GOAL))

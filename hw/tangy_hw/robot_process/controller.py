@@ -237,8 +237,11 @@ class LiveRobot:
         await self._performer.look_at(what)
 
     def replan(self) -> None:
-        """Check whether a blocked path is free again."""
+        """Check whether a blocked path is free again, and drop the symptom of a detour."""
         self._evidence.detour_taken()
+        self._look_for_way()
+
+    def _look_for_way(self) -> None:
         if self._wanted is not None and self._evidence.blocked:
             self._evidence.blocked = not self.navigator.finds_way(self._wanted)
 
@@ -270,7 +273,7 @@ class LiveRobot:
     def release(self, by: str = "") -> None:
         """Release the stop of one source, or of the source that stopped the robot."""
         self._stops.release(by)
-        self._evidence.blocked = False
+        self._look_for_way()  # what stood in the way may still be there
         if by in ("", FAULT):
             self.watch.frozen = 0.0
 
