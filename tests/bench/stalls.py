@@ -1,10 +1,11 @@
 """What becomes of a robot process that is stopped in a game: dialogs, their causes, and the base.
 
-Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]... [--stage S]... [--load N]`.
-Games are played on the bench in real time, with staff who clear what halts the robot, and with N
-busy processes beside them. The robot's process is stopped for so many s in each stage in turn, N
-times for each length: while a number is due, while it drives to a person who asks, and beside that
-person. A dialog is a critical fault.
+Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]... [--stage S]... [--load N]
+[--link-delay S] [--link-loss SHARE]`. Games are played on the bench in real time, with staff who
+clear what halts the robot, with N busy processes beside them, and over a link of that quality. The
+robot's process is stopped for so many s in each stage in turn, N times for each length: while a
+number is due, while it drives to a person who asks, and beside that person. A dialog is a critical
+fault.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from statistics import quantiles
 from tempfile import TemporaryDirectory
 
 from tangy_profiles.fault_file import load_faults
+from tangy_sim.servers.link_relay import LinkQuality
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.robot_opening import open_bench
 from tangy_tui.app.scripted_staff import go_on_by_script
@@ -142,7 +144,10 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, action="append")
     parser.add_argument("--stage", choices=STAGES, action="append")
     parser.add_argument("--load", type=int, default=0, help="busy processes beside it")
+    parser.add_argument("--link-delay", type=float, default=0.0, help="s in each direction")
+    parser.add_argument("--link-loss", type=float, default=0.0, help="the share of packets lost")
     given = parser.parse_args()
+    link = LinkQuality(given.link_delay, given.link_loss)
     lengths = given.seconds or [0.3, 1.0, 4.0, 10.0]
     chance, dialogs = Random(1), list[str]()
     over, held = threading.Event(), threading.Event()
@@ -152,7 +157,7 @@ def main() -> None:
         book = load_faults(workspace.robot)
         with (
             open_bench(
-                workspace, seed=1, stepped=False, pace=1.0, book=book, kind=BenchedWorld
+                workspace, seed=1, stepped=False, pace=1.0, book=book, kind=BenchedWorld, link=link
             ) as world,
             busy(given.load),
         ):
