@@ -58,6 +58,23 @@ class TestAnyKind:
         world.begin()
         assert not world.faults.present and not world.floor.dropped
 
+    @pytest.mark.parametrize(
+        ("shows", "silences", "elsewhere"),
+        [
+            ("base-stuck", "base-failed", "laser-disconnected"),
+            ("camera-frozen", "camera-disconnected", "requests-silent"),
+            ("laser-occluded", "laser-disconnected", "link-lost"),
+        ],
+    )
+    def test_an_expert_finds_what_silences_the_device_as_well(
+        self, shows: str, silences: str, elsewhere: str
+    ) -> None:
+        world = bench(1)
+        for kind in (shows, silences, elsewhere):
+            world.inject(kind)
+        assert world.mend(KINDS[shows].code) == [shows, silences]
+        assert set(world.faults.present) == {elsewhere}
+
     def test_neither_voice_nor_screen_is_mended_as_one(self) -> None:
         world = opened()
         world.inject("voice-dead")

@@ -30,7 +30,7 @@ from tangy_sim.device_simulator.joints import Joints
 from tangy_sim.device_simulator.lidar import Lidar
 from tangy_sim.device_simulator.people import People
 from tangy_sim.device_simulator.speech_reception import SpeechReception, speaking_seconds
-from tangy_sim.worlds.injection import KINDS
+from tangy_sim.worlds.injection import KINDS, silencing
 from tangy_sim.worlds.users import UserModel
 
 if TYPE_CHECKING:
@@ -281,8 +281,12 @@ class BenchWorld:
         return found
 
     def mend(self, code: str) -> list[str]:
-        """Let an expert repair the diagnosed faults; return the repaired kinds."""
-        found = self.faults.of(code)
+        """Let an expert repair the diagnosed faults, and what silences their device.
+
+        Returns:
+            The repaired kinds.
+        """
+        found = list(dict.fromkeys([*self.faults.of(code), *silencing(code, self.faults.present)]))
         for kind in found:
             self.lift(kind)
         return found

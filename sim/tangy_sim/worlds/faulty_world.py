@@ -19,7 +19,7 @@ from tangy_sim.worlds import injection
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.devices import readings
 from tangy_sim.worlds.fault_occasions import OccasionWorld, Present
-from tangy_sim.worlds.injection import KINDS, Injection, Kind
+from tangy_sim.worlds.injection import KINDS, Injection, Kind, silencing
 from tangy_sim.worlds.injection_log import InjectionLog
 from tangy_sim.worlds.pending_injections import ToCome
 from tangy_sim.worlds.users import SimulatedUser, UserModel
@@ -290,7 +290,8 @@ class FaultyWorld(OccasionWorld):
             case "call expert":
                 if lost:
                     self.lift("link-lost")  # first, as with a live robot
-                for name in found or _MUTE if remedy.fault == "mute" else found:
+                found = list(_MUTE) if remedy.fault == "mute" and not found else found
+                for name in [*found, *silencing(remedy.fault, list(self.present))]:
                     self._is_helped(name, remedy.person)
             case "spin":
                 if "carried-off" in found and self._chance() < FINDS_ITSELF:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -93,6 +93,22 @@ _KINDS = (
 )  # fmt: skip
 KINDS: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in _KINDS})
 """All kinds of faults, by name."""
+
+
+def silencing(code: str, present: Iterable[str]) -> list[str]:
+    """Return the present kinds that silence the device in which a diagnosis shows.
+
+    An expert who repairs that device finds them, too.
+    """
+    shows = {d for one in _KINDS if one.code == code and one.symptom for d in one.symptom(0.0)}
+    silent = {kind.name: kind.symptom(0.0) for kind in _KINDS if kind.symptom is not None}
+    return [
+        name
+        for name in present
+        if (told := silent.get(name, {})).keys() <= shows
+        and any(age is not None for age, _, _ in told.values())
+    ]
+
 
 IN_RECOVERY = "recovery"
 """Text form of "during the recovery from another fault"."""
