@@ -12,7 +12,6 @@ from statistics import median
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.state import ActivityState
 from tangy_tui.monitoring.replay import Done, GameReplay, Noted
 
 
@@ -84,13 +83,14 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
     """
     found = {person: Attention(person) for person in replay.game.people}
     asked: dict[str, float] = {}
-    before: ActivityState | None = None
+    requests = replay.requests
+    before: Done | None = None
     for done in replay.done:
-        _count_visit(found, done, "" if before is None else before.place)
+        _count_visit(found, done, "" if before is None else before.after.place)
         if before is not None:
-            _count_between(replay, asked, done, before)
-        before = done.after
-        _count_requests(found, asked, done)
+            _count_between(replay, asked, done, requests[before.number])
+        before = done
+        _count_requests(found, asked, done, requests[done.number])
     for person, since in asked.items():
         found[person].open.append(max(0.0, replay.seconds - since))
     for person in replay.game.away & found.keys():
@@ -123,10 +123,9 @@ def _count_visit(found: dict[str, Attention], done: Done, before: str) -> None:
 
 
 def _count_between(
-    replay: GameReplay, asked: dict[str, float], done: Done, before: ActivityState
+    replay: GameReplay, asked: dict[str, float], done: Done, waited: frozenset[str]
 ) -> None:
     """Record requests that began between two steps, as in live games."""
-    waited = {user.id for user in before.users if user.request == "AR"}
     for user in done.state.users:
         waits = user.request == "AR" and done.state.place != user.id
         sent = (done.number, user.id) in replay.unasked or user.id not in replay.game.people
@@ -134,12 +133,14 @@ def _count_between(
             asked[user.id] = done.begun
 
 
-def _count_requests(found: dict[str, Attention], asked: dict[str, float], done: Done) -> None:
+def _count_requests(
+    found: dict[str, Attention], asked: dict[str, float], done: Done, waiting: frozenset[str]
+) -> None:
     """Record new requests, and the waits that ended because Tangy arrived or the request closed."""
     for user in done.after.users:
         if user.id not in found:
             continue
-        waits = user.request == "AR" and done.after.place != user.id
+        waits = user.id in waiting and done.after.place != user.id
         closed_at_once = done.after.closed == user.id and user.request == "AR"
         if user.id in asked and (not waits or closed_at_once):
             found[user.id].waits.append(max(0.0, done.over - asked.pop(user.id)))

@@ -26,7 +26,7 @@ from tangy_profiles.game_records import (
 )
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.staff_records import StaffAction, StaffDeed
-from tangy_profiles.state import ActivityState
+from tangy_profiles.state import FRONT, ActivityState
 from tangy_profiles.store import Event, Store
 from tangy_tui.monitoring.fault import Diagnosed, Fault, Moved, fold_faults
 from tangy_tui.monitoring.games import Game
@@ -178,6 +178,31 @@ class GameReplay:
     timed: bool = True
     unasked: set[tuple[int, str]] = field(default_factory=set)
     """Step and person of visits without a request."""
+
+    @property
+    def requests(self) -> dict[int, frozenset[str]]:
+        """Who was waiting after each step, by the step's number.
+
+        While Tangy first calls some numbers, the state shows no requests, but they stay open.
+        """
+        open_, found = frozenset[str](), dict[int, frozenset[str]]()
+        calls = 0  # to come before the next visit
+        for moment in self.moments:
+            match moment.what:
+                case GameChange(what="calls first", number=calls):
+                    pass
+                case GameChange(what="all called"):
+                    calls = 0
+                case Done() as done:
+                    if done.after.place not in (FRONT, done.state.place):
+                        calls = 0
+                    if done.draws and done.completed:
+                        calls = max(0, calls - 1)
+                    if not calls:
+                        asking = (user.id for user in done.after.users if user.request == "AR")
+                        open_ = frozenset(asking)
+                    found[done.number] = open_
+        return found
 
     @property
     def done(self) -> list[Done]:

@@ -33,7 +33,10 @@ MOST_DRAWN = 24
 """The most games drawn on one page: the last ones."""
 
 FEW_DRAWN = 3
-"""The most games drawn if the page should fit on two sheets."""
+"""The most games drawn if the page should fit on two sheets: fewer for many people."""
+
+FEW_ROWS = 24
+"""The most people in all drawings together, if the page should fit on two sheets."""
 
 COLUMNS = ("person", "strategy", "used", *(words for _, words in RESULTS), "before", "after")
 """The columns of the table of people: the results add up to the uses of a strategy."""
@@ -80,7 +83,7 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
   width: 20px; height: 16px; vertical-align: -3px; margin-right: .3rem; }
 .timeline { min-width: 46rem; } .drawn { overflow-x: auto; }
 @media print { .timeline { min-width: 0; } .drawn { overflow: visible; }
-  .care, .moves li, .fault-told { break-inside: avoid; } }
+  .care, .called, .moves li, .fault-told, .game { break-inside: avoid; } }
 """ + "".join(f".s{n} {{ fill: var(--series-{n}); }}\n" for n in INKS)  # the stages' inks
 
 KEY = (
@@ -103,35 +106,33 @@ def session_page(session: Session, *, full: bool = True) -> str:
     """Return the report of a session for staff; `full` adds the details for researchers."""
     games = session.games
     title = f"{session.title}: session of {day_and_time(games[0].at)}"
-    parts = [*_head(session), *_care(session), *people_part(session)]
+    parts = [*_head(session, full=full), *_care(session), *people_part(session)]
     parts += [*player_facts_part(session), *calls_part(session)]
     parts += [*staff_part(session), *([] if full else faults_part(session))]
-    parts += _timelines(session, MOST_DRAWN if full else FEW_DRAWN)
+    few = max(1, min(FEW_DRAWN, FEW_ROWS // max(1, len(session.people))))
+    parts += _timelines(session, MOST_DRAWN if full else few)
     if full:
         parts += [*_people(session), *_faults(session), *_tables(session)]
-    return document(title, _sum(session), [*parts, *_notes(session)], STYLE + PARTS_STYLE)
+    return document(
+        title, _sum(session, full=full), [*parts, *_notes(session)], STYLE + PARTS_STYLE
+    )
 
 
-def _sum(session: Session) -> str:
-    games, faults = len(session.games), len(session.faults)
+def _sum(session: Session, *, full: bool) -> str:
     steps = sum(game.steps for game in session.games)
-    words = [
-        counted(games, "game"),
-        counted(steps, "behaviour"),
-        counted(faults, "fault"),
-    ]
-    return " · ".join(words)
+    words = [counted(len(session.games), "game"), counted(len(session.faults), "fault")]
+    return " · ".join([*words, *([counted(steps, "behaviour")] if full else [])])
 
 
-def _head(session: Session) -> Iterator[str]:
+def _head(session: Session, *, full: bool) -> Iterator[str]:
     games = session.games
     people = [person.name for person in session.people]
     policies = dict.fromkeys(game.policy for game in games)
     facts = [
-        ("When", f"{day_and_time(games[0].at)} to {_until(session)}"),
+        ("When", f"{day_and_time(games[0].at)}{_until(session)}"),
         ("Games", ", ".join(dict.fromkeys(WORLD_WORDS[game.world] for game in games))),
         (say.WHO, ", ".join(people) or "nobody is named in the log"),
-        ("Policy", ", ".join(policies)),
+        *([("Policy", ", ".join(policies))] if full else []),
         ("How long", _how_long(session)),
     ]
     if len(games) == 1:
@@ -155,10 +156,10 @@ def _fault_sum(session: Session) -> str:
 def _until(session: Session) -> str:
     ended = session.games[-1].ended
     if ended is None:
-        return "no end in the log"
+        return ""  # how it ended is told below
     begun = session.games[0].at.astimezone().date()
     same = ended.astimezone().date() == begun
-    return f"{ended.astimezone():%H:%M}" if same else day_and_time(ended)
+    return f" to {f'{ended.astimezone():%H:%M}' if same else day_and_time(ended)}"
 
 
 def _how_long(session: Session) -> str:
@@ -204,19 +205,21 @@ def _care(session: Session) -> Iterator[str]:
 
 
 def _timelines(session: Session, most: int) -> Iterator[str]:
-    yield heading(say.WHEN)
     numbers = _numbers(session)
     drawn = session.replays[-most:]
+    stages = {s: stage_words(session.activity, s) for s in stages_of(session.replays)}
+    yield f'<div class="game">{heading(say.WHEN)}'
     if len(drawn) < len(session.replays):
         yield paragraph(say.drawn_words(most, len(session.replays)))
-    stages = {s: stage_words(session.activity, s) for s in stages_of(session.replays)}
     yield _key(stages)
-    for replay in drawn:
+    for index, replay in enumerate(drawn):
+        if index:
+            yield '<div class="game">'
         if len(session.replays) > 1:
             game = replay.game
             yield f"<h3>Game {game.number}, {escape(day_and_time(game.at))}</h3>"
             yield paragraph(_sentence(game.ending))
-        yield f'<div class="drawn">{_timeline(replay, numbers, session, stages)}</div>'
+        yield f'<div class="drawn">{_timeline(replay, numbers, session, stages)}</div></div>'
 
 
 def _timeline(

@@ -17,10 +17,13 @@ STYLE = """
 .called { display: flex; flex-wrap: wrap; gap: .15rem .5rem; margin: .3rem 0;
   font-variant-numeric: tabular-nums; }
 .called s { color: var(--dim); }
+.people td:nth-child(2), .people td:nth-child(5), .people td:nth-child(7) { white-space: nowrap; }
+.people td:nth-child(3) { min-width: 10rem; }
 @media print { :root { font-size: 10pt; } body { font-size: 9.5pt; line-height: 1.35; }
   h1 { font-size: 15pt; }
   h2 { font-size: 12pt; margin: 10pt 0 2pt; } h3 { font-size: 10pt; margin: 6pt 0 2pt; }
-  th, td { padding: 1.5pt 5pt; } .wide { margin: 2pt 0; } .care { padding: 3pt 8pt; margin: 4pt 0; }
+  th, td { padding: 1pt 4pt; } .people table { font-size: 8.5pt; line-height: 1.25; }
+  .wide { margin: 2pt 0; } .care { padding: 3pt 8pt; margin: 4pt 0; }
   dl { margin: 4pt 0; } figure { margin: 4pt 0; } @page { margin: 12mm; } }
 """
 
@@ -30,6 +33,7 @@ def people_part(session: Session) -> Iterator[str]:
     found = attention(session.replays)
     answers = [answer for replay in session.replays for _, answer in replay.answers]
     yield heading(say.PEOPLE)
+    yield '<div class="people">'
     yield table(
         say.PEOPLE_COLUMNS,
         (
@@ -46,6 +50,7 @@ def people_part(session: Session) -> Iterator[str]:
             for one in found.values()
         ),
     )
+    yield "</div>"
     for line in say.changes_lines(session.replays, session.name):
         yield paragraph(line)
 
@@ -58,14 +63,13 @@ def calls_part(session: Session) -> Iterator[str]:
         return
     yield heading(say.CALLED)
     for game, calls in told:
-        if len(told) > 1:
-            yield f"<h3>Game {game.number}, {escape(day_and_time(game.at))}</h3>"
         labels = say.call_labels(calls, session.activity)
         cells = "".join(
             f"<s>{escape(label)}</s>" if taken else f"<span>{escape(label)}</span>"
             for label, taken in labels
         )
-        yield f'<p class="called">{cells}</p>'
+        which = f"<b>Game {game.number}:</b>" if len(told) > 1 else ""
+        yield f'<p class="called">{which}{cells}</p>'
         if any(taken for _, taken in labels):
             yield f'<p class="dim">{escape(say.TAKEN_BACK)}</p>'
 

@@ -185,7 +185,8 @@ def _to_all(replay: GameReplay, scale: Scale, top: float) -> Iterator[str]:
 def _person(replay: GameReplay, person: str, scale: Scale, top: float) -> Iterator[str]:
     middle = top + LANE / 2
     yield f'<line class="base" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{middle}" y2="{middle}"/>'
-    asking = _spans(replay, scale, lambda done: _asks(done, person))
+    requests = replay.requests
+    asking = _spans(replay, scale, lambda done: person in requests[done.number])
     for span in asking:
         x, end = scale.x(span.begun), scale.x(span.over)
         yield (
@@ -201,10 +202,6 @@ def _person(replay: GameReplay, person: str, scale: Scale, top: float) -> Iterat
     for moment, answer in replay.answers:
         if answer.person == person:
             yield _answer(scale.x(scale.at(moment.seconds, moment.step)), middle, answer)
-
-
-def _asks(done: Done, person: str) -> bool:
-    return any(user.id == person and user.request == "AR" for user in done.after.users)
 
 
 def _spans(replay: GameReplay, scale: Scale, holds: Callable[[Done], bool]) -> Iterator[Span]:

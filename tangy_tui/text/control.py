@@ -157,7 +157,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "no such card":
             return f"There is no card {about} in this game."
         case "whose card":
-            return f"Tangy does not know whose card {about} is. Say whose, and it goes there."
+            return f"Tangy does not know whose card {about} is. Claim it again, with their name."
         case "asked for":
             return f"{name(about)} asks for help."
         case "told":

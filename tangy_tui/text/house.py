@@ -38,7 +38,7 @@ GAME_COLUMNS = (
     "won",
 )  # fmt: skip
 WORKS = "What works"
-STRATEGY_COLUMNS = ("way of asking", "asked", "did it", "share")
+STRATEGY_COLUMNS = ("way of asking", "asked", "did it in time", "share")
 FAULTS = "What went wrong, and how often"
 FAULT_COLUMNS = ("fault", "times", "critical", "last")
 ROBOTS = "Robots"

@@ -107,12 +107,16 @@ def care_lines(found: Iterable[Attention], name: Name, *, visits: bool = True) -
     lines = []
     if visits and (never := [name(one.id) for one in people if not one.visits]):
         lines.append(f"Tangy never went to {listed(never)}.")
-    for one in people:
+    waiting, waited = dict[str, list[str]](), dict[str, list[str]]()
+    for one in sorted(people, key=lambda one: -max(one.open or one.waits, default=0.0)):
         if one.open:
-            wait = length(max(one.open))
-            lines.append(f"{name(one.id)} was still waiting at the end, for {wait}.")
+            waiting.setdefault(length(max(one.open)), []).append(name(one.id))
         elif one.waits and max(one.waits) > LONG_WAIT:
-            lines.append(f"{name(one.id)} waited {length(max(one.waits))} for help.")
+            waited.setdefault(length(max(one.waits)), []).append(name(one.id))
+    for what, groups in (("Still waiting at the end", waiting), ("Waited long for help", waited)):
+        if groups:
+            each = "; ".join(f"{listed(names)} ({wait})" for wait, names in groups.items())
+            lines.append(f"{what}: {each}.")
     return lines
 
 

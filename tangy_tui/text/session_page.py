@@ -35,6 +35,8 @@ SUMS = "Faults by criticality and recovery"
 
 def drawn_words(drawn: int, games: int) -> str:
     """Tell how many of the games are drawn."""
+    if drawn == 1:
+        return f"The last of {games} games is drawn."
     return f"The last {drawn} of {games} games are drawn."
 
 

@@ -49,8 +49,10 @@ def action_words(noted: Noted, name: Name) -> str:
             return f"staff set the pace: {detail} s"
         case "took back":
             return f"staff took a call back: {detail}"
-        case "claim right" | "claim wrong":
-            return f"staff checked card {detail}: {noted.did.removeprefix('claim ')}"
+        case "claim right":
+            return f"staff checked card {detail}: it wins"
+        case "claim wrong":
+            return f"staff checked card {detail}: it does not win yet"
         case "patterns":
             return f"staff chose what is played for: {detail}"
         case "rules":

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tangy_profiles.game_records import GameChange
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
 from tangy_tui.app.game_commands import ComesIn, GoesAway
 from tangy_tui.app.scripted_staff import scripted_controller
@@ -87,6 +88,23 @@ def test_who_is_not_reached_waits_to_the_end() -> None:
     replay = replay_of(state(FRONT), state(FRONT, ["bob"]), state(FRONT, ["bob"]))
     bob = attention_in(replay)["bob"]
     assert (bob.waits, bob.open, bob.longest, bob.median) == ([], [10.0], 10.0, None)
+
+
+def test_who_waits_while_numbers_are_called_first_waits_on() -> None:
+    replay = replay_of(
+        state(FRONT), state(FRONT, ["bob"]), state(FRONT), state(FRONT, ["bob"]),
+        state("bob", ["bob"]),
+    )  # fmt: skip
+    before = attention_in(replay)["bob"]
+    assert (before.requests, before.waits) == (2, [10.0, 10.0])  # without the change: asked anew
+    first = GameChange(game="g1", what="calls first", steps=1, number=2)
+    moments = [
+        replace(m, what=replace(m.what, draws=True)) if isinstance(m.what, Done) else m
+        for m in replay.moments
+    ]
+    moments.insert(1, Moment(LENGTH, 1, BEGUN.isoformat(), first))
+    bob = attention_in(replace(replay, moments=moments))["bob"]
+    assert (bob.requests, bob.waits, bob.open) == (1, [30.0], [])
 
 
 def test_a_request_that_is_closed_from_afar_was_no_visit() -> None:
