@@ -17,6 +17,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning, GameChange, GameEnding, GameStep
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import SIMULATED, GameWorld
+from tangy_profiles.open_requests import OpenRequests
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import ActivityState, Outcome, UserState
 from tangy_profiles.store import Event, Store
@@ -124,6 +125,17 @@ class PastGame:
     def seconds(self) -> float:
         """The time played until the last step or action of staff, in s."""
         return max(self.acted, self.clock[-1] if self.steps else 0.0)
+
+    def asked(self, activity: Activity) -> dict[str, float]:
+        """Return since when each person has waited for the robot, in s of the time played."""
+        requests, since, over = OpenRequests(), dict[str, float](), 0.0
+        for number, (step, over) in enumerate(zip(self.steps, self.clock, strict=True)):
+            self._change(requests.change, self.beginning.game, number)
+            behaviour = activity.behaviours.get(step.behaviour)
+            called = behaviour is not None and behaviour.effect == "draw" and step.completed
+            requests.step(step.state, step.after or step.state, called=called)
+            since = {person: since.get(person, over) for person in requests.people}
+        return since
 
     def replay(self, world: Replayed) -> ActivityState:
         """Replay the logged games of the run; return the last state.

@@ -151,8 +151,11 @@ class GameController(EndingGames):
                 return []
             past, self.past = self.past, None
             events = self.supervision.begin(past, self.by)
-            now = self.supervision.world.seconds
-            self._watch.begin(now) if past is None else self._watch.resume(now, past)
+            world = self.supervision.world
+            if past is None:
+                self._watch.begin(world.seconds)
+            else:
+                self._watch.resume(world.seconds, past, world.activity)
             return events
 
     def next(self) -> list[Event]:

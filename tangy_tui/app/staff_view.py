@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from tangy_profiles.activity import Activity
 from tangy_profiles.gathering import as_gathering
 from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_profiles.state import FRONT, ActivityState
@@ -72,8 +73,8 @@ class StaffWatch:
         if self._ended is None:
             self._ended = now
 
-    def resume(self, now: float, past: PastGame) -> None:
-        """Resume a game at a time in s; restore its clock and the times of its visits."""
+    def resume(self, now: float, past: PastGame, activity: Activity) -> None:
+        """Resume a game at a time in s; restore its clock, its waits, and the times of visits."""
         ends = dict[str, float]()
         for step, over in zip(past.steps, past.clock, strict=True):
             if step.target in past.beginning.people and step.completed:
@@ -81,6 +82,7 @@ class StaffWatch:
         began = now - past.seconds
         self.begin(began)
         self._visited = {person: began + end for person, end in ends.items()}
+        self._asks = {person: began + at for person, at in past.asked(activity).items()}
 
     def look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
         """Update the times at a time in s, and return the state for staff."""

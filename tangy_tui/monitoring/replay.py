@@ -24,9 +24,10 @@ from tangy_profiles.game_records import (
     GameResumed,
     GameStep,
 )
+from tangy_profiles.open_requests import OpenRequests
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.staff_records import StaffAction, StaffDeed
-from tangy_profiles.state import FRONT, ActivityState
+from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Event, Store
 from tangy_tui.monitoring.fault import Diagnosed, Fault, Moved, fold_faults
 from tangy_tui.monitoring.games import Game
@@ -181,27 +182,15 @@ class GameReplay:
 
     @property
     def requests(self) -> dict[int, frozenset[str]]:
-        """Who was waiting after each step, by the step's number.
-
-        While Tangy first calls some numbers, the state shows no requests, but they stay open.
-        """
-        open_, found = frozenset[str](), dict[int, frozenset[str]]()
-        calls = 0  # to come before the next visit
+        """Who was waiting after each step, by the step's number."""
+        open_requests, found = OpenRequests(), dict[int, frozenset[str]]()
         for moment in self.moments:
-            match moment.what:
-                case GameChange(what="calls first", number=calls):
-                    pass
-                case GameChange(what="all called"):
-                    calls = 0
-                case Done() as done:
-                    if done.after.place not in (FRONT, done.state.place):
-                        calls = 0
-                    if done.draws and done.completed:
-                        calls = max(0, calls - 1)
-                    if not calls:
-                        asking = (user.id for user in done.after.users if user.request == "AR")
-                        open_ = frozenset(asking)
-                    found[done.number] = open_
+            if isinstance(moment.what, GameChange):
+                open_requests.change(moment.what)
+            elif isinstance(done := moment.what, Done):
+                called = done.draws and done.completed
+                open_requests.step(done.state, done.after, called=called)
+                found[done.number] = open_requests.people
         return found
 
     @property

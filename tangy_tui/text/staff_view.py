@@ -20,7 +20,8 @@ STEP_SECONDS = 10
 """Waits of less than a minute are told in steps of so many s."""
 
 NOTHING_CALLED = "nothing called yet"
-PAUSED, STOPPED, OVER = "Paused.", "Tangy was stopped.", "The game is over."
+PAUSED, STOPPED = "Paused.", "Tangy was stopped."
+OVER = "The game is over. Its report: tangy report."
 
 
 def clock_words(seconds: float) -> str:

@@ -166,7 +166,7 @@ def live(
         world = BENCH if bench else LIVE
         tell_small_room(workspace)
         past = past_game(workspace, world, resume=resume, discard=discard, asks=screen)
-        learnt = recall(workspace, policy, quiet=as_json)
+        learnt = recall(workspace, policy, quiet=as_json or screen)
         number = workspace.game_seed(seed) if past is None else past.beginning.seed
         from tangy_profiles.known_devices import reads_cards
         from tangy_tui.app.dealing import read_dealt

@@ -75,7 +75,7 @@ def recall(workspace: Workspace, wanted: str, *, quiet: bool) -> Policy:
     Args:
         workspace: the workspace of the policy.
         wanted: its name or digest, "" for the last one.
-        quiet: whether to leave out the last game.
+        quiet: whether to leave out the last game: a screen asks about it itself.
 
     Raises:
         TangyError: there is no such policy.

@@ -306,7 +306,7 @@ def test_the_clock_of_a_live_game_is_the_time_played_and_not_the_time_it_was_dea
 
     after = Robot(workspace, past, on_for=7200.0)  # a robot has a clock of its own
     watch = StaffWatch()
-    watch.resume(after.world.seconds, past)
+    watch.resume(after.world.seconds, past, workspace.activity)
     shown = watch.look(after.world.scene(), after.world.people, after.world.seconds, after.world)
     for seconds in (shown.seconds, after.control.supervision.seconds):
         assert seconds == pytest.approx(played)
@@ -330,6 +330,7 @@ def test_a_request_that_staff_made_is_open_when_the_game_goes_on(taught: Path) -
     assert before.world.scene().requests == ("user3",)
     past = interrupted_game(workspace.store, workspace.activity.name)
     assert past is not None
+    assert past.asked(workspace.activity) == {"user3": past.clock[-1]}
     after = Robot(workspace, past)
     for _ in range(3):  # far longer than a sign may be hidden
         after.link.time += 60.0

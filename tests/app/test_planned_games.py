@@ -401,7 +401,7 @@ def test_staff_see_the_time_and_the_visits_from_before_an_interruption(taught: P
     assert past is not None and visited
     scene, people = planned.world.scene(), planned.world.people
     watch, now = StaffWatch(), 5.0
-    watch.resume(now, past)
+    watch.resume(now, past, planned.workspace.activity)
     view = watch.look(replace(scene, place=FRONT), people, now, planned.world)
     assert view.seconds == pytest.approx(sum(a.outcome.seconds for a in acted))
     ago = {one.id: one.unvisited for one in view.people if one.unvisited is not None}
