@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.game_records import CallMade, GameChange
+from tangy_tui.monitoring.attention import attention, goes_to_people
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
@@ -16,7 +17,7 @@ from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.player_facts import HEADING, player_lines
-from tangy_tui.text.report import changes_lines
+from tangy_tui.text.report import attention_lines, care_lines, changes_lines
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.staff_actions import action_line
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
@@ -130,6 +131,9 @@ def session_lines(session: Session) -> Iterator[str]:
         yield f"Time in the room: {length(session.seconds)}."
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
     yield from changes_lines(session.replays, session.name)
+    found = attention(session.replays).values()
+    yield from attention_lines(found, session.name)
+    yield from care_lines(found, session.name, visits=goes_to_people(session.activity))
     for facts in session.player_facts:
         yield f"{HEADING}:"
         yield from player_lines(facts, session.name)

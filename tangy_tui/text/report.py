@@ -120,6 +120,20 @@ def care_lines(found: Iterable[Attention], name: Name, *, visits: bool = True) -
     return lines
 
 
+def attention_lines(found: Iterable[Attention], name: Name) -> list[str]:
+    """Tell who won, and how long those who asked for help waited and had Tangy with them."""
+    people = list(found)
+    asked = [
+        f"  {name(one.id)} {counted(one.requests, 'time')}: waited {waited_words(one)}; "
+        f"{counted(one.visits, 'visit')}, {length(one.seconds)} in all"
+        for one in people
+        if one.requests
+    ]
+    won = [name(one.id) for one in people if one.won]
+    lines = [f"Won: {listed(won)}."] if won else []
+    return [*lines, *(["Asked for help:", *asked] if asked else [])]
+
+
 def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
     """Tell who won early, whom Tangy visited unasked, and how often calls came first."""
     changes = [one for replay in replays for one in replay.changes]

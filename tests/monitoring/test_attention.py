@@ -29,6 +29,7 @@ from tangy_tui.monitoring.house import (
 )
 from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted
 from tangy_tui.pages.house import house_page, person_page
+from tangy_tui.text.report import attention_lines, care_lines
 from tangy_tui.text.staff_actions import action_words
 from tests.support.games import play
 
@@ -105,6 +106,23 @@ def test_who_waits_while_numbers_are_called_first_waits_on() -> None:
     moments.insert(1, Moment(LENGTH, 1, BEGUN.isoformat(), first))
     bob = attention_in(replace(replay, moments=moments))["bob"]
     assert (bob.requests, bob.waits, bob.open) == (1, [30.0], [])
+
+
+def test_staff_read_who_won_who_waited_and_who_waits_still_longest_first() -> None:
+    ann = Attention("Ann", waits=[20.0, 400.0], visits=2, seconds=30.0, won=1)
+    bob, cy = Attention("Bob", open=[60.0]), Attention("Cy", waits=[30.0], open=[120.0], visits=1)
+    assert attention_lines([ann, bob, cy], str) == [
+        "Won: Ann.",
+        "Asked for help:",
+        "  Ann 2 times: waited 4 min, at most 7 min; 2 visits, 30 s in all",
+        "  Bob 1 time: waited 1 min, not reached; 0 visits, 0 s in all",
+        "  Cy 2 times: waited 30 s, at most 2 min, once not reached; 1 visit, 0 s in all",
+    ]
+    assert care_lines([bob, ann, cy], str) == [
+        "Tangy never went to Bob.",
+        "Still waiting at the end: Cy (2 min); Bob (1 min).",
+        "Waited long for help: Ann (7 min).",
+    ]
 
 
 def test_a_request_that_is_closed_from_afar_was_no_visit() -> None:
