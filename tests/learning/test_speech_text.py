@@ -59,10 +59,16 @@ WORD = st.text("abcdeghijklmnoprstuw", min_size=1, max_size=6)
 PHRASES = st.lists(st.lists(WORD, min_size=1, max_size=4).map(" ".join), min_size=1, max_size=8)
 PROBABILITIES = st.floats(1e-6, 0.05)
 ALL_PHONES = st.lists(st.sampled_from(sorted(PHONES)), min_size=1, max_size=5).map(" ".join)
-SAID = st.lists(
-    st.sampled_from([*sorted({w for p in BOOK.spoken() for w in p.split()}), "soup", "was", "my"]),
-    max_size=6,
-).map(" ".join)
+SAID = (
+    st.lists(
+        st.sampled_from(
+            [*sorted({w for p in BOOK.spoken() for w in p.split()}), "soup", "was", "my"]
+        ),
+        max_size=6,
+    )
+    .map(" ".join)
+    .filter(lambda words: not stops(words, BOOK.game))
+)
 
 
 def evidence(words: str, confidence: float = 1.0, margin: float = 0.0) -> AcousticEvidence:
