@@ -15,6 +15,7 @@ from types import MappingProxyType
 
 from tangy_tui.language.answers import NO, YES, choice_in, choice_phrases, yes_or_no
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
+from tangy_tui.language.paraphrases import SURE as SURE_OF_PARAPHRASE
 from tangy_tui.language.steering import (
     IN_GAMES,
     WHILE_TEACHING,
@@ -112,7 +113,7 @@ def understand(
         return Say(text, 1.0, None)
     near, confidence = _nearest(text, margin, phrasebook, settings)
     if confidence >= SURE and near[0].confidence >= 1:
-        return _said(text, confidence, near)
+        return _said(text, confidence, near, SURE)
     if evidence.stop:
         return StopCommand(evidence.stop)
     learnt = tuple(
@@ -121,13 +122,15 @@ def understand(
     )
     if phrasebook.learns and not learnt and confidence < NO_TALK:
         return Say(text, min(confidence, UNSURE), ())
-    if learnt and (learnt[0].confidence >= SURE or learnt[0].confidence >= confidence):
+    least = SURE
+    if learnt and learnt[0].confidence >= min(SURE_OF_PARAPHRASE, confidence):
         near, learnt, confidence = learnt, near, learnt[0].confidence
+        least = SURE_OF_PARAPHRASE
     if confidence < UNSURE:
         return Say(text, confidence, ())
     named = {c.behaviour: c for c in (*reversed(learnt), *reversed(near))}
     rest = [c for c in (*near, *learnt) if c is named[c.behaviour]]
-    return _said(text, confidence, rest[:MOST_ALTERNATIVES])
+    return _said(text, confidence, rest[:MOST_ALTERNATIVES], least)
 
 
 def _steers(
@@ -149,10 +152,10 @@ def _nearest(
     return found, likelihood(found[0].confidence, phrasebook.known(text), margin, settings.shift)
 
 
-def _said(text: str, confidence: float, commands: Sequence[Command]) -> Say:
+def _said(text: str, confidence: float, commands: Sequence[Command], least: float) -> Say:
     told = round(confidence, 3)
     alike = tuple(replace(command, confidence=told) for command in commands)
-    return Say(text, told, alike, sure=confidence >= SURE)
+    return Say(text, told, alike, sure=confidence >= least)
 
 
 def clearly_heard(text: str) -> AcousticEvidence:
