@@ -1,7 +1,7 @@
 """How many spoken sentences that stop the robot do so, and how many others.
 
 Run by hand: `python -m tests.bench.spoken_stops` (needs flite, festival and espeak-ng). Figures are
-quoted on the sentences of `stop_unseen.toml`, which chose nothing and taught nothing. `--set`
+quoted on the sentences of `stop_unseen.toml`, which had chosen and taught nothing then. `--set`
 counts one of the sets of `stop_sentences.toml` instead, with models that were learnt from the
 others alone; the rules of `stop_sentence` know all four. Each is said by some of the voices, in
 turn. White noise, or the babble of other voices, is added to whole sentences. Other talk is what
