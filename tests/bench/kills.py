@@ -6,6 +6,11 @@ was acknowledged: it has to be in the log. Then the game is taken up as `--resum
 state, deck, calls, requests and beliefs are held against the log of the same game that nobody
 killed (simulated), or against the killed log itself (bench, whose games are never the same twice).
 
+A game on the bench is killed up to `LEGS` times, each time while it goes on after the kill before.
+Its log has to begin with what each kill left, and to call no number twice and in the order of an
+unkilled game of the same seed. One of `ENDS` games is then played to its end: the beliefs that the
+program prints have to be those of the logged responses.
+
     python -m tests.bench.kills --kills 200
     python -m tests.bench.kills --kills 20 --bench
 """
@@ -26,66 +31,20 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from tangy_profiles.game_records import GameBeginning, GameEnding, GameStep
-from tangy_profiles.game_world import BENCH, SIMULATED, GameWorld
-from tangy_profiles.people_records import ResponseGiven
-from tangy_profiles.store import Store
-from tangy_profiles.tracker import Tracker
-from tangy_tui.app.interruption import find_interrupted
-from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.policies import load_policy
+from tangy_profiles.game_world import BENCH, SIMULATED
+from tangy_tui.text.command_line import SWITCHING_ON
+from tests.bench.kill_checks import Found, compare, compare_end, compare_order, logged, steps_in
 
 TANGY = (sys.executable, "-P", "-c", "from tangy_tui.cli import main; main()")
 STEP = re.compile(r"^ *(\d+)\.? (?=\w)")
 """A line that tells a step that was carried out, and kept."""
 LATEST = 0.02  # s after a line until the kill
 START = 120.0  # s until a program says something, on a busy machine
-REPLAYED = (GameStep, ResponseGiven)
-
-
-@dataclass
-class Found:
-    """What came of killing games: counts, and how long each restart took (s)."""
-
-    kills: int = 0
-    acknowledged: int = 0
-    lost: int = 0
-    not_offered: int = 0
-    other: dict[str, int] = field(default_factory=dict)
-    """How often something was not the same, by what it was."""
-    restarts: list[float] = field(default_factory=list)
-    computed: list[float] = field(default_factory=list)
-    """How many s of each restart the program was computing."""
-    at_steps: list[int] = field(default_factory=list)
-    played_on: int = 0
-    """How many of the resumed games were played to their end."""
-
-    def differs(self, what: str) -> None:
-        """Count something that is not the same."""
-        self.other[what] = self.other.get(what, 0) + 1
-
-    def document(self) -> dict[str, object]:
-        """Return the figures."""
-        return {
-            "kills": self.kills,
-            "acknowledged_steps": self.acknowledged,
-            "lost_steps": self.lost,
-            "not_offered": self.not_offered,
-            "differences": self.other,
-            "restart_s": {"median": share(self.restarts, 50), "p95": share(self.restarts, 95)},
-            "computing_s": {"median": share(self.computed, 50), "p95": share(self.computed, 95)},
-            "played_on": self.played_on,
-            "killed_at_step": [min(self.at_steps, default=0), max(self.at_steps, default=0)],
-        }
-
-
-def share(values: Sequence[float], percent: int) -> float | None:
-    """Return the value that so many of 100 are not above; None of none."""
-    ordered = sorted(values)
-    return round(ordered[-(-percent * len(ordered) // 100) - 1], 2) if ordered else None
+LEGS = 5  # kills of one game on the bench
+FURTHER = 10  # steps after a resumption, fewer than these, until the next kill
+ENDS = 4  # one of so many games on the bench is played to its end
 
 
 def taught_folder(folder: Path) -> Path:
@@ -149,90 +108,24 @@ def kill_at(command: Sequence[str], steps: int, delay: float) -> int | None:
     return told if killed else None
 
 
-def logged(folder: Path) -> tuple[list[object], bool]:
-    """Return the steps and responses of the last game, in their order, and whether it ended."""
-    with Store.open(folder, write=False) as store:
-        begun = store.last(GameBeginning)
-        if begun is None:
-            return [], False
-        found: list[object] = []
-        over = False
-        for event in store.events(GameStep, ResponseGiven, GameEnding, after=begun.seq):
-            record = event.record
-            if isinstance(record, GameEnding):
-                over = True
-            elif isinstance(record, GameStep):
-                found.append((record.behaviour, record.target, record.strategy, record.numbers,
-                              record.state, record.after))  # fmt: skip
-            else:
-                found.append((event.person, event.strategy, event.complied))
-        return found, over
+def restarted(folder: Path, *, bench: bool) -> tuple[float, float]:
+    """Start the program with `--resume`; return after how many s the game stands there.
 
-
-def steps_in(events: Sequence[object]) -> list[tuple[object, ...]]:
-    """Return the steps among what was logged."""
-    return [event for event in events if isinstance(event, tuple) and len(event) == 6]
-
-
-def compare(folder: Path, world: GameWorld, found: Found) -> None:
-    """Take the killed game up, and count what is not as its log has it."""
-    workspace = Workspace(folder)
-    try:
-        past = find_interrupted(workspace, world)
-        if past is None:
-            found.not_offered += 1
-            return
-        activity, people = workspace.activity, past.beginning.people
-        last = past.steps[-1].after
-        assert last is not None
-        tracker = Tracker(activity, people)
-        past.follow(tracker, lambda change: None)
-        if tracker.state() != last:
-            found.differs("state by the tracker")
-        draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
-        called = [n for step in past.steps if step.behaviour in draws for n in step.numbers]
-        if past.called(activity) != called:
-            found.differs("calls")
-        order = past.order(activity.deck.numbers, called)
-        if order[: len(called)] != called or sorted(order) != sorted(activity.deck.numbers):
-            found.differs("deck")
-        if world == SIMULATED:
-            policy, _ = load_policy(workspace.store, activity)
-            supervision = workspace.supervision(policy, past.beginning.seed)
-            counts = workspace.memory(world).responses()
-            supervision.begin(past)
-            scene = supervision.world.scene()
-            if supervision.world.observe() != last:
-                found.differs("state of the world")
-            if list(scene.called) != called:
-                found.differs("calls in the world")
-            if list(scene.requests) != [u.id for u in last.users if u.request == "AR"] and sorted(
-                scene.requests
-            ) != sorted(u.id for u in last.users if u.request == "AR"):
-                found.differs("requests")
-            believed = supervision.persuasion.beliefs
-            for (person, strategy), (yes, no) in counts.items():
-                belief = believed[person][strategy]
-                if (belief.complied, belief.trials) != (yes, yes + no):
-                    found.differs("beliefs")
-    finally:
-        workspace.close()
-
-
-def restarted(folder: Path) -> tuple[float, float]:
-    """Start the program with `--resume`; return after how many s the game stands there, paused.
-
-    The second number is how many of them it was computing: the rest it waited for the machine.
+    In simulation it stands there paused. On the bench the game is read, and the robot's devices
+    are started next. The second number is how many of the seconds the program was computing: the
+    rest it waited for the machine.
     """
+    words = ["live", "--bench"] if bench else ["play", "--speed", "1000"]
+    there = SWITCHING_ON if bench else "paused"
     began = time.monotonic()
     process = subprocess.Popen(  # noqa: S603
-        [*TANGY, "play", "--plain", "--resume", "--speed", "1000", "--data", str(folder)],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+        [*TANGY, *words, "--plain", "--resume", "--data", str(folder)],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         start_new_session=True,
     )  # fmt: skip
     try:
         for line in lines_of(process):
-            if "paused" in line:
+            if there in line:
                 took = time.monotonic() - began
                 os.killpg(process.pid, signal.SIGKILL)
                 _, process.returncode, used = os.wait4(process.pid, 0)
@@ -252,53 +145,98 @@ def run(kills: int, *, bench: bool, seed: int, scratch: Path, every: int = 10) -
         bench: on the bench of simulated devices; else in simulation.
         seed: of the moments, and of the games.
         scratch: an empty folder.
-        every: of so many killed games one is played on to its end.
+        every: of so many killed games in simulation one is played on to its end.
     """
     rng = random.Random(seed)
     taught = taught_folder(scratch / "taught")
     found, whole = Found(), dict[int, list[object]]()
+    games = 0
     while found.kills < kills:
-        game = 1 + (seed + found.kills) % 5
-        if game not in whole and not bench:
+        games += 1
+        game = seed if bench else 1 + (seed + games) % 5
+        if game not in whole:
             folder = shutil.copytree(taught, scratch / f"whole-{game}")
-            subprocess.run(  # noqa: S603
-                playing(folder, game, bench=False), check=True, stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            )  # fmt: skip
+            play_to_the_end(folder, game, bench=bench)
             whole[game], over = logged(folder)
             assert over
-        folder = shutil.copytree(taught, scratch / f"killed-{found.kills}", dirs_exist_ok=True)
-        most = len(steps_in(whole[game])) if not bench else 40
-        told = kill_at(
-            playing(folder, game, bench=bench), rng.randrange(1, most), rng.uniform(0, LATEST)
-        )
-        events, over = logged(folder)
-        if told is None or over:  # it came to its end before it could be killed
-            shutil.rmtree(folder)
-            continue
-        found.kills += 1
-        steps = len(steps_in(events))
-        found.at_steps.append(steps)
-        found.acknowledged += told
-        found.lost += max(0, told - steps)
-        if not bench and events != whole[game][: len(events)]:
-            found.differs("the log before the kill")
-        compare(folder, BENCH if bench else SIMULATED, found)
-        if not bench:
-            took, computed = restarted(folder)
-            found.restarts.append(took)
-            found.computed.append(computed)
-        if found.kills % every == 0:
-            subprocess.run(  # noqa: S603
-                playing(folder, game, bench=bench, resume=True), input=b"go on\n",
-                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False,
-            )  # fmt: skip
-            after, over = logged(folder)
-            found.played_on += over and after[: len(events)] == events
+        folder = shutil.copytree(taught, scratch / f"killed-{games}")
+        if bench:
+            kill_again_and_again(folder, game, rng, whole[game], found, kills)
+            if games % ENDS == 0 and (left := logged(folder)) and not left[1]:
+                printed = play_to_the_end(folder, game, bench=True, resume=True)
+                compare_end(folder, left[0], whole[game], json.loads(printed)["beliefs"], found)
+        else:
+            kill_once(folder, game, rng, whole[game], found)
+            if found.kills % every == 0 and (left := logged(folder)) and not left[1]:
+                play_to_the_end(folder, game, bench=False, resume=True)
+                after, over = logged(folder)
+                found.played_on += over and after[: len(left[0])] == left[0]
         shutil.rmtree(folder)
-        if found.kills % 20 == 0:
-            print(json.dumps(found.document()), file=sys.stderr, flush=True)
+        print(json.dumps(found.document()), file=sys.stderr, flush=True)
     return found
+
+
+def play_to_the_end(folder: Path, seed: int, *, bench: bool, resume: bool = False) -> str:
+    """Play a game of a seed to its end, or an interrupted one; return what the program printed."""
+    command = playing(folder, seed, bench=bench, resume=resume) + (["--json"] if bench else [])
+    done = subprocess.run(  # noqa: S603
+        command, input="go on\n", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False,
+        text=True,
+    )  # fmt: skip
+    return done.stdout
+
+
+def kill_once(
+    folder: Path, game: int, rng: random.Random, whole: list[object], found: Found
+) -> None:
+    """Kill a simulated game, and hold it against the whole one."""
+    steps, delay = rng.randrange(1, len(steps_in(whole))), rng.uniform(0, LATEST)
+    told = kill_at(playing(folder, game, bench=False), steps, delay)
+    events, over = logged(folder)
+    if told is None or over:  # it came to its end before it could be killed
+        return
+    count(found, told, events)
+    if events != whole[: len(events)]:
+        found.differs("the log before the kill")
+    compare(folder, SIMULATED, found)
+    note_restart(found, folder, bench=False)
+
+
+def kill_again_and_again(
+    folder: Path, game: int, rng: random.Random, whole: list[object], found: Found, kills: int
+) -> None:
+    """Kill a game on the bench, again each time it goes on."""
+    before: list[object] = []
+    for leg in range(min(LEGS, kills - found.kills)):
+        steps = len(steps_in(before)) + rng.randrange(1, FURTHER)
+        command = playing(folder, game, bench=True, resume=leg > 0)
+        told = kill_at(command, steps, rng.uniform(0, LATEST))
+        events, over = logged(folder)
+        if events[: len(before)] != before:
+            found.differs("the log before an earlier kill")
+        if told is None or over:
+            break
+        before = events
+        count(found, told, events)
+        compare_order(events, whole, found)
+        compare(folder, BENCH, found)
+        note_restart(found, folder, bench=True)
+
+
+def count(found: Found, told: int, events: Sequence[object]) -> None:
+    """Count a kill, and the steps that the program told and its log has."""
+    steps = len(steps_in(events))
+    found.kills += 1
+    found.at_steps.append(steps)
+    found.acknowledged += told
+    found.lost += max(0, told - steps)
+
+
+def note_restart(found: Found, folder: Path, *, bench: bool) -> None:
+    """Note how long a restart took."""
+    took, computed = restarted(folder, bench=bench)
+    found.restarts.append(took)
+    found.computed.append(computed)
 
 
 def main() -> None:

@@ -20,7 +20,8 @@ from tangy_profiles.game_records import GameBeginning, GameStep
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
 from tangy_tui.app.watching import Guest
-from tests.bench.kills import TANGY, lines_of, share, taught_folder
+from tests.bench.kill_checks import share
+from tests.bench.kills import TANGY, lines_of, taught_folder
 from tests.support.terminal import Terminal
 
 WATCHED_SECONDS = 60.0
