@@ -12,10 +12,12 @@ from tangy_profiles.events import EventRecord
 from tangy_profiles.faults import CRITICAL
 from tangy_profiles.game_records import (
     FaultDiagnosed,
+    FaultMove,
     GameBeginning,
     GameChange,
     GameEnding,
     GameStep,
+    RecoveryEvent,
 )
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.reading import nearest, plain
@@ -273,4 +275,15 @@ def uncleared(store: Store) -> Fault | None:
             and (fault.critical or any(move.kind == "halted" for move in fault.moves))
         ),
         None,
+    )
+
+
+def record_all_well(store: Store, fault: Fault, by: str) -> None:
+    """Record that staff cleared the fault of the last game before the next, or before it goes on.
+
+    The game's time stood still meanwhile.
+    """
+    seconds = max([fault.seconds, *(move.seconds for move in fault.moves)])
+    store.append(
+        FaultMove(game=fault.game, fault=fault.id, move=RecoveryEvent("cleared", seconds, by=by))
     )

@@ -30,7 +30,7 @@ from tangy_tui.monitoring.fault import (
     Fault,
     Moved,
 )
-from tangy_tui.monitoring.games import uncleared
+from tangy_tui.monitoring.games import record_all_well, uncleared
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import injections
 from tangy_tui.text.faults import (
@@ -283,7 +283,10 @@ class FaultConsole:
             yes="all is well: begin the game",
             no="do not begin",
         )
-        return await self._screen.app.push_screen_wait(dialog)
+        if not await self._screen.app.push_screen_wait(dialog):
+            return False
+        record_all_well(self._workspace.store, fault, self._control.by)
+        return True
 
     def acknowledge(self, fault: Fault | None = None) -> None:
         """Acknowledge a fault (default: the one that halts the robot)."""

@@ -170,6 +170,9 @@ async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
             game = game_of(pilot)[1]
             await until_shown(pilot, lambda: not game.over)
             assert uncleared(workspace.store) is None
+            earlier = str(logged.body["game"]) if logged is not None else ""
+            (fault,) = [one for one in read_faults(workspace.store, earlier) if one.critical]
+            assert fault.status == OVER and fault.moves[-1].by
 
 
 @pytest.mark.slow
