@@ -1,9 +1,9 @@
 """Understanding of sentences outside the phrases of an activity, by its intent model.
 
 There are three tiers: *sure* (one behaviour is asked about), *unsure* (up to three are offered),
-and nothing. `SURE` is the lowest at which nothing heard was wrong in the tuning half of
-`tests/bench/sentences.py` and in `staff_sayings.toml`; the other thresholds were chosen by hand and
-checked on that half. No figure is quoted for these sentences.
+and nothing. `SURE` is the lowest at which no heard sentence and no typed request was wrong in the
+tuning half of `tests/bench/sentences.py` and in `staff_sayings.toml`. The other thresholds were
+chosen by hand and checked on that half. No figure is quoted for these sentences.
 """
 
 from __future__ import annotations
