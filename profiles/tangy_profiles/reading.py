@@ -7,7 +7,7 @@ import math
 import os
 import reprlib
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,15 +22,22 @@ _SHORT = reprlib.Repr()
 _SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxlong, _SHORT.maxother = 2, 100, 40, 40
 
 
-def nearest(word: str, words: Iterable[str]) -> str:
-    """Return the tail of an error sentence: the word probably meant, or all valid words."""
+def nearest(word: str, words: Iterable[str], given: Container[str] = ()) -> str:
+    """Return the tail of an error sentence: the words probably meant, or all valid words.
+
+    Args:
+        word: the wrong word.
+        words: the valid words.
+        given: words that are there already, so others that are as near are rather meant.
+    """
     known = sorted(words)
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.5)
-    if close:  # among equals, prefer transposed letters
+    if close:  # among equals, prefer words not given yet, then transposed letters
         ratios = [difflib.SequenceMatcher(None, one, word).ratio() for one in close]
         equal = [one for one, ratio in zip(close, ratios, strict=True) if ratio == ratios[0]]
-        meant = max(equal, key=lambda one: sorted(one) == sorted(word))
-        return f"did you mean {meant!r}?"
+        ranks = [(one not in given, sorted(one) == sorted(word)) for one in equal]
+        meant = [one for one, rank in zip(equal, ranks, strict=True) if rank == max(ranks)]
+        return f"did you mean {' or '.join(map(repr, sorted(meant)))}?"
     if not known:
         return "there is none to choose from."
     return "choose one of: " + ", ".join(known) + "."
@@ -235,7 +242,8 @@ class Table:
         """
         for key in self._values:
             if key not in self._taken:
-                raise self.wrong(key, f"is not a key here; {nearest(key, self._taken.union(also))}")
+                meant = nearest(key, self._taken.union(also), self._values)
+                raise self.wrong(key, f"is not a key here; {meant}")
 
 
 def read_toml(path: Path) -> Table:

@@ -102,6 +102,14 @@ def test_the_nearest_word_is_named_or_all_words_are_listed() -> None:
     assert nearest("zzz", []) == "there is none to choose from."
 
 
+def test_of_words_as_near_those_not_there_yet_are_named_or_else_all() -> None:
+    assert nearest("tems", ["items", "teams"]) == "did you mean 'items' or 'teams'?"
+    assert nearest("tems", ["items", "teams"], ["teams"]) == "did you mean 'items'?"
+    assert nearest("tems", ["items", "teams"], ["items"]) == "did you mean 'teams'?"
+    assert nearest("tiems", ["items", "teams"], ["items"]) == "did you mean 'teams'?"
+    assert nearest("teamss", ["items", "teams"], ["teams"]) == "did you mean 'teams'?"
+
+
 @given(st.text(st.characters(exclude_categories=())))
 def test_plain_text_has_nothing_that_acts_on_a_terminal(text: str) -> None:
     shown = plain(text)

@@ -37,7 +37,7 @@ class Section:
         """Record the keys that are not known here as mistakes."""
         for key in self._values:
             if key not in known:
-                problem = f"is not a key here; {nearest(key, known)}"
+                problem = f"is not a key here; {nearest(key, known, self._values)}"
                 self.source.wrong((*self.path, key), problem, cause=True)
 
     def text(self, key: str, default: str | None = None) -> str:
