@@ -223,6 +223,12 @@ class HomeScreen(TangyScreen[None]):
     def on_screen_resume(self, event: events.ScreenResume) -> None:
         """Update the progress once the choices are drawn, which need not wait for it."""
         self.call_after_refresh(self._show_progress)
+        self.call_after_refresh(self._take_keys)
+
+    def _take_keys(self) -> None:
+        """Focus the choices: while hidden behind another screen they could not be focused."""
+        if self.focused is None:
+            self._menu.focus()
 
     def _show_progress(self) -> None:
         self._menu.show(self._states())
