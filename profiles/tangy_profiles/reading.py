@@ -21,6 +21,12 @@ LARGEST_PROFILE = 1_000_000  # bytes; the largest of ours is 20 kB
 _SHORT = reprlib.Repr()
 _SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxlong, _SHORT.maxother = 2, 100, 40, 40
 
+_MET = {
+    "Illegal character '\\n'": "this text has no quotation mark at its end",
+    "Invalid value": "this is no value; a text needs quotation marks around it",
+}
+"""What the TOML parser says of the commonest mistakes, in words for authors."""
+
 
 def nearest(word: str, words: Iterable[str], given: Container[str] = ()) -> str:
     """Return the tail of an error sentence: the words probably meant, or all valid words.
@@ -246,6 +252,14 @@ class Table:
                 raise self.wrong(key, f"is not a key here; {meant}")
 
 
+def _in_words(error: tomllib.TOMLDecodeError) -> str:
+    """Say what an author can look for where the parser names only what it met."""
+    told = str(error)
+    for met, words in _MET.items():
+        told = told.replace(met, words)
+    return told
+
+
 def read_toml(path: Path) -> Table:
     """Read a TOML file.
 
@@ -262,7 +276,7 @@ def read_toml(path: Path) -> Table:
     except UnicodeDecodeError:
         raise ProfileError(f"{name}: is not UTF-8 text.") from None
     except tomllib.TOMLDecodeError as error:
-        raise ProfileError(plain(f"{name}: is not TOML: {error}.")) from None
+        raise ProfileError(plain(f"{name}: is not TOML: {_in_words(error)}.")) from None
     except ValueError:  # an integer with too many digits
         raise ProfileError(f"{name}: holds a number of thousands of digits.") from None
     except RecursionError:

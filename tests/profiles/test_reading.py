@@ -95,6 +95,21 @@ def test_a_key_that_nobody_took_is_refused_with_the_nearest_one() -> None:
         table.close(also=["tilt"])
 
 
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ('b = "open', "this text has no quotation mark at its end (at line 2, column 10)"),
+        ("b = open", "a text needs quotation marks around it (at line 2, column 5)"),
+    ],
+)
+def test_a_text_without_its_quotation_marks_is_named(tmp_path: Path, line: str, told: str) -> None:
+    file = tmp_path / "a.toml"
+    file.write_text(f"a = 1\n{line}\nc = 2\n", encoding="utf-8")
+    with pytest.raises(ProfileError) as raised:
+        read_toml(file)
+    assert told in str(raised.value)
+
+
 def test_the_nearest_word_is_named_or_all_words_are_listed() -> None:
     assert nearest("jok", ["joke", "greeting"]) == "did you mean 'joke'?"
     assert nearest("zzz", ["joke", "greeting"]) == "choose one of: greeting, joke."
