@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="List activities, check their files, write new ones. Without a verb: list.",
+    help="List activities, check their files, write new ones. Without a command: list them.",
 )
 
 LARGEST_QUESTIONS = 1_000_000  # bytes of a file of questions
@@ -43,7 +43,7 @@ def activities(context: typer.Context, as_json: Json = False) -> None:
 
 @app.command("list")
 def activity_list(as_json: Json = False) -> None:
-    """List the activities that come with Tangy, and those that other packages bring."""
+    """List the activities of Tangy and of other packages."""
     from tangy_profiles.activity import known_activities, load_activity, shipped_activities
     from tangy_profiles.errors import ProfileError
 
@@ -74,7 +74,9 @@ def activity_check(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Check activities and fault rules: every mistake is one line, with the nearest valid word.
+    """Check activities and fault rules.
+
+    Every mistake is one line, with the nearest valid word.
 
     A file that holds `faults` is read as fault rules. The exit status is 2 if there is a mistake.
     """
@@ -141,7 +143,10 @@ def activity_try(
     seed: Seed = 1,
     as_json: Json = False,
 ) -> None:
-    """Play one game as the activity's file expects it, and print it step by step."""
+    """Play a game as the activity's file expects it.
+
+    It prints the game step by step.
+    """
     from tangy_profiles.activity import load_activity
     from tangy_tui.app.trying import tried_game
     from tangy_tui.text.activities import TRIED, people_did, tried_lines
@@ -163,7 +168,10 @@ def activity_import(
     title: Annotated[str, typer.Option(help="What the activity is called.")],
     folder: Annotated[Path, typer.Option(help="Where the files go.")] = Path(),
 ) -> None:
-    """Make an activity from a file of questions: a table, and a file that can be played."""
+    """Make an activity from a file of questions.
+
+    It writes the questions as a table, and a file that you can play.
+    """
     from tangy_profiles.activity import known_activities
     from tangy_profiles.defaults import QUESTIONS_ACTIVITY
     from tangy_profiles.given_file import read_given_text
@@ -200,7 +208,10 @@ def activity_use(
 def activity_new(
     folder: Annotated[Path, typer.Argument(help="Where the files go.")] = Path(),
 ) -> None:
-    """Ask about a new activity, and write a file for it that can be played at once."""
+    """Write the file of a new activity; it asks you.
+
+    You can play it at once.
+    """
     from tangy_tui.text import activity_template as template
     from tangy_tui.text.game_template import ASK_POINTS, game_file
 
@@ -275,7 +286,7 @@ def activity_phrases(
     users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
-    """Show the phrasebook: what you can say, and how each word is pronounced."""
+    """Show what you can say, and how it is pronounced."""
     from tangy_tui.learning.own_phrases import forget_phrase, own_phrases, personal_activity
     from tangy_tui.speech.phrase_list import list_phrases
 
@@ -304,7 +315,10 @@ def activity_hear(
     activity: ActivityName = DEFAULT_ACTIVITY,
     as_json: Json = False,
 ) -> None:
-    """Say words, or ARPAbet phones, as Tangy expects to hear them, and print the phones."""
+    """Say words or ARPAbet phones, as Tangy hears them.
+
+    It prints the phones.
+    """
     import asyncio
 
     from tangy_profiles.activity import load_activity

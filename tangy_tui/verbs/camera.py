@@ -143,7 +143,9 @@ def capture(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Record a camera's pictures with what was seen, to be labelled; Ctrl-C ends it.
+    """Record pictures of a camera, to label them.
+
+    Ctrl+C ends it.
 
     Beside each picture is a JSON file with the camera's state, what was "seen" (with --cards) and
     an empty "label": write true there if it was seen rightly, or what is really in the picture.

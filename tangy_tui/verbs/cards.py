@@ -47,7 +47,9 @@ def cards_print(
     activity: ActivityName = DEFAULT_ACTIVITY,
     as_json: Json = False,
 ) -> None:
-    """Write cards as a PDF to print and cut, with a call sheet for staff, or as pictures.
+    """Write cards as a PDF to print, or as pictures.
+
+    The PDF has a call sheet for staff.
 
     A card's number and the deck's seed always give the same card: print a lost one again with
     `--first 17 --count 1`. Print in full size ("100 %") and cut along the marks.

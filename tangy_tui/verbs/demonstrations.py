@@ -39,7 +39,7 @@ def list_them(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """List the demonstrations: teacher, date, length, coverage, and problems."""
+    """List the demonstrations and their problems."""
     from tangy_tui.learning.demonstration_rows import list_rows
     from tangy_tui.learning.library import read_library
     from tangy_tui.ui import reports
@@ -90,7 +90,10 @@ def delete(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Put demonstrations away; Tangy does not learn from them until you restore them."""
+    """Put demonstrations away; `restore` brings them back.
+
+    Tangy does not learn from them meanwhile.
+    """
     _change(data, activity, as_json, lambda editor: editor.delete(*demonstrations))
 
 
@@ -161,7 +164,7 @@ def conflicts(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Show the situations in which demonstrations differ, side by side."""
+    """Show where demonstrations disagree, side by side."""
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.documents import conflict_document
     from tangy_tui.text.situations import conflict_lines
@@ -201,7 +204,10 @@ def resolve(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Say which answer is right in a situation; Tangy does not learn from the others."""
+    """Say which answer is right in a situation.
+
+    Tangy does not learn from the others.
+    """
 
     def settle(editor: Editor) -> Edit:
         library = editor.library
@@ -290,7 +296,10 @@ def accepted(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """List the surprises that a teacher accepted as all right; take one back."""
+    """List the surprises that a teacher accepted.
+
+    --take-back makes one a surprise again.
+    """
     from tangy_tui.monitoring.accepted import read_accepted
     from tangy_tui.monitoring.accepted import take_back as take_it_back
     from tangy_tui.monitoring.evidence import mismatch_words

@@ -47,7 +47,9 @@ def drill(
     as_json: Json = False,
     ascii_only: Ascii = False,
 ) -> None:
-    """Rehearse faults on the table-top: say what is wrong and what you do, and get a score.
+    """Rehearse faults, and get a score.
+
+    Say what is wrong in each round, and what you would do.
 
     With --json the answers come as lines on standard input. --scores lists the sheets of everybody,
     or of --who.

@@ -20,9 +20,7 @@ from tangy_tui.verbs.common import ActivityName, Data, Json, print_json
 if TYPE_CHECKING:
     from tangy_tui.experiments.sweep import Where
 
-app = typer.Typer(
-    rich_markup_mode=None, help="Run the paper's scenarios again, beside the figures it printed."
-)
+app = typer.Typer(rich_markup_mode=None, help="Repeat the paper's experiments, beside its figures.")
 
 Seed = Annotated[int, typer.Option(min=0, help="Another seed, other games.")]
 Jobs = Annotated[int, typer.Option(help="How many processes to use; -1: one for each core.")]
@@ -51,7 +49,10 @@ def first(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Learn: demonstrations until the policy is exact, five teachers, mistakes, minutes."""
+    """Learn: how many demonstrations the policy needs.
+
+    Five teachers, their mistakes, and the minutes they take.
+    """
     from tangy_tui.experiments.scenarios import Learning, learning
 
     asked = Learning(
@@ -73,7 +74,10 @@ def second(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Persuade: optimal strategies over interactions, and every way to choose one."""
+    """Persuade: how often the best strategy is chosen.
+
+    It compares all methods of choosing one, over the interactions.
+    """
     from tangy_tui.experiments.scenarios import PersuasionScenario, persuasion
 
     asked = PersuasionScenario(activity, users, people, seed)
@@ -97,7 +101,7 @@ def third(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Recover: games with induced faults, their diagnoses and recoveries.
+    """Recover: faults induced, diagnosed, recovered from.
 
     They are played on the bench: cards, faces, scans and signs are rendered, and go through the
     drivers and all that a real robot has. --simulated leaves that out.

@@ -56,7 +56,7 @@ def faces_who(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Say whose faces pictures or a camera show; or that it is nobody Tangy knows.
+    """Say whose faces pictures or a camera show.
 
     `likeness` runs from 0 (as like as a stranger) to 1 (as like as the person's own pictures).
     From 0.4 on Tangy recognises the person, unless somebody else is nearly as like. It keeps
@@ -141,7 +141,7 @@ def faces_forget(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Forget a person's face and consent; everything else about them stays."""
+    """Forget a person's face and consent only."""
     from tangy_hw.perception.faces.face_store import forget_face
 
     with open_workspace(data, DEFAULT_ACTIVITY, MOST_PEOPLE) as workspace:

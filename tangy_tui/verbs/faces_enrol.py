@@ -59,7 +59,7 @@ def faces_enrol(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Know a person's face from a camera, or from a folder of pictures of them.
+    """Learn a person's face from a camera or pictures.
 
     They are asked first, here on the terminal; or --consent says how they agreed, which goes into
     the log. Only features are kept, no pictures; `tangy faces forget` deletes them.

@@ -39,7 +39,10 @@ def learn(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Learn a policy from the demonstrations, after settling what they disagree about."""
+    """Learn a policy from the demonstrations.
+
+    First settle where they disagree.
+    """
     from dataclasses import replace
 
     from tangy_tui.learning.forest_cache import ForestCache
@@ -115,7 +118,10 @@ def policy(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Show what was learnt: every situation, what Tangy does there, and why; or compare two."""
+    """Show the policy, explain it, or compare two.
+
+    It lists every situation, and what Tangy does in it.
+    """
     with open_workspace(data, activity, REGISTERED, write=False) as workspace:
         if list_all:
             _list_policies(workspace, as_json)

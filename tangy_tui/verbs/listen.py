@@ -65,9 +65,9 @@ def listen(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Hear spoken commands in WAV files, and say what was understood.
+    """Recognise spoken commands in WAV files.
 
-    With --text the words are read from a file, as if they had been heard clearly.
+    With --text it reads the words from a file, as if it had heard them clearly.
 
     With --bench every WAV below DIR is one whole utterance, and what was said in it is its name
     (call_number-3.wav) or that of its folder (call number/3.wav). Everything that is no command is

@@ -124,12 +124,12 @@ def live(
     as_json: common.Json = False,
     ascii_only: common.Ascii = False,
 ) -> None:
-    """Let Tangy facilitate games with its devices, by the policy it has learnt.
+    """Play games with a robot by the policy learnt.
 
-    The robot's profile names its drivers (see docs/robots.md). With --bench the same drivers speak
-    to simulated devices over their own wires. Devices are watched all the time; what goes wrong is
-    diagnosed, and a critical fault stops the robot until staff clear it. With --mic it listens:
-    "stop the robot" stops it at once, and what it asks can be answered by voice.
+    The robot's file names its drivers (see docs/robots.md). With --bench the same drivers talk to
+    simulated devices. Tangy monitors the devices all the time and diagnoses faults; a critical
+    fault stops the robot until staff clear it. With --mic Tangy listens: "stop the robot" stops
+    it at once, and you can answer its questions by voice.
     """
     from tangy_hw.perception.requests.source_names import read_corners
     from tangy_tui.console.inputs import keys_from_terminal

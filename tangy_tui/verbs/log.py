@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="List the games, or show one step by step. Without a verb: list.",
+    help="List the games, or show one step by step. Without a command: list them.",
 )
 
 Which = Annotated[
@@ -69,7 +69,10 @@ def log_list(data: Data = None, as_json: Json = False) -> None:
 
 @app.command("show")
 def log_show(game: Which, activity: Of = "", data: Data = None, as_json: Json = False) -> None:
-    """Show one game step by step: what Tangy saw, did and said, responses, faults."""
+    """Show a game: what Tangy saw, did and said.
+
+    It goes step by step, with responses and faults.
+    """
     from tangy_tui.monitoring.games import find_game, read_games
     from tangy_tui.monitoring.replay import read_replays
     from tangy_tui.text.log import replay_lines
@@ -120,7 +123,9 @@ def log_world(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Set where a game was played, if the list of games is wrong or does not say.
+    """Set where a game was played.
+
+    Use it if the list of games is wrong, or does not say.
 
     Version 0.6.0 and before did not log it, and the times of a game do not always show it.
     People's responses count only for games of the same world.

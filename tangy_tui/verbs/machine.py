@@ -43,7 +43,9 @@ def doctor(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Check this machine: terminal, store, speech, voice, microphone, camera.
+    """Check this machine, and a robot with --robot.
+
+    It checks the terminal, data folder, speech, voice, microphone and camera.
 
     With --robot it also tries each driver in the robot's file, without moving anything, sends each
     contact in that file a test message, and draws the robot's body. The exit status is 1 if the

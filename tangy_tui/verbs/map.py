@@ -63,7 +63,9 @@ def draw_map(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Draw a map from a log of scans, or from a room's profile, and write it as ROS does.
+    """Draw a map from scans, a drive, or a room's file.
+
+    It writes the map in the format of ROS.
 
     A log gives the poses that stand in it; `--match` is for logs in which only the wheels counted
     them: it matches the scans, and closes loops. A map that does not close is refused. What

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 LINUX = "arecord -q -t raw -f S16_LE -r 16000 -c 1 | ssh ROBOT tangy mic"
 MACOS = "rec -q -t raw -b 16 -e signed -r 16000 -c 1 - | ssh ROBOT tangy mic"
 
-HELP = f"""Hand a laptop's microphone on to the Tangy that runs here with --mic socket.
+HELP = f"""Send a laptop's microphone to the Tangy on this robot.
+
+    That Tangy was started with --mic socket.
 
 Run it from the laptop, beside the connection in which Tangy runs. ROBOT is how you log in there.
 

@@ -45,7 +45,9 @@ def check(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Check a microphone in a minute, and listen with it as suits it and the room from then on.
+    """Check a microphone, and adapt Tangy to it.
+
+    It takes a minute. Tangy keeps the settings for this microphone and room.
 
     Be quiet for 3 seconds, then say what is shown: six commands, three other sentences. Nothing
     of it is kept but the settings. A WAV is taken for what you say: record 3 seconds of quiet,

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="Who takes part, and what works with them. Without a verb: list, with its options.",
+    help="Show who takes part, and what works with them. Without a command: list them.",
 )
 
 Who = Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")]
@@ -103,7 +103,7 @@ def people_show(
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
-    """Show one person: what works, how sure that is, and the history game by game."""
+    """Show what works with a person, game by game."""
     from tangy_tui.ui import people_report
 
     with open_workspace(data, activity, users, write=False) as workspace:
@@ -122,7 +122,10 @@ def people_history(
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
-    """List what a person was asked to do, game by game, with the numbers `void` takes."""
+    """List what a person was asked to do.
+
+    It goes game by game, with the numbers that `void` takes.
+    """
     from tangy_tui.text.documents import entry_document
     from tangy_tui.ui import people_report
 
@@ -148,7 +151,7 @@ def people_void(
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
-    """Let a response no longer count ("that was not compliance")."""
+    """Void a response ("that was not compliance")."""
     with _changing(data, activity, users, person, as_json, world) as (workspace, found):
         memory = workspace.memory(_world(world))
         entry = _numbered(memory.history(found.id), number, found)
@@ -175,7 +178,7 @@ def people_feedback(
     world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
-    """Answer a waiting request later: say what the person did."""
+    """Say later what a person did when asked."""
     with _changing(data, activity, users, person, as_json, world) as (workspace, found):
         memory = workspace.memory(_world(world))
         _known(strategy, workspace.activity.strategies, "strategy")
@@ -227,9 +230,9 @@ def people_method(
     users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
-    """Choose how Tangy persuades one person; options you leave out stay as they are.
+    """Choose how Tangy persuades one person.
 
-    Only `default` returns to what the activity sets.
+    Options you leave out stay as they are. Only `default` returns to what the activity sets.
     """
     from tangy_profiles.persuading import DEFAULT
 
@@ -248,9 +251,9 @@ def people_undo(
     users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
-    """Undo the last void, feedback, switch or method of a person; again: the one before.
+    """Undo the last void, feedback, switch or method.
 
-    A new name is not undone: rename the person again.
+    Again, and it undoes the one before. A new name is not undone: rename the person again.
     """
     from tangy_tui.text.people import change_words
 
@@ -269,7 +272,7 @@ def people_rename(
     users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
-    """Give a person another name; what Tangy has learnt of them stays."""
+    """Rename a person; Tangy keeps what it has learnt."""
     from tangy_tui.speech.name_conflicts import find_clash
     from tangy_tui.speech.name_pronunciation import how_said
 

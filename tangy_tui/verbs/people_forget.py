@@ -39,7 +39,9 @@ def people_forget(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Forget a person: name, how it is said, voice and face. It cannot be taken back.
+    """Forget a person: name, voice and face.
+
+    You cannot undo this.
 
     The name also goes from what was typed or said, in the log and in Tangy's own reports and logs
     in the data folder; other files there that hold it are named and stay as they are. What worked

@@ -31,7 +31,10 @@ Who = Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")]
 
 
 def people_add(name: Name, guest: Guest = False, data: Data = None, as_json: Json = False) -> None:
-    """Add a person from the next game on. Up to 24 people can take part."""
+    """Add a person from the next game on.
+
+    Up to 24 people can take part.
+    """
     from tangy_tui.app.joining import let_join
 
     with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:
@@ -41,7 +44,10 @@ def people_add(name: Name, guest: Guest = False, data: Data = None, as_json: Jso
 
 
 def people_archive(person: Who, data: Data = None, as_json: Json = False) -> None:
-    """Archive a person. Tangy keeps what it knows about them; bring-back undoes it."""
+    """Archive a person; `bring-back` undoes it.
+
+    Tangy keeps what it knows about them.
+    """
     from tangy_tui.app.register import archive_person
 
     with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:

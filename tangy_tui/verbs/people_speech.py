@@ -40,7 +40,10 @@ def people_pronounce(
     users: Users = REGISTERED,
     as_json: Json = False,
 ) -> None:
-    """Say how a person's name is pronounced, so that it is heard when it is spoken."""
+    """Say how a person's name is pronounced.
+
+    Tangy then recognises it when you say it.
+    """
     from tangy_tui.speech.name_conflicts import find_clash
     from tangy_tui.speech.name_pronunciation import accept_suggested, how_said
 

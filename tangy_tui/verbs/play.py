@@ -87,12 +87,12 @@ def play(
     as_json: common.Json = False,
     ascii_only: common.Ascii = False,
 ) -> None:
-    """Let Tangy facilitate games in simulation, by the policy it has learnt.
+    """Play games in simulation by the policy learnt.
 
-    Where nobody has shown it what to do, it asks a teacher, and goes on with the answer. Without
-    one (--headless or --json) the game stops there. What goes wrong is diagnosed and recovered
-    from; a critical fault halts Tangy until staff clear it, and without staff ends the game.
-    With --camera that device is real: cover its lens, and Tangy asks to have it uncovered.
+    If nobody has shown Tangy what to do, it asks a teacher and goes on with the answer. Without a
+    teacher (--headless or --json) the game stops there. Tangy diagnoses faults and recovers from
+    them; a critical fault halts it until staff clear it, and ends a game without staff.
+    With --camera that camera is real: cover its lens, and Tangy asks you to uncover it.
     """
     from tangy_tui.console.inputs import keys_from_terminal
     from tangy_tui.learning.policies import need_policy
@@ -181,7 +181,7 @@ def demo(
     as_json: common.Json = False,
     ascii_only: common.Ascii = False,
 ) -> None:
-    """See the whole story in six scenes: teaching, learning, a game, a fault."""
+    """See a story: teaching, learning, a game, a fault."""
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory(prefix="tangy-demo-") as scratch, open_workspace(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="Reports on a session, a person, the house; tables. Without a verb: the last session.",
+    help="Report on a session, a person, or the house. Without a command: on the last session.",
 )
 
 Which = Annotated[
@@ -64,7 +64,10 @@ def report_session(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Report on a session: what needs attention, people, waits, numbers, faults, staff."""
+    """Report on a session.
+
+    What needs attention, people, waits, numbers, faults, and what staff did.
+    """
     from tangy_tui.monitoring.games import find_games, read_games
     from tangy_tui.monitoring.house import last_session
     from tangy_tui.monitoring.session import read_session
@@ -102,7 +105,10 @@ def report_person(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Report on a person over time: game by game, how long they waited, what works with them."""
+    """Report on a person over time.
+
+    Game by game: how long they waited, and what works with them.
+    """
     from tangy_tui.monitoring.house import of_world, people_over_time
     from tangy_tui.pages.house import person_page
     from tangy_tui.text import house as text
@@ -130,7 +136,10 @@ def report_house(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Report on the house, month by month: games, people, waits, faults of one or more robots."""
+    """Report on the house, month by month.
+
+    Games, people, waits and faults, of one or more robots.
+    """
     from tangy_tui.monitoring.house import by_month, of_world, people_over_time
     from tangy_tui.pages.house import house_page
     from tangy_tui.text import house as text
@@ -162,7 +171,9 @@ def report_tables(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Write all games as tables for researchers: people by id, each row with its world.
+    """Write all games as tables for researchers.
+
+    People have ids instead of names; each row has its world.
 
     docs/data-dictionary.md says what each column means.
     """

@@ -37,7 +37,7 @@ def say(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Speak a text as in a game, its numbers as a caller says them, and print it.
+    """Speak a text as in a game, and print it.
 
     Where nothing can speak (no espeak-ng, no sound card), the text is printed, the reason goes to
     stderr, and the status is 0, as a game would go on as well. It is 1 where --out, --voices or a

@@ -50,7 +50,7 @@ def sensors(
     as_json: Json = False,
     ascii_only: Ascii = False,
 ) -> None:
-    """Show the state of the robot's devices, what its cameras see, and the last card they read.
+    """Show the robot's devices and its cameras' pictures.
 
     By lines the status is 0 if all cameras that have a source work, and 1 if one does not.
     """

@@ -19,9 +19,9 @@ def serve(
     port: Annotated[int, typer.Option(min=1, max=65535, help="The port to listen at.")] = PORT,
     data: Data = None,
 ) -> None:
-    """Show another Tangy's game in a browser, as `tangy watch` does in a terminal.
+    """Show the game of another Tangy in a browser.
 
-    It prints an address with a token, which is new each time: without it nobody gets in.
+    It prints an address with a token, which is new each time. Nobody gets in without it.
     """
     from tangy_tui.app.serving import (
         EVERYWHERE,

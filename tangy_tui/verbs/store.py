@@ -13,7 +13,10 @@ app = typer.Typer(rich_markup_mode=None, help="Check the log in which Tangy keep
 
 @app.command("check")
 def store_check(data: Data = None, as_json: Json = False) -> None:
-    """Read the whole log and list its problems; the exit status is 1 if there are any."""
+    """Read the whole log, and list its problems.
+
+    The exit status is 1 if there are any.
+    """
     from tangy_profiles.errors import StoreError
     from tangy_profiles.store import Store
     from tangy_tui.app.workspace import data_folder
@@ -42,7 +45,10 @@ def store_check(data: Data = None, as_json: Json = False) -> None:
 
 @app.command("accept")
 def store_accept(data: Data = None, as_json: Json = False) -> None:
-    """Accept that events of the log are gone for good, so that Tangy stops reminding you."""
+    """Accept that events of the log are lost.
+
+    Tangy then stops reminding you.
+    """
     from tangy_profiles.losses import loss_words
     from tangy_profiles.store import Store
     from tangy_tui.app.workspace import data_folder

@@ -67,7 +67,10 @@ def teach(
     as_json: common.Json = False,
     ascii_only: common.Ascii = False,
 ) -> None:
-    """Demonstrate an activity: say or type what Tangy should do, and confirm with Y."""
+    """Demonstrate an activity to Tangy.
+
+    Say or type what it should do, and confirm each command with Y.
+    """
     from tangy_tui.app.teacher_profile import teacher_name
     from tangy_tui.app.workspace import data_folder
     from tangy_tui.console.inputs import is_typed, keys_from_terminal, line_reader

@@ -30,7 +30,7 @@ def watch(
     as_json: JsonLines = False,
     ascii_only: Ascii = False,
 ) -> None:
-    """Watch the game that another Tangy runs, and stop the robot if need be.
+    """Watch the game of another Tangy, and stop it if needed.
 
     It shows what happens as it happens, and changes nothing. ctrl+x (--stop) stops the robot at
     once; the log says who stopped it.

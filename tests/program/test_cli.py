@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from subprocess import CompletedProcess
 from typing import Any
 
 import pytest
+import typer
+
+from tangy_tui.verbs.catalogue import VERBS
+from tangy_tui.verbs.program import app
 
 Tangy = Callable[..., CompletedProcess[str]]
 
@@ -211,6 +215,22 @@ def test_in_words_every_verb_says_what_it_did(
     done = tangy(*arguments, "--data", taught)
     assert done.returncode == 0, done.stderr
     assert said in done.stdout
+
+
+def helps(command: Any, name: str) -> Iterator[str]:
+    """Yield the help of a command and of its subcommands, as in a window of 80 columns."""
+    context = command.make_context(name, [], resilient_parsing=True, max_content_width=80)
+    yield command.get_help(context)
+    for below, subcommand in getattr(command, "commands", {}).items():
+        yield from helps(subcommand, f"{name} {below}")
+
+
+@pytest.mark.slow
+def test_no_list_of_commands_cuts_a_sentence() -> None:
+    pages = list(helps(typer.main.get_command(app), "tangy"))
+    pages += [page for name, verb in VERBS.items() for page in helps(verb.load(name), name)]
+    lines = [line for page in pages for line in page.splitlines() if not line.startswith("Usage")]
+    assert [line for line in lines if line.endswith("...")] == []
 
 
 @pytest.mark.parametrize(
