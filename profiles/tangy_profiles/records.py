@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import FrozenInstanceError, dataclass, fields
+from threading import Lock
 from typing import Any, ClassVar, Literal, TypeAlias, TypeVar, dataclass_transform
 
 from tangy_profiles import codec
@@ -15,6 +16,9 @@ Older: TypeAlias = Callable[[int, dict[str, Any]], dict[str, Any]]
 
 VERSION_KEY = "v"
 """The key of a body's version; without it, the version is 1."""
+
+
+_GENERATING = Lock()
 
 
 class EventRecord:
@@ -34,8 +38,10 @@ class EventRecord:
     def __init__(self, **values: Any) -> None:
         """Create the record of an event from the values of its fields."""
         made = type(self)
-        declared: Any = dataclass(frozen=True, kw_only=True, eq=False, repr=False)(made.DECLARED)
-        made.__init__ = declared.__init__  # type: ignore[method-assign]
+        with _GENERATING:
+            if "__init__" not in made.__dict__:
+                declared: Any = dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+                made.__init__ = declared(made.DECLARED).__init__  # type: ignore[method-assign]
         self.__init__(**values)  # type: ignore[misc]  # the one of this class from now on
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -43,6 +49,10 @@ class EventRecord:
 
     def __delattr__(self, name: str) -> None:
         raise FrozenInstanceError(f"cannot delete field {name!r}")
+
+    def __setstate__(self, state: Any) -> None:
+        for name, value in state[1].items():  # of the slots, when a copy is made
+            object.__setattr__(self, name, value)
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and self._values() == EventRecord._values(other)
@@ -65,6 +75,7 @@ class EventRecord:
 
 
 R = TypeVar("R", bound=EventRecord)
+
 
 KINDS: dict[str, type[EventRecord]] = {}
 """The record class of each kind whose module is imported; `events.kinds` has all."""

@@ -41,10 +41,22 @@ StaffDeed = Literal[
 """What staff, or the program beside its behaviours, did in a game."""
 
 
+BEGINNINGS: dict[str, StaffDeed] = {
+    "a fault was brought about: ": "fault injected",
+    "a fault was lifted: ": "fault lifted",
+    "faults are to be brought about: ": "faults planned",
+}
+"""How sentences of the first version began that reports have to know; others are notes."""
+
+
 def _staff_action(version: int, body: dict[str, Any]) -> dict[str, Any]:
-    """Keep the sentence of the first version as a note."""
+    """Convert the sentence of the first version: an injected fault, or else a note."""
     kept = {key: value for key, value in body.items() if key != "what"}
-    return {**kept, "did": "noted", "detail": body.get("what")}
+    what = body.get("what")
+    for beginning, did in BEGINNINGS.items():
+        if isinstance(what, str) and what.startswith(beginning):
+            return {**kept, "did": did, "detail": what.removeprefix(beginning)}
+    return {**kept, "did": "noted", "detail": what}
 
 
 @kind("staff action", version=2, older=_staff_action)

@@ -11,5 +11,5 @@ def wav_seconds(path: Path) -> float:
     try:
         with wave.open(str(path)) as file:
             return float(file.getnframes() / file.getframerate())
-    except (OSError, EOFError, wave.Error, ZeroDivisionError):
+    except (OSError, EOFError, RuntimeError, wave.Error, ZeroDivisionError):
         return 0.0

@@ -29,6 +29,8 @@ def keep_choice(path: Path, key: str, choice: str) -> None:
     Raises:
         TangyError: the file cannot be written.
     """
+    if not choice.isprintable():  # it could not be read again
+        raise TangyError(plain(f"{path}: {choice!r} cannot be stored."))
     new = path.with_name(f"{path.name}.new")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

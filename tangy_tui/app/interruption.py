@@ -49,14 +49,16 @@ def take_up(workspace: Workspace, past: PastGame) -> TakenUp:
     Raises:
         TangyError: its room is not available, or is too small.
     """
+    room = workspace.chosen_room
     if not workspace.room_is_given:
-        room = past.beginning.room
-        workspace.chosen_room = find_room(workspace.store.folder, room) if room else None
+        named = past.beginning.room
+        room = find_room(workspace.store.folder, named) if named else None
     there = past.beginning.people
     new = tuple(person for person in workspace.names if person not in there)
     joins = new if can_join(workspace, past) else ()
-    if workspace.chosen_room is not None:
-        check_places(workspace.chosen_room, len(there) + len(joins))
+    if room is not None:
+        check_places(room, len(there) + len(joins))
+    workspace.chosen_room = room
     workspace.gather((*there, *joins))
     going_on = replace(past.joined_by(joins, workspace.activity.unread), newcomers=joins)
     return TakenUp(going_on, () if joins else new)

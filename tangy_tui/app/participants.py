@@ -15,7 +15,7 @@ from tangy_profiles.room import Room, room_for
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
 from tangy_tui.app.register import known_people, participants
-from tangy_tui.app.rooms import check_places
+from tangy_tui.app.rooms import check_places, source_in
 
 if TYPE_CHECKING:
     from tangy_profiles.voice import VoicePreference
@@ -52,7 +52,9 @@ class Participants:
     @property
     def room_source(self) -> str:
         """The source to load the room from, "" if the number of people determines the room."""
-        return self.room.source if self.room is self.chosen_room else ""
+        if self.room is not self.chosen_room:
+            return ""
+        return source_in(self.store.folder, self.room)
 
     def choose_room(self, room: Room | None) -> None:
         """Set the room to play in; None: the number of people determines it.

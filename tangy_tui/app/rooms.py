@@ -83,4 +83,10 @@ def choose_room(folder: Path, room: Room) -> None:
     Raises:
         TangyError: it cannot be written.
     """
-    keep_choice(folder / FILE, "room", room.source)
+    keep_choice(folder / FILE, "room", source_in(folder, room))
+
+
+def source_in(folder: Path, room: Room) -> str:
+    """Return the source of a room; of one in the data folder, which may be moved, its name."""
+    own = own_rooms(folder).get(room.file.stem)
+    return room.file.stem if own is not None and own.resolve() == room.file else room.source

@@ -17,9 +17,10 @@ from tangy_profiles.activity import Activity, known_activities, load_activity
 from tangy_profiles.codec import Unreadable, read
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.person import MOST_PEOPLE, load_people
-from tangy_profiles.room import Room, load_room, room_for
+from tangy_profiles.room import Room, room_for
 from tangy_profiles.store import Store
 from tangy_tui.app.game_view import GameView
+from tangy_tui.app.rooms import find_room
 from tangy_tui.app.session_door import FILE, LONGEST_NAME, reachable
 from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.replay import GameReplay, Moment, read_replays
@@ -31,11 +32,11 @@ CHUNK = 65_536
 PATIENCE_SECONDS = 1.0  # for the socket to answer
 
 
-def room_of(view: GameView) -> Room:
-    """Return the room of a game; if its file is missing, the one that fits the number of people."""
+def room_of(view: GameView, folder: Path) -> Room:
+    """Return the room of a game in a data folder, or one that fits the number of people."""
     with suppress(ProfileError):
         if view.room:
-            return load_room(view.room)
+            return find_room(folder, view.room)
     return room_for(len(view.scene.doing))
 
 
@@ -195,6 +196,11 @@ class WatchedLog:
         self._known: dict[str, Activity | None] = {}
         self.names: Mapping[str, str] = {}
         """The names of the people, by id."""
+
+    @property
+    def folder(self) -> Path:
+        """The data folder of the log."""
+        return self._store.folder
 
     def news(self) -> News | None:
         """Read new entries; None if there are none."""

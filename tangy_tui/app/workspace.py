@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.defaults import REGISTERED, USUAL_ROBOT
-from tangy_profiles.errors import TangyError
+from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.process_log import logging_to
 from tangy_profiles.robot import Robot, load_robot
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.health import Health
+    from tangy_profiles.room import Room
     from tangy_tui.interaction.facilitation import Facilitation
     from tangy_tui.interaction.memory import PersonModels
     from tangy_tui.interaction.persuasion import Persuasion
@@ -86,7 +87,14 @@ class Workspace(Participants):
         self.robot: Robot = load_robot(robot)
         self._take_up(activity or chosen_activity(folder))
         load_people(1 if users == REGISTERED else users)  # before a store is opened for them
-        self.chosen_room = find_room(folder, room) if room else chosen_room(folder)
+        self.room_problem = ""
+        """Why the room that staff chose cannot be used (its file is gone, or has a mistake)."""
+        try:
+            self.chosen_room = find_room(folder, room) if room else chosen_room(folder)
+        except ProfileError as error:
+            if room:
+                raise
+            self.chosen_room, self.room_problem = None, str(error)
         self.room_is_given = bool(room)
         """Whether the room was named for this run; if not, a resumed game keeps its own room."""
         self.store = Store.open(folder, write=write, now=now)
@@ -113,6 +121,11 @@ class Workspace(Participants):
     def change_activity(self, activity: str) -> None:
         """Change to another activity; raises TangyError if that is not possible."""
         self._take_up(choose_activity(self.store.folder, activity))
+        self.register(self._users)
+
+    def leave_resumed_game(self, room: Room | None) -> None:
+        """Return to those who take part now, and to the room that was chosen before the game."""
+        self.chosen_room = room
         self.register(self._users)
 
     @property

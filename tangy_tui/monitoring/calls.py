@@ -87,7 +87,7 @@ class Calls:
         self._way = way
         self._states: dict[Role, CallState] = {}
         self._fault: Fault | None = None
-        self._lock = threading.Lock()
+        self._lock, self._offering = threading.Lock(), threading.Lock()
         self._buttons = buttons
         if buttons is not None:
             buttons.on_answer = self._answered_at_robot
@@ -180,7 +180,9 @@ class Calls:
 
     def _offer(self) -> None:
         """Show a button for each call without an answer."""
-        if self._buttons is not None:
+        if self._buttons is None:
+            return
+        with self._offering:  # so that the newest offer is the last to arrive
             with self._lock:
                 waits = [one for one in self._states.values() if not one.over]
                 offered = {self._key(one.role): one.contact.name for one in waits}

@@ -22,6 +22,11 @@ def room_words(room: Room, chosen: Room | None) -> str:
     return f"{room.title}; {chosen.title} has only {counted(chosen.places, 'seat')}"
 
 
+def no_chosen_room(why: str) -> str:
+    """Tell that the chosen room cannot be used; `why` is a sentence."""
+    return f"{why} Tangy uses another room. Choose one on the set-up page, or --room."
+
+
 def fallback_words(room: Room, chosen: Room) -> str:
     """Tell which room Tangy uses because the chosen one is too small."""
     return f"Room: {room_words(room, chosen)}. Choose another one on the set-up page, or --room."

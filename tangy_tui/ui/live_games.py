@@ -31,16 +31,20 @@ async def play_from_home(program: Program, policy: Policy) -> None:
     from tangy_tui.app.robot_opening import opening_of
 
     workspace = program.workspace
-    bench = not workspace.robot.drivers
+    bench, room = not workspace.robot.drivers, workspace.chosen_room
     chosen = await ask_about_interrupted(program, game_world.BENCH if bench else game_world.LIVE)
     if chosen is None:
         return
     past = chosen.past
     seed = workspace.game_seed(None) if past is None else past.beginning.seed
     opening = opening_of(workspace, bench=bench, seed=seed)
-    await play_live(
-        program, opening, policy, games=1, seed=seed, teacher="", past=past, set_up=past is None
-    )
+    try:
+        await play_live(
+            program, opening, policy, games=1, seed=seed, teacher="", past=past, set_up=past is None
+        )
+    finally:
+        if past is not None:
+            workspace.leave_resumed_game(room)
 
 
 async def play_live(

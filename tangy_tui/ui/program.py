@@ -13,6 +13,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.text import program as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
+from tangy_tui.text.rooms import no_chosen_room
 from tangy_tui.ui import policy_opening
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
@@ -99,6 +100,8 @@ class Program(SoundingApp):
         aside = [store.aside[seq] for seq in sorted(store.aside)]
         if len(aside) > 1:
             aside = [text.left_out_words(aside[0], len(aside) - 1)]
+        if problem := self.workspace.room_problem:
+            aside.append(no_chosen_room(problem))
         for sentence in (*store.notices, *aside):
             if sentence not in self._told:
                 self._told.add(sentence)
@@ -263,7 +266,7 @@ class Program(SoundingApp):
         """
         from tangy_tui.ui.screens.play import PlayScreen
 
-        policy = await self.load_policy(wanted)
+        policy, room = await self.load_policy(wanted), self.workspace.chosen_room
         chosen = await ask_about_interrupted(self, SIMULATED) if past is None else GameToPlay(past)
         if policy is None or chosen is None:
             return
@@ -277,10 +280,12 @@ class Program(SoundingApp):
             screen = PlayScreen(
                 workspace, supervision, games=games, speed=speed, teacher=teacher, past=past
             )
-            if live is None:
+            if live is None and past is None:
                 await self.push_screen(screen)
-            else:
-                await self.push_screen_wait(screen)
+                return
+            await self.push_screen_wait(screen)
+        if past is not None:
+            workspace.leave_resumed_game(room)
 
     async def action_play(self, wanted: str = "") -> None:
         """Let Tangy run a game in the simulated room, from home, teaching, or a policy."""

@@ -68,7 +68,13 @@ VERBS = {
     ),
     "mic": Verb("mic", below=(("check", "mic_check", "check"),)),
     "experiment": Verb("experiment"),
-    "activity": Verb("activity"),
+    "activity": Verb(
+        "activity",
+        below=(
+            ("new", "activity_writing", "activity_new"),
+            ("import", "activity_writing", "activity_import"),
+        ),
+    ),
     "cards": Verb("cards"),
     "faces": Verb("faces", below=(("enrol", "faces_enrol", "faces_enrol"),)),
     "log": Verb("log"),

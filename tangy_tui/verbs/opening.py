@@ -37,12 +37,15 @@ def open_workspace(
         TangyError: the folder, the activity, the robot or the room cannot be read.
     """
     from tangy_tui.app.workspace import Workspace, data_folder
+    from tangy_tui.text.rooms import no_chosen_room
 
     workspace = Workspace(
         data_folder(data), activity=activity, users=users, write=write, robot=robot, room=room
     )
     try:
         say_notices(workspace.store.notices)
+        if workspace.room_problem:
+            say_notices([no_chosen_room(workspace.room_problem)])
         if write:
             workspace.door.open()
         yield workspace

@@ -11,10 +11,11 @@ from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.room import room_for
+from tangy_tui.app.choice_file import keep_choice, read_choice
 from tangy_tui.app.game_view import GameView
 from tangy_tui.app.interruption import take_up
 from tangy_tui.app.register import add_person
-from tangy_tui.app.rooms import known_rooms
+from tangy_tui.app.rooms import choose_room, find_room, known_rooms
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.watching import room_of
 from tangy_tui.app.workspace import Workspace
@@ -59,7 +60,7 @@ def test_people_sit_at_the_tables_of_a_room_that_is_named(tmp_path: Path) -> Non
 def test_a_room_in_the_data_folder_is_known_by_its_name(tmp_path: Path) -> None:
     lounge(tmp_path, "rooms/lounge.toml")
     with closing(Workspace(tmp_path, room="lounge")) as workspace:
-        assert workspace.room_source == str((tmp_path / "rooms/lounge.toml").resolve())
+        assert workspace.room_source == "lounge"
     with pytest.raises(ProfileError, match="did you mean 'lounge'"):
         Workspace(tmp_path, room="loung")
 
@@ -89,6 +90,20 @@ def test_staff_choose_a_room_and_it_is_kept(tmp_path: Path) -> None:
         assert next(iter(workspace.names)) == "user4"  # seats are kept
     with closing(Workspace(tmp_path)) as workspace:
         assert workspace.room.title == "Lounge"
+
+
+def test_a_chosen_room_moves_with_its_data_folder_and_may_be_deleted(tmp_path: Path) -> None:
+    old, new = tmp_path / "old", tmp_path / "new"
+    path = lounge(old, "rooms/lounge.toml")
+    with closing(Workspace(old)) as workspace:
+        choose_room(old, find_room(old, str(path)))
+    old.rename(new)
+    with closing(Workspace(new)) as workspace:
+        assert (workspace.room.title, workspace.room_problem) == ("Lounge", "")
+    (new / "rooms/lounge.toml").unlink()
+    with closing(Workspace(new)) as workspace:
+        assert workspace.room == room_for(4)
+        assert "lounge" in workspace.room_problem
 
 
 def test_more_people_than_seats_sit_elsewhere_and_staff_read_why(tmp_path: Path) -> None:
@@ -123,9 +138,9 @@ def test_a_game_is_gone_on_with_and_watched_in_its_room(taught: Path, tmp_path: 
     view = GameView(
         "Rosa", "g", "bingo", "simulated", 1, 0, "idle", "OK", "", scene, room=str(path)
     )
-    assert room_of(view).title == "Lounge"
+    assert room_of(view, tmp_path).title == "Lounge"
     path.unlink()
-    assert room_of(view) == room_for(4)
+    assert room_of(view, tmp_path) == room_for(4)
 
 
 @pytest.mark.parametrize(
@@ -148,3 +163,11 @@ def test_a_mistake_is_told_with_its_line(tmp_path: Path, old: str, new: str, sai
     with pytest.raises(ProfileError) as caught:
         Workspace(tmp_path / "data", room=str(path))
     assert said in str(caught.value)
+
+
+def test_a_choice_that_could_not_be_read_again_is_refused(tmp_path: Path) -> None:
+    keep_choice(tmp_path / "room.toml", "room", 'a "quoted" \\ Käse')
+    assert read_choice(tmp_path / "room.toml", "room") == 'a "quoted" \\ Käse'
+    for choice in ("del\x7f", "not UTF-8: \udcff"):
+        with pytest.raises(TangyError, match="cannot be stored"):
+            keep_choice(tmp_path / "room.toml", "room", choice)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from math import pi
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from tangy_hw.navigation.occupancy import OCCUPIED
 from tangy_hw.navigation.poses import HERE, compose
 from tangy_hw.navigation.scan_log import read_log
 from tangy_hw.navigation.scan_recorder import ScanRecorder, robot_laser_line
+from tangy_profiles.health import ERROR, OK
 from tangy_profiles.room import load_room
 from tests.hw.raycast import look, room_sides
 
@@ -67,6 +69,21 @@ def test_an_earlier_drive_is_not_overwritten(tmp_path: Path) -> None:
     with pytest.raises(DeviceError, match="cannot be written"):
         ScanRecorder(log)
     assert log.read_text() == "kept"
+
+
+def test_with_a_full_disk_the_robot_can_still_be_driven(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    full = Path("/dev/full").open("w", encoding="ascii", buffering=1)  # noqa: SIM115
+    monkeypatch.setattr(Path, "open", lambda *_, **__: full)
+    navigator = DeadReckoning(ScanRecorder(tmp_path / "a.log"))
+    scan = look(room_sides(ROOM), Pose(5.0, 2.0, 0.0))
+    assert navigator.readings()[0].state == OK
+    for _ in range(2):
+        assert navigator.tick(Odometry(HERE, STILL), scan, 0.1) == STILL
+    assert navigator.readings()[0].state == ERROR
+    with suppress(OSError):
+        full.close()
 
 
 def test_a_map_from_the_recording_has_the_walls_where_they_are(tmp_path: Path) -> None:

@@ -12,6 +12,10 @@ from typing import Any
 
 import pytest
 
+from tangy_hw.device_protocols import DeviceError, Twist
+from tangy_hw.drivers.ros_base import RosBase
+from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.drivers.velocity_watchdog import VelocityWatchdog
 from tangy_hw.drivers.velocity_watchdog_child import Watchdog
 from tangy_profiles.worker_lines import LineError
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
@@ -65,10 +69,22 @@ async def watched(
         await watchdog.close()
 
 
-async def test_a_command_to_drive_that_is_not_followed_is_followed_by_one_to_stand() -> None:
+async def test_a_command_to_drive_that_is_not_followed_is_followed_by_one_to_stand(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    loop, waits = asyncio.get_running_loop(), list[float]()
+    later = loop.call_later
+
+    def call_later(seconds: float, call: Any, *given: Any, **context: Any) -> asyncio.TimerHandle:
+        waits.append(seconds)
+        return later(seconds, call, *given, **context)
+
     async with listening() as (server, told), watched(server, 0.05) as (watchdog, said):
         await until(lambda: told == [0.0])  # a new connection
-        await watchdog.take({"drives": True})
+        with monkeypatch.context() as patched:
+            patched.setattr(loop, "call_later", call_later)
+            await watchdog.take({"drives": True})
+        assert waits == [0.05]
         await until(lambda: told == [0.0, 0.0])
         assert [list(one) for one in said] == [["stopped"]]
         assert said[0]["stopped"] >= 0.05
@@ -107,6 +123,40 @@ async def test_a_base_that_was_out_of_reach_is_told_when_it_is_back() -> None:
 async def test_a_line_that_is_neither_is_refused() -> None:
     with pytest.raises(LineError):
         await Watchdog(list[Any]().append).take({"drives": True})
+
+
+class Noting(VelocityWatchdog):
+    """A watchdog without a child; it keeps what the robot process reports."""
+
+    def __init__(self, url: str) -> None:
+        super().__init__(url, lives=0.2)
+        self.noted: list[bool] = []
+
+    def start(self) -> None:
+        """Start nothing."""
+
+    def note(self, *, drives: bool) -> None:
+        """Keep whether a command drives."""
+        self.noted.append(drives)
+
+
+async def test_a_command_that_was_lost_with_the_link_does_not_calm_the_watchdog() -> None:
+    async with listening() as (server, told):
+        bridge, watchdog = Rosbridge(server.url), Noting(server.url)
+        base = RosBase(bridge, watchdog=watchdog)
+        await base.start()
+        await bridge.wait_connected(5)
+        await base.drive(Twist(0.3, 0.0))
+        await until(lambda: bool(told) and told[-1] == 0.3)
+        before = list(watchdog.noted)
+        await server.close()
+        await until(lambda: not bridge.connected)
+        await base.stop()
+        with pytest.raises(DeviceError):
+            await base.drive(Twist(0.3, 0.0))
+        assert (before[-1], watchdog.noted) == (True, before)
+        await base.close()
+        await bridge.close()
 
 
 @pytest.mark.slow

@@ -83,3 +83,18 @@ def test_a_file_may_be_the_same_in_every_round(file: Path) -> None:
     file.write_text(lines, encoding="utf-8")
     picture, _ = media(played(read_declared(file)), "praise the ear")
     assert picture is not None and picture.path.endswith("ear.png")
+
+
+def test_a_sound_whose_header_is_damaged_is_no_sound(file: Path) -> None:
+    sound = bytearray((file.parent / "bell.wav").read_bytes())
+    sound[18] = 127  # the first chunk reaches beyond the file
+    (file.parent / "bell.wav").write_bytes(sound)
+    assert "bell.wav is no WAV sound" in " ".join(mistakes(file))
+
+
+def test_a_name_that_no_file_can_have_is_told(file: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    file.write_text(
+        text.replace('sound = "{clip}"', f'sound = "{"a" * 300}.wav"'), encoding="utf-8"
+    )
+    assert "there is no file" in " ".join(mistakes(file))

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import ast
+import copy
 import json
 import re
+import sys
 from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import is_dataclass
 from functools import cache
 from pathlib import Path
@@ -21,8 +24,10 @@ from tangy_profiles.codec import Unreadable, fields_of, written
 from tangy_profiles.events import EventRecord, Unknown, kinds, read_record
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.health import Fact
+from tangy_profiles.people_records import PersonAdded
 from tangy_profiles.persuading import METHODS, PERIODS, PRIORS
 from tangy_profiles.records import kind
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import ActivityState, Request, Situation, UserState
 from tangy_tui.text import faults
 from tests.support.laws import tried
@@ -276,6 +281,35 @@ def test_a_body_of_a_version_that_is_not_known_is_refused(renamed: Any, version:
         read_record("renamed key", None, None, {"v": version, "after": "x"})
 
 
+def test_threads_may_make_the_first_record_of_a_kind_together() -> None:
+    def one_more(name: str) -> type[EventRecord]:
+        @kind(name)
+        class Made(EventRecord):
+            first: int
+            second: str = ""
+
+        return Made
+
+    names = [f"made together {number}" for number in range(20)]
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(8) as threads:
+            for made in map(one_more, names):
+                records_made = threads.map(lambda number, made=made: made(first=number), range(8))
+                assert [one.body["first"] for one in records_made] == list(range(8))
+    finally:
+        sys.setswitchinterval(interval)
+        for name in names:
+            records.KINDS.pop(name, None)
+
+
+def test_a_record_can_be_copied() -> None:
+    record = PersonAdded(guest=True)
+    unknown = Unknown("drlll", {"seed": 1})
+    assert [copy.deepcopy(one) for one in (record, unknown)] == [record, unknown]
+
+
 def test_a_kind_that_is_not_known_is_never_taken_for_another() -> None:
     assert isinstance(read_record("drlll", None, None, {"seed": 1}), Unknown)
 
@@ -315,3 +349,16 @@ def test_whatever_a_device_measures_can_be_kept_with_its_fault(measured: float |
     assert read_record("fault", None, None, {**fault, **lists}).body["evidence"] == {
         "laser.stamp": measured
     }
+
+
+def test_an_earlier_log_still_tells_which_faults_came_on_purpose() -> None:
+    told = {
+        "a fault was brought about: camera covered": ("fault injected", "camera covered"),
+        "a fault was lifted: camera covered": ("fault lifted", "camera covered"),
+        "faults are to be brought about: 2 kinds": ("faults planned", "2 kinds"),
+        "the pace is 20 s": ("noted", "the pace is 20 s"),
+    }
+    for what, expected in told.items():
+        record = read_record("staff action", None, None, {"game": "g", "what": what, "by": "x"})
+        assert isinstance(record, StaffAction)
+        assert (record.did, record.detail) == expected

@@ -155,7 +155,7 @@ def test_a_reason_of_undecodable_bytes_is_kept_and_shown_all_the_same(people: Ta
 
 def test_undo_says_what_it_takes_back(people: Tangy) -> None:
     told = " ".join(people("undo", "--help").stdout.split())
-    assert "Undo the last void, feedback, switch or method of a person" in told
+    assert "Undo the last void, feedback, switch or method." in told
     assert "A new name is not undone: rename the person again." in told
 
 

@@ -190,8 +190,8 @@
     return function () {
       this.disabled = true;
       ask("POST", "answer?call=" + encodeURIComponent(key), null, function (status) {
-        thanks = status === 204 ? "Thank you. The console shows it." :
-          status === 404 ? "Somebody is coming already." :
+        thanks = status === 204 ? "Thank you." :
+          status === 404 ? "Nobody is called any more." :
           "The robot does not answer. Please go to the console.";
         if (status === 204 || status === 404) { delete calls[key]; }
         drawCalls();

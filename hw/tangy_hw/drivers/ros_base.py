@@ -116,9 +116,9 @@ class RosBase:
             self._say(STILL)
 
     def _say(self, twist: Twist) -> None:
-        if self._watchdog is not None:
-            self._watchdog.note(drives=twist != STILL)
         self._velocity.say(twist)
+        if self._watchdog is not None:  # only of what was sent: it stops the base if a link is lost
+            self._watchdog.note(drives=twist != STILL)
 
     def _connected(self) -> None:
         """Stop at a new connection: the last command of the old one is unknown."""

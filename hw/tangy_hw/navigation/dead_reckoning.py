@@ -18,7 +18,7 @@ from tangy_hw.navigation.planning import Path
 from tangy_hw.navigation.poses import HERE, Floats, between, compose
 from tangy_hw.navigation.scan_recorder import ScanRecorder
 from tangy_hw.navigation.surroundings import Held
-from tangy_profiles.health import OK, Fact, Reading
+from tangy_profiles.health import ERROR, OK, DeviceState, Fact, Reading
 
 NOWHERE: Floats = np.zeros((0, 2))
 
@@ -90,8 +90,12 @@ class DeadReckoning:
         return {"path": "clear", "fit": 1.0, "spread": 0.0, "slip": 0.0, "still": 0.0}
 
     def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
-        """Return the readings of "localisation" and "navigator"; `age` is in s."""
+        """Return the readings of "localisation" and "navigator"; `age` is in s.
+
+        Localisation is in error if the scans cannot be recorded.
+        """
+        state: DeviceState = ERROR if self._recorder.failed else OK
         return (
-            Reading("localisation", age, OK, {"fit": 1.0, "spread": 0.0}),
+            Reading("localisation", age, state, {"fit": 1.0, "spread": 0.0}),
             Reading("navigator", age, OK, {"path": "clear"}),
         )

@@ -6,12 +6,15 @@ wheel odometry, without correction.
 
 from __future__ import annotations
 
+import logging
 from io import TextIOWrapper
 from math import hypot, isfinite
 from pathlib import Path
 
 from tangy_hw.device_protocols import DeviceError, Pose, Scan
 from tangy_hw.navigation.poses import between
+
+_LOG = logging.getLogger(__name__)
 
 MOVED, TURNED = 0.05, 0.05
 """m and rad between recorded scans: matching needs no more than one in 10 cm."""
@@ -34,6 +37,8 @@ class ScanRecorder:
         except OSError as error:
             raise DeviceError(f"{path}: cannot be written ({error.strerror}).") from None
         self._last: Pose | None = None
+        self.failed = False
+        """Whether the log could not be written (a full disk); nothing is recorded after that."""
 
     def note(self, scan: Scan, pose: Pose, stamp: float) -> None:
         """Record a scan if the laser has moved since the last one; `stamp` is in s."""
@@ -41,8 +46,14 @@ class ScanRecorder:
             step = between(self._last, pose)
             if hypot(step.x, step.y) < MOVED and abs(step.heading) < TURNED:
                 return
+        if self.failed:
+            return
         self._last = pose
-        self._file.write(robot_laser_line(scan, pose, stamp))
+        try:
+            self._file.write(robot_laser_line(scan, pose, stamp))
+        except OSError as error:  # the robot must still be driven and stopped
+            self.failed = True
+            _LOG.error("the scans cannot be recorded: %s", error.strerror)
 
     def close(self) -> None:
         """Close the log."""

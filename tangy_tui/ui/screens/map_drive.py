@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, ClassVar
 
 from textual.app import ComposeResult
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from tangy_tui.ui.app import TangyApp
 
 DRAWN_SECONDS = 2.0  # between two updates of the map
+PAUSE = 3.0  # times what the last drawing took: the keys and the robot's heartbeat come first
 
 
 class MapDriveScreen(HandDriving, TangyScreen[None]):
@@ -59,6 +62,7 @@ class MapDriveScreen(HandDriving, TangyScreen[None]):
         TangyScreen.__init__(self)
         self._record, self._title = record, title
         self._so_far: SoFar | None = None
+        self._drawn_next = 0.0
         self.done = False
         """Whether to draw the map from this drive."""
 
@@ -90,11 +94,17 @@ class MapDriveScreen(HandDriving, TangyScreen[None]):
             self.tell_held()
 
     def _look(self) -> None:
-        self.run_worker(self._draw, thread=True, exclusive=True, group="map")
+        if monotonic() >= self._drawn_next:
+            self._drawn_next = inf  # until this drawing has ended
+            self.run_worker(self._draw, thread=True, group="map")
 
     def _draw(self) -> None:
-        """Draw the map so far, in a thread: reading the record takes time."""
-        if (found := map_so_far(self._record)) is not None:
+        """Draw the map so far, in a thread: reading a long record takes seconds."""
+        begun = monotonic()
+        found = map_so_far(self._record)
+        ended = monotonic()
+        self._drawn_next = ended + PAUSE * (ended - begun)
+        if found is not None:
             self.app.call_from_thread(self._show, found)
 
     def _show(self, found: SoFar) -> None:

@@ -175,7 +175,7 @@ class WatchScreen(TangyScreen[None]):
         left = self.query_one("#left", Vertical)
         left.remove_children(".panel")
         self._activity = self._log.activity(view.activity)
-        room = room_of(view)
+        room = room_of(view, self._log.folder)
         seated = room.placed([Person(one, self._called(one)) for one in people])
         label = str if self._activity is None else self._activity.deck.label
         left.mount(panel(RoomView(room, seated, label=label)), before="#called")
