@@ -48,7 +48,7 @@ class Contradictions:
             return None
         others = [
             steps[-1]
-            for other, steps in self._shown[situation].items()
+            for other, steps in self._shown.get(situation, {}).items()
             if other != behaviour and steps
         ]
         if not others:

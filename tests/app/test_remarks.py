@@ -203,6 +203,21 @@ def test_the_answer_is_logged_as_a_settled_conflict(
     assert same(settled.remark, do(teaching, "call number", "tell a joke")) == []
 
 
+def test_a_teacher_can_go_on_teaching_after_the_first_step_was_set_aside(
+    workspace: Workspace,
+) -> None:
+    teaching = session(workspace)
+    do(teaching, "call number", "greet everyone")
+    assert teaching.remark is not None
+    settle = read_settling("this", teaching.remark)
+    assert settle is not None
+    (settled,) = teaching.apply(settle)
+    assert isinstance(settled, Settled) and set(settled.right) == {"greeting"}
+    another = session(workspace, seed=2)
+    assert do(another, "greet everyone") == []
+    assert do(session(workspace, seed=3), "call number")
+
+
 def test_what_is_put_off_stays_a_conflict_and_is_not_asked_again(workspace: Workspace) -> None:
     teaching = contradict(workspace)
     (settled,) = teaching.apply(Settle("later"))

@@ -14,7 +14,15 @@ from tests.support.waiting import until, until_shown
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run
 
-NAMES = ("Rosa", "Anna Rose", "Christopher", "Oscar", "Ben", *(f"User {n}" for n in range(6, 25)))
+NAMES = (
+    "Rosa",
+    "Anna Rose",
+    "Christopher",
+    "Oscar",
+    "Ben",
+    "Zoë",
+    *(f"User {n}" for n in range(6, 25)),
+)
 
 
 class Asking(TangyScreen[None]):
@@ -45,6 +53,8 @@ class Asking(TangyScreen[None]):
         ("x backspace b enter", "ben"),
         ("j enter escape escape", None),
         ("escape", None),
+        ("z o e enter", "zoë"),
+        ("h e r e enter escape escape", None),  # what stands beside the names does not count
     ],
 )
 async def test_letters_filter_enter_takes_and_esc_goes_back(

@@ -12,9 +12,11 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.content import Content
 
+from tangy_profiles.person import unaccented
+from tangy_tui.text.phrases import NONE_FOUND
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.page import Page, PageLine
+from tangy_tui.ui.widgets.page import Page, PageLine, Write
 from tangy_tui.ui.widgets.rows import fit
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -32,9 +34,23 @@ class Option:
 
 
 class OptionPage(Page):
-    """The options; letters filter them."""
+    """The options; letters filter them by name, with or without accents."""
 
     LETTERS_FILTER = True
+
+    def __init__(self, write: Write, names: Sequence[str]) -> None:
+        super().__init__(write)
+        self._names = [unaccented(name) for name in names]
+
+    def _kept(self, lines: Sequence[PageLine]) -> Sequence[PageLine]:
+        """Return the lines of the options whose names match; their notes do not count."""
+        words = unaccented(self.filter).split()
+        kept = [
+            line
+            for line in lines
+            if line.choice is None or all(word in self._names[line.choice] for word in words)
+        ]
+        return kept or [PageLine(((NONE_FOUND, "dim"),))]
 
     def _say_filter(self, count: str = "") -> None:
         """Show the filter at the foot of the dialog."""
@@ -67,7 +83,8 @@ class ChooseDialog(Dialog[str | None]):
 
     def compose(self) -> ComposeResult:
         """Lay out the list."""
-        box = Vertical(OptionPage(self._write), id="choose", classes="box")
+        names = [option.name for option in self._options]
+        box = Vertical(OptionPage(self._write, names), id="choose", classes="box")
         box.border_title = Content(self._question)
         box.border_subtitle = UNFILTERED
         yield box
