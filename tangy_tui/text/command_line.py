@@ -66,3 +66,11 @@ def experiment_stopped(pieces: int) -> str:
 def throats(variants: list[str]) -> str:
     """List the variants of a voice."""
     return f"\nAdd one of these to change a voice, as in en-gb+f3: {', '.join(variants)}."
+
+
+def options_after(group: str, command: str) -> str:
+    """Tell that options stand before a command of a group instead of after it."""
+    return (
+        f"Options go after the command: write `tangy {group} {command}` first, "
+        "then --data and the others."
+    )

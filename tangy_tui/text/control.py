@@ -94,7 +94,7 @@ BY_KEYS: dict[NoteKind, str] = {
     "paused": "Paused: {pause} goes on.",
     "stopped": "STOP. Press {pause} to go on.",
     "stopped first": "Not now: Tangy was stopped. Press {pause} to go on first.",
-    "asks first": "Tangy is asking: answer first ({command} to type); esc gives the game up.",
+    "asks first": "Tangy is asking: answer first ({command} to type).",
 }
 """Other words for staff who have keys, and type only to answer."""
 

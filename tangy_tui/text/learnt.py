@@ -121,8 +121,9 @@ def learnt_lines(
             )
             lines.append(f"  {activity.in_words(situation)}: {answers}")
         lines.append(
-            "Tangy will ask there. `tangy demonstrations conflicts` shows the steps. Settle them "
-            "with `tangy demonstrations resolve`, then learn again."
+            "Tangy will ask there. `tangy demonstrations conflicts` shows the steps, and numbers "
+            "them. Settle one with `tangy demonstrations resolve NUMBER --right BEHAVIOUR`, then "
+            "learn again."
         )
     if left_out:
         lines.append(

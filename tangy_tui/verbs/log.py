@@ -11,7 +11,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.command_line import counts_as
+from tangy_tui.text.command_line import counts_as, options_after
 from tangy_tui.verbs.common import Data, Json, print_json, print_line
 from tangy_tui.verbs.opening import say_aside, say_notices
 
@@ -46,7 +46,7 @@ def log(context: typer.Context, data: Data = None, as_json: Json = False) -> Non
         log_list(data, as_json)
     elif (data, as_json) != (None, False):
         verb = context.invoked_subcommand
-        raise TangyError(f"Options of `tangy log {verb}` stand after {verb}.")
+        raise TangyError(options_after("log", verb))
 
 
 @app.command("list")

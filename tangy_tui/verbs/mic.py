@@ -13,6 +13,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.command_line import options_after
 from tangy_tui.text.mic_check import LOUD_ENOUGH
 from tangy_tui.text.microphone import trouble_words
 from tangy_tui.verbs.common import Data, as_given
@@ -62,7 +63,7 @@ def mic(
         forward(data, socket)
     elif (data, socket) != (None, None):
         verb = context.invoked_subcommand
-        raise TangyError(f"Options of `tangy mic {verb}` stand after {verb}.")
+        raise TangyError(options_after("mic", verb))
 
 
 def forward(data: Path | None, socket: Path | None) -> None:

@@ -13,6 +13,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GameWorld, read_game_world
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.text.command_line import options_after
 from tangy_tui.text.names import (
     conflict_words,
     known_now,
@@ -69,7 +70,7 @@ def people(
         people_list(activity, seed, data, users, as_json=as_json)
     elif (activity, seed, data, users, as_json) != ("", None, None, REGISTERED, False):
         verb = context.invoked_subcommand
-        raise TangyError(f"Options of `tangy people {verb}` stand after {verb}.")
+        raise TangyError(options_after("people", verb))
 
 
 @app.command("list")

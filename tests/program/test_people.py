@@ -228,7 +228,7 @@ def test_what_is_not_said_of_a_method_stays_as_it_is(people: Tangy) -> None:
     [
         (("show", "Rosie"), "There is nobody called 'Rosie': user1 is Rosa, user2 is User 2, "),
         (("show", "User 1"), "There is nobody called 'User 1': user1 is Rosa, user2 is User 2, "),
-        (("--users", 3, "list"), "Options of `tangy people list` stand after list."),
+        (("--users", 3, "list"), "write `tangy people list` first"),
         (("switch", "Rosa", "prays", "off"), "no strategy 'prays': did you mean 'praise'?"),
         (("switch", "Rosa", "praise", "of"), "There is no state 'of': did you mean 'off'?"),
         (("switch", "Rosa", "praise", "on"), "praise is switched on already."),
