@@ -55,10 +55,13 @@ class Tour:
     def follow(self, events: Iterable[TeachingEvent]) -> bool:
         """Follow the teacher's actions; return whether the tour is at another stop now."""
         before = self.at
-        if before not in _BEFORE_THE_STEP:
+        if before is None:
             return False
         for event in events:
-            if isinstance(event, Executed):
+            if self.at not in _BEFORE_THE_STEP:
+                if isinstance(event, Executed):  # a teacher who teaches on needs no Enter
+                    self.go_on()
+            elif isinstance(event, Executed):
                 self.at = TourStop.STEP
             elif isinstance(event, Asked | Offered):
                 self.at = TourStop.QUESTION

@@ -41,6 +41,14 @@ def test_who_teaches_at_once_is_met_where_they_are(workspace: Workspace) -> None
     assert tour.at is TourStop.STEP
 
 
+def test_each_further_step_leads_on_like_enter(workspace: Workspace) -> None:
+    tour, teaching = begun(workspace)
+    for stop in (TourStop.STEP, TourStop.PEOPLE, TourStop.COACH, None, None):
+        teaching.apply(Say(teaching.sayable[0]))
+        tour.follow(teaching.apply(Reply(yes=True)))
+        assert tour.at is stop
+
+
 def test_nothing_leads_back_into_a_tour_that_was_skipped(workspace: Workspace) -> None:
     tour, teaching = begun(workspace)
     tour.skip()
