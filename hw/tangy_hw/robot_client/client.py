@@ -109,9 +109,9 @@ class RobotLink:
             self._cancellation.check()
             if self._over:
                 raise DeviceError("The robot is switched off.")
+            self._cancellation.starts("program")  # before the process tells of its own parts
             worker = self._begin()
         self._cancellation.register(partial(_call_off, worker))
-        self._cancellation.starts("program")
         try:
             told = worker.first.result(START_SECONDS)
             self.screen, self.code = str(told.get("screen", "")), str(told.get("code", ""))
