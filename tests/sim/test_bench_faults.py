@@ -75,6 +75,13 @@ class TestAnyKind:
         assert world.mend(KINDS[shows].code) == [shows, silences]
         assert set(world.faults.present) == {elsewhere}
 
+    def test_who_restores_the_link_repairs_no_device(self) -> None:
+        world = bench(1)
+        for kind in ("link-lost", "requests-silent"):
+            world.inject(kind)
+        assert world.mend("link-lost") == ["link-lost"]
+        assert set(world.faults.present) == {"requests-silent"}
+
     def test_neither_voice_nor_screen_is_mended_as_one(self) -> None:
         world = opened()
         world.inject("voice-dead")

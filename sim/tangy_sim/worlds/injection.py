@@ -98,9 +98,12 @@ KINDS: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in _KINDS
 def silencing(code: str, present: Iterable[str]) -> list[str]:
     """Return the present kinds that silence the device in which a diagnosis shows.
 
-    An expert who repairs that device finds them, too.
+    An expert who repairs that device finds them, too. A lost link shows in every device; to
+    restore it repairs none of them.
     """
     shows = {d for one in _KINDS if one.code == code and one.symptom for d in one.symptom(0.0)}
+    if len(shows) != 1:
+        return []
     silent = {kind.name: kind.symptom(0.0) for kind in _KINDS if kind.symptom is not None}
     return [
         name
