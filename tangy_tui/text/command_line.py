@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from tangy_profiles.plain_text import plain
+from tangy_profiles.reading import nearest
 from tangy_tui.text.numbers import counted
 
 TEACH_YOURSELF = "Teach it yourself with `tangy teach`. See all commands with `tangy --help`."
@@ -74,3 +78,8 @@ def options_after(group: str, command: str) -> str:
         f"Options go after the command: write `tangy {group} {command}` first, "
         "then --data and the others."
     )
+
+
+def no_command(name: str, known: Iterable[str]) -> str:
+    """Tell that there is no command of a name, and which one was probably meant."""
+    return plain(f"There is no command {name!r}; {nearest(name, known)}")

@@ -9,6 +9,9 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
+from tangy_profiles.errors import TangyError
+from tangy_tui.text.command_line import no_command
+
 
 @dataclass(frozen=True)
 class Verb:
@@ -92,9 +95,13 @@ class LazyVerbs(TyperGroup):
         return list(VERBS)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Import a command and return it; None if there is none of this name."""
+        """Import a command and return it.
+
+        Raises:
+            TangyError: there is none of this name.
+        """
         if cmd_name not in VERBS:
-            return None
+            raise TangyError(no_command(cmd_name, VERBS))
         if cmd_name not in self.commands:
             self.commands[cmd_name] = VERBS[cmd_name].load(cmd_name)
         return self.commands[cmd_name]
