@@ -289,6 +289,10 @@ def test_a_simulated_game_goes_on_without_those_who_came_meanwhile(room: Interru
     room.supervision = room.new()
     room.resume()
     assert room.standing == stood
+    hall = load_room("hall")
+    room.workspace.leave_resumed_game(hall)
+    assert list(room.workspace.names)[-1] == "user5"
+    assert room.workspace.room is hall
 
 
 def test_the_clock_of_a_live_game_is_the_time_played_and_not_the_time_it_was_dead(

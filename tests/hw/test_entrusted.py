@@ -129,16 +129,21 @@ async def test_a_robot_that_must_not_drive_hands_nothing_over(
         assert not one.base.goals
 
 
+async def go_without_a_way(one: Living) -> None:
+    """Send the robot off, and have its navigation find no way."""
+    going = asyncio.create_task(one.robot.go(GOAL))
+    await until(lambda: one.base.goals)
+    one.base.end(4, "no path")
+    assert await soon(going) is False
+    assert one.facts("navigator") == {"path": "none"}
+
+
 async def test_where_it_finds_no_way_somebody_is_given_the_time_to_clear_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(external_navigator, "CLEARING_SECONDS", 0.5)
     async with living(monkeypatch) as one:
-        going = asyncio.create_task(one.robot.go(GOAL))
-        await until(lambda: one.base.goals)
-        one.base.end(4, "no path")
-        assert await soon(going) is False
-        assert one.facts("navigator") == {"path": "none"}
+        await go_without_a_way(one)
         one.robot.replan()
         assert one.facts("navigator") == {"path": "none"}
         await asyncio.sleep(0.6)
@@ -151,10 +156,7 @@ async def test_a_way_that_was_blocked_before_a_stop_may_still_be_blocked_after_i
 ) -> None:
     monkeypatch.setattr(external_navigator, "CLEARING_SECONDS", 1e9)
     async with living(monkeypatch) as one:
-        going = asyncio.create_task(one.robot.go(GOAL))
-        await until(lambda: one.base.goals)
-        one.base.end(4, "no path")
-        assert await soon(going) is False
+        await go_without_a_way(one)
         await one.robot.stop("the laser scanner is silent")
         one.robot.release()
         assert one.facts("navigator") == {"path": "none"}

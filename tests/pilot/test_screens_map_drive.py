@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.scan_recorder import robot_laser_line
 from tangy_profiles.room import load_room
+from tangy_tui.ui.screens import map_drive
 from tangy_tui.ui.screens.map_drive import MapDriveScreen
 from tests.hw.raycast import look, room_sides
 from tests.pilot.conftest import screen_text
@@ -45,6 +47,25 @@ async def test_the_map_grows_while_somebody_drives(run: Run, tmp_path: Path) -> 
         shown = screen_text(pilot.app)
         assert "●" in shown and "█" in shown
         assert link.stamps, "a screen that hangs has to stop the robot"
+
+
+async def test_one_map_is_drawn_at_a_time(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, go_on = list[Path](), Event()
+
+    def slow(log: Path) -> None:
+        begun.append(log)
+        go_on.wait(20)
+
+    monkeypatch.setattr(map_drive, "map_so_far", slow)
+    monkeypatch.setattr(map_drive, "DRAWN_SECONDS", 0.01)
+    link = HeldLink()
+    async with run(MapDriveScreen(link, tmp_path / "a.log", "Tangy")) as pilot:  # type: ignore[arg-type]
+        await until_shown(pilot, lambda: len(begun) == 1 and link.stamps > 3)
+        assert len(begun) == 1
+        go_on.set()
+        await until_shown(pilot, lambda: len(begun) > 2)
 
 
 async def test_what_is_near_is_said_and_stop_holds_until_it_is_released(
