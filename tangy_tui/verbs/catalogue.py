@@ -95,13 +95,19 @@ class LazyVerbs(TyperGroup):
         return list(VERBS)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Import a command and return it.
+        """Import a command and return it; None if there is none of this name."""
+        if cmd_name not in VERBS:
+            return None
+        if cmd_name not in self.commands:
+            self.commands[cmd_name] = VERBS[cmd_name].load(cmd_name)
+        return self.commands[cmd_name]
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find the command of the first word; the parser would know none that was not called yet.
 
         Raises:
             TangyError: there is none of this name.
         """
-        if cmd_name not in VERBS:
-            raise TangyError(no_command(cmd_name, VERBS))
-        if cmd_name not in self.commands:
-            self.commands[cmd_name] = VERBS[cmd_name].load(cmd_name)
-        return self.commands[cmd_name]
+        if args and args[0] not in VERBS and not args[0].startswith("-"):
+            raise TangyError(no_command(args[0], VERBS))
+        return super().resolve_command(ctx, args)

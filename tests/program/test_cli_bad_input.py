@@ -118,3 +118,15 @@ def test_without_data_the_platforms_folder_is_used(
     monkeypatch.setenv("HOME", str(tmp_path))
     assert tangy("teach", "--plain", stdin="greet everyone\ny\n").returncode == 0
     assert list(tmp_path.rglob("tangy.db"))
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [(("lisen",), "did you mean 'listen'"), (("qqq",), "choose one of: activity,")],
+)
+def test_a_command_that_does_not_exist_is_answered_with_the_nearest(
+    words: tuple[str, ...], told: str, tangy: Tangy
+) -> None:
+    done = tangy(*words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert told in done.stderr
