@@ -17,6 +17,7 @@ from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.experiments.classroom import GUIDED, Course
 from tangy_tui.experiments.induced import Inducer, Planned
+from tangy_tui.experiments.kept_games import keep_games, to_read
 from tangy_tui.experiments.recovering import plan_of, play_games
 from tangy_tui.experiments.supervised import keep, lessons
 from tangy_tui.experiments.sweep import Case, Settings
@@ -84,11 +85,17 @@ class InducingBench(BenchedWorld):
                 self.inducer.lifted(fault.kind.name, step + late)
 
 
-def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
+def play_on_bench(settings: Settings, case: Case, logs: Path | None = None) -> dict[str, Any]:
     """Play games on a bench: a case is (seed, first game, games, games in all).
 
+    Args:
+        settings: those of the sweep.
+        case: the case.
+        logs: where to keep the data folder if one of the games should be read.
+
     Returns:
-        As `experiments.recovering.play`, and the `score` of perception against the ground truth.
+        As `experiments.recovering.play`, and the `score` of perception against the ground truth; a
+        game that should be read has its folder as `log`.
     """
     seed, first, some, games = case
     plan = plan_of(games, seed, GAMES_A_PIECE)[first : first + some]
@@ -110,6 +117,11 @@ def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
                 world.plan(plan)
                 game = workspace.supervision(policy, number, asks=True, world=world)
                 played = play_games(game, world.inducer, first, some)
-                return {**played, "score": world.score.to_json()}
         finally:
             workspace.close()
+        if logs is not None and (read := [one for one in played["games"] if to_read(one)]):
+            folder = logs / f"seed-{seed}-games-{first + 1}-to-{first + some}"
+            for one in read:
+                one["log"] = str(folder)
+            keep_games(Path(scratch), folder, read)
+    return {**played, "score": world.score.to_json()}

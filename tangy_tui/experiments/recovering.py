@@ -211,6 +211,7 @@ def _document(pieces: Sequence[Mapping[str, Any]], users: int) -> dict[str, Any]
         "finished": sum(game["ended"] == comparison.TO_ITS_END for game in games),
         "stopped": [game["ended"] for game in games if game["ended"] != comparison.TO_ITS_END],
         "ended": dict(Counter(game["ended"] for game in games).most_common()),
+        "logs": list(dict.fromkeys(game["log"] for game in games if "log" in game)),
         "each_game": games,
     }
 

@@ -27,6 +27,14 @@ def report_in(place: object) -> str:
     return f"The report is in {place}."
 
 
+def games_to_read(folder: object) -> str:
+    """Tell where the log of games with a miss, a false alarm, or an early end is."""
+    return (
+        "A fault was missed, a diagnosis was wrong, or a game ended early. "
+        f"To read these games: tangy log --data {folder}"
+    )
+
+
 def cut_off(file: object, seconds: float) -> str:
     """Tell that a recording ends some s early."""
     return f"{file}: ends {seconds:.1f} s early; what is there was heard."

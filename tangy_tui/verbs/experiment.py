@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,7 +15,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.command_line import experiment_stopped, report_in
+from tangy_tui.text.command_line import experiment_stopped, games_to_read, report_in
 from tangy_tui.verbs.common import ActivityName, Data, Json, print_json
 
 if TYPE_CHECKING:
@@ -106,6 +107,7 @@ def third(
     They are played on the bench: cards, faces, scans and signs are rendered, and go through the
     drivers and all that a real robot has. --simulated leaves that out.
     """
+    from tangy_tui.app.workspace import data_folder
     from tangy_tui.experiments.scenarios import Recovering, recovery
 
     asked = Recovering(activity, users, games, seed)
@@ -115,7 +117,8 @@ def third(
             return recovery(asked, where)
         from tangy_tui.experiments.device_faults import GAMES_A_PIECE, play_on_bench
 
-        return recovery(asked, where, bench=play_on_bench, a_piece=GAMES_A_PIECE)
+        bench = partial(play_on_bench, logs=data_folder(data) / "experiments" / "logs")
+        return recovery(asked, where, bench=bench, a_piece=GAMES_A_PIECE)
 
     _run(scenario, data, jobs, dask, fresh, report, as_json)
 
@@ -152,6 +155,8 @@ def _run(
         print(f"  {row.words}")
     for name, words in SOURCES.items():
         print(f"({name}: {words}.)")
+    for folder in document.get("logs", ()):
+        print(plain(games_to_read(folder)))
     if report is not None:
         print(plain(report_in(report)))
     _end(document)

@@ -1,9 +1,12 @@
 """Pairs of all kinds of fault, twice each: which were missed, named wrong, told twice, or false.
 
-Run by hand: `python -m tests.bench.fault_pairs [--seed N] [--bench PAIRS]`. In the first game of a
-pair both come at one step, in the second one comes while Tangy recovers from the other. All pairs
-are simulated (about a minute); with --bench so many pairs, drawn by the seed, are played on the
-bench instead, each in one game, by turns in the first and in the second way. A fault is missed if
+Run by hand: `python -m tests.bench.fault_pairs [--seed N] [--bench PAIRS [--first N] [--last N]]`.
+In the first game of a pair both come at one step, in the second one comes while Tangy recovers from
+the other. All pairs are simulated (about a minute); with --bench so many pairs, drawn by the seed,
+are played on the bench instead, each in one game, by turns in the first and in the second way, or
+only the games from number --first to --last of them. Each bench game begins with the data folder
+of a robot that was just taught, so that it can be played again alone; the folder of a game with
+something wrong is kept, and named. A fault is missed if
 it could show and was not named; it is told twice if a second diagnosis has its code while it came
 once. Who never complies is told of in each visit, which counts once; so does what Tangy asked a
 person for in vain, and finds again in a later visit. What neither of the two calls for is a false
@@ -20,7 +23,8 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from pathlib import Path
 from random import Random
-from tempfile import TemporaryDirectory
+from shutil import copytree, rmtree
+from tempfile import TemporaryDirectory, gettempdir
 
 from tangy_profiles.fault_file import load_faults
 from tangy_sim.worlds.faulty_world import FaultyWorld
@@ -31,6 +35,7 @@ from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import GameEnded
+from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.fault import Fault
@@ -53,6 +58,15 @@ class PairGame:
     named: int = 0
     wrong: list[str] = field(default_factory=list)
     stopped: str | None = None
+
+    @property
+    def fine(self) -> bool:
+        """Whether there is nothing to read about in its log."""
+        return not self.wrong and self.stopped is None
+
+    def __str__(self) -> str:
+        told = f"seed {self.seed}: {self.named} of {self.could_show} named"
+        return ", ".join((*self.at, told, *self.wrong, self.stopped or ""))
 
 
 def ways(pair: tuple[str, str], step: int, number: int) -> tuple[str, str]:
@@ -116,25 +130,44 @@ def simulated(
                 yield play(scripted_controller(game), PairGame(pair, at, seed))
 
 
-def on_the_bench(
-    workspace: Workspace, policy: Policy, pairs: Sequence[tuple[str, str]], chance: Random
-) -> Iterator[PairGame]:
-    """Play one game of each pair with simulated devices, as fast as they can be computed."""
-    book = load_faults(workspace.robot)
-    for number, pair in enumerate(pairs):
-        at = ways(pair, chance.randint(*STEPS), number % 2)
-        seed = chance.randrange(1_000_000)
+def drawn(pairs: Sequence[tuple[str, str]], chance: Random) -> list[PairGame]:
+    """Draw one game of each pair, to be played on the bench."""
+    return [
+        PairGame(pair, ways(pair, chance.randint(*STEPS), number % 2), chance.randrange(1_000_000))
+        for number, pair in enumerate(pairs)
+    ]
+
+
+def on_the_bench(one: PairGame, folder: Path) -> PairGame:
+    """Play a game with simulated devices, as fast as they can be computed, with a folder's data."""
+    with closing(Workspace(folder)) as workspace:
+        policy, _ = load_policy(workspace.store, workspace.activity)
         with open_bench(
             workspace,
-            seed=seed,
+            seed=one.seed,
             stepped=True,
-            book=book,
-            injections=[read_injection(text) for text in at],
+            book=load_faults(workspace.robot),
+            injections=[read_injection(text) for text in one.at],
             kind=BenchedWorld,
         ) as world:
             game = workspace.supervision(policy, 1, asks=True, world=world)
-            control = GameController(game, SCRIPTED, robot=world, paced=False)
-            yield play(control, PairGame(pair, at, seed))
+            return play(GameController(game, SCRIPTED, robot=world, paced=False), one)
+
+
+def on_benches(taught: Path, games: Sequence[PairGame], keep: Path) -> Iterator[PairGame]:
+    """Play games on the bench, each with a copy of the data of a robot that was just taught.
+
+    A copy is kept if there is something to read about in its log.
+    """
+    for one in games:
+        folder = keep / f"{'+'.join(one.at)}-{one.seed}"
+        rmtree(folder, ignore_errors=True)
+        copytree(taught, folder)
+        yield on_the_bench(one, folder)
+        if one.fine:
+            rmtree(folder)
+        else:
+            print(f"  to read it: tangy log --data {folder}", flush=True)
 
 
 def main() -> None:
@@ -142,6 +175,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--bench", type=int, default=0)
+    parser.add_argument("--first", type=int, default=1)
+    parser.add_argument("--last", type=int)
+    parser.add_argument("--keep", type=Path, default=Path(gettempdir(), "tangy-pairs"))
     given = parser.parse_args()
     chance = Random(f"{given.seed}/pairs")
     pairs = list(combinations(KINDS, 2))
@@ -149,14 +185,15 @@ def main() -> None:
     with TemporaryDirectory() as folder, closing(Workspace(Path(folder))) as workspace:
         policy = teach(workspace)
         if given.bench:
-            games = on_the_bench(workspace, policy, chance.sample(pairs, given.bench), chance)
+            some = drawn(chance.sample(pairs, given.bench), chance)[given.first - 1 : given.last]
+            workspace.close()
+            games = on_benches(Path(folder), some, given.keep)
         else:
             games = simulated(workspace, policy, pairs, chance)
         for one in games:
             played.append(one)
-            if given.bench or one.wrong or one.stopped is not None:
-                told = f"seed {one.seed}: {one.named} of {one.could_show} named"
-                print(*one.at, told, *one.wrong, one.stopped or "", sep=", ", flush=True)
+            if given.bench or not one.fine:
+                print(one, flush=True)
     could, named = sum(one.could_show for one in played), sum(one.named for one in played)
     low, high = share_interval(named / could, could)
     kinds = Counter(words.split(" (")[0] for one in played for words in one.wrong)

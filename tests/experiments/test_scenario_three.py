@@ -25,6 +25,7 @@ from tangy_tui.experiments.induced import (
     in_proportion,
     kinds_by_recovery,
 )
+from tangy_tui.experiments.kept_games import keep_games, to_read
 from tangy_tui.experiments.matching import AGAIN, NOTHING, RIGHT, WRONG, match_faults
 from tangy_tui.experiments.report import report
 from tangy_tui.experiments.scenarios import Recovering, recovery
@@ -207,3 +208,24 @@ def test_the_page_says_whether_devices_were_there(document: dict[str, Any]) -> N
     assert "on a bench of devices" in report(benched)
     assert "through the drivers" in report(benched)
     assert "what they report is not" in " ".join(row.words for row in compare(benched))
+
+
+def test_games_with_something_wrong_are_kept_to_be_read(
+    document: dict[str, Any], tmp_path: Path
+) -> None:
+    fine = next(game for game in document["each_game"] if not to_read(game))
+    induced, diagnosed = fine["induced"][0], fine["faults"][0]
+    missed = {**fine, "induced": [{**induced, "missed": True}]}
+    assert to_read(missed)
+    assert to_read({**fine, "faults": [{**diagnosed, "verdict": NOTHING}]})
+    assert to_read({**fine, "faults": [{**diagnosed, "verdict": WRONG}]})
+    assert not to_read({**fine, "faults": [{**diagnosed, "verdict": AGAIN}]})
+    assert to_read({**fine, "ended": "The robot was switched off."})
+
+    data, kept = tmp_path / "data", tmp_path / "logs" / "seed-2-games-1-to-5"
+    data.mkdir()
+    (data / "robot.log").write_text("what the robot process wrote")
+    for _ in range(2):  # the second run replaces the first
+        keep_games(data, kept, [missed])
+    assert (kept / "robot.log").read_text() == "what the robot process wrote"
+    assert json.loads((kept / "faults.json").read_text()) == [missed]
