@@ -97,7 +97,7 @@ def _first_answer(lines: IO[bytes]) -> str | None:
 
 
 def _by_post(url: str, message: Mapping[str, Any], seconds: float, told: Told) -> None:
-    from urllib.error import HTTPError  # slow to import, and few robots need them
+    from urllib.error import HTTPError, URLError  # slow to import, and few robots need them
     from urllib.request import Request, urlopen
 
     body = json.dumps(dict(message)).encode()
@@ -107,6 +107,10 @@ def _by_post(url: str, message: Mapping[str, Any], seconds: float, told: Told) -
             said = _answer_in(reply.read(LONGEST))
     except HTTPError as error:
         told(CallNews("failed", f"the address replied with status {error.code}"))
+        return
+    except URLError as error:
+        why = getattr(error.reason, "strerror", None) or error.reason
+        told(CallNews("failed", _short(f"the address cannot be reached: {why}")))
         return
     told(CallNews("sent") if said is None else CallNews("answered", said))
 

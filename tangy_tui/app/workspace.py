@@ -199,6 +199,7 @@ class Workspace(Participants):
         injections: Sequence[str] = (),
         live: Callable[[], Health] | None = None,
         world: World | None = None,
+        rehearsal: str = "",
     ) -> Supervision:
         """Create a run of games under execution monitoring, simulated by default.
 
@@ -209,13 +210,14 @@ class Workspace(Participants):
             injections: faults to inject, as in `--inject`.
             live: returns the readings of real devices, which replace simulated ones.
             world: another world for the games, which handles `injections` itself.
+            rehearsal: begins the message to people who are called on the bench; "": call nobody.
 
         Raises:
             TangyError: an injection is not valid, or the fault rules have a mistake.
         """
         from tangy_hw.robot_client.live_world import LiveWorld
         from tangy_profiles.fault_file import load_faults
-        from tangy_profiles.game_world import LIVE
+        from tangy_profiles.game_world import BENCH, LIVE
         from tangy_sim.worlds.injection import read_injection
         from tangy_tui.app.simulated_worlds import game_world
         from tangy_tui.monitoring.accepted import expected_effects
@@ -235,9 +237,11 @@ class Workspace(Participants):
             self.name,
             [str(one) for one in to_come],
         )
-        if world.played_in == LIVE:
+        if world.played_in == LIVE or (rehearsal and world.played_in == BENCH):
             buttons = world.link if isinstance(world, LiveWorld) else None
-            supervision.call_by(Calls(self.robot, self.store.append, buttons=buttons))
+            notice = "" if world.played_in == LIVE else rehearsal
+            calls = Calls(self.robot, self.store.append, buttons=buttons, notice=notice)
+            supervision.call_by(calls)
         return supervision
 
     def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:

@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from queue import Empty, SimpleQueue
 from typing import Any, Protocol
 
 from tangy_hw.calling import CallNews, call
@@ -72,6 +73,7 @@ class Calls:
         way: Way = call,
         *,
         buttons: CallButtons | None = None,
+        notice: str = "",
     ) -> None:
         """Prepare for a robot.
 
@@ -80,9 +82,12 @@ class Calls:
             log: appends a record to the log.
             way: sends a message and waits for an answer.
             buttons: those of the robot's chest screen, if it has one.
+            notice: begins the text of each message.
         """
         self._contacts = {EXPERT: robot.expert, STAFF_ROLE: robot.staff}
         self._title = robot.title
+        self._notice = notice
+        self._news: SimpleQueue[CallMade] = SimpleQueue()
         self._log = log
         self._way = way
         self._states: dict[Role, CallState] = {}
@@ -102,6 +107,14 @@ class Calls:
         if contact is None or not contact.reachable:
             return None
         return contact if there is None or there.stage == "failed" else None
+
+    def take_news(self) -> list[CallMade]:
+        """Return the outcomes since the last time, in order."""
+        told = []
+        with suppress(Empty):
+            while True:
+                told.append(self._news.get_nowait())
+        return told
 
     def begin(self, fault: Fault) -> None:
         """Start with a new fault that halts the robot, and call staff if possible."""
@@ -163,7 +176,7 @@ class Calls:
             "for": role,
             "robot": self._title,
             "fault": fault.code,
-            "text": f"{self._title}: {fault.unnamed}",
+            "text": f"{self._notice} {self._title}: {fault.unnamed}".strip(),
             "advice": list(fault.texts[2:]),
         }
 
@@ -208,6 +221,7 @@ class Calls:
             stage=state.stage,
             said=state.said,
         )
+        self._news.put(made)
         with suppress(TangyError):  # a full log must not prevent a call
             self._log(made)
 

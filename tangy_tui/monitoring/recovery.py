@@ -15,7 +15,7 @@ from typing import TypeAlias
 from uuid import uuid4
 
 from tangy_profiles.faults import LEAVE_TO_STAFF, URGENCY, FaultRule, Remedy
-from tangy_profiles.game_records import FaultMove, MoveKind, named
+from tangy_profiles.game_records import CallMade, FaultMove, MoveKind, named
 from tangy_profiles.health import STALE
 from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState
@@ -42,7 +42,7 @@ from tangy_tui.monitoring.fault import (
 
 _LOG = logging.getLogger(__name__)
 
-Event: TypeAlias = GameEvent | FaultEvent
+Event: TypeAlias = GameEvent | FaultEvent | CallMade
 
 AGAIN = 3
 """After this many occurrences in a game, recovery starts one rung higher."""

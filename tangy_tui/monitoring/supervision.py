@@ -210,7 +210,8 @@ class Supervision:
 
         It may be called at any rate, also while the robot is halted or asks.
         """
-        return self.watch.look() + self._end_if_hopeless()
+        told = self.watch.look() + self._end_if_hopeless()
+        return told if self.calls is None else [*told, *self.calls.take_news()]
 
     @property
     def status(self) -> tuple[str, str]:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 SIMULATED = "The simulated expert has looked at it."
 CALLS_NOBODY = "Tangy calls nobody itself."
 TEST_CALL = "This is a test of how Tangy calls you. Nothing is wrong."
+REHEARSAL = "This is a rehearsal: the robot is simulated. Nothing is wrong."
 NOBODY_NAMED = "nobody is named in the robot's file"
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.beliefs import Beta, probability_best
 from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.game_records import CallMade
 from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
@@ -86,6 +87,8 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
             ]
         case DoneOnce(_, instead):
             return [f"   {once_words(activity.behaviour_words(instead))}"]
+        case CallMade():
+            return []  # the prompt tells it
         case GameChanged():
             return changed_lines(event, activity, name)
         case GameEnded(pauses=pauses):

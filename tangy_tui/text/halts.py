@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tangy_profiles.contacts import EXPERT
-from tangy_tui.text.calls import expert_words
+from tangy_tui.text.calls import call_words, expert_words
 from tangy_tui.text.faults import kind_words, mark_of, move_words
 from tangy_tui.text.times import clock
 
@@ -73,6 +73,15 @@ def called_words(game: Supervision, *, restarted: bool) -> str:
     begun = f"{RESTARTED} " if restarted else ""
     waits = f"{REACHED_TOO} " if to_be_reached(game) else ""
     return f"{begun}{expert_words(game)} {waits}{WHEN_WELL}"
+
+
+def rehearsed_words(game: Supervision) -> str:
+    """Tell what the simulated expert did, and the state of the call if people are called."""
+    state = None if game.calls is None else game.calls.state(EXPERT)
+    if state is None:
+        return SIMULATED
+    waits = f" {REACHED_TOO}" if to_be_reached(game) else ""
+    return f"{call_words(state)}{waits} {SIMULATED}"
 
 
 ALL_WELL = "Is all well now?"

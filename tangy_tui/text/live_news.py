@@ -6,8 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt
+from tangy_profiles.game_records import CallMade
 from tangy_tui.app.seats import Seated
 from tangy_tui.interaction.game_events import Acted, GameEnded
+from tangy_tui.text.calls import logged_words
 from tangy_tui.text.games import ended_words, paused_lines
 
 if TYPE_CHECKING:
@@ -41,6 +43,8 @@ def event_words(event: Event, name: Name) -> str:
             whom = "" if action.target is None else f" ({name(action.target)})"
             done = "" if outcome.completed else "  not carried out"
             return f"{number:4} {action.behaviour.question}{whom}: {speech}{done}"
+        case CallMade(role=role, way=way, stage=stage, said=said):
+            return logged_words(role, way, stage, said)
         case GameEnded(pauses=pauses):
             return " ".join([ended_words(event), *paused_lines(*pauses)])
     return ""

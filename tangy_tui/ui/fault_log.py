@@ -1,15 +1,26 @@
-"""Log entries about faults, for screens that show games."""
+"""Log entries about faults and calls, for screens that show games."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from textual.screen import Screen
 
+from tangy_profiles.game_records import CallMade, CallStage
 from tangy_tui.monitoring.fault import ENDINGS, Diagnosed, FaultEvent, Moved
+from tangy_tui.text.calls import logged_words
 from tangy_tui.text.faults import kind_words, move_words
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.room_view import RoomView
+
+CALLS: Mapping[CallStage, Kind] = {"answered": "good", "reached": "good", "failed": "bad"}
+
+
+def write_call(screen: Screen[Any], made: CallMade) -> None:
+    """Write the outcome of a call to the log."""
+    words = logged_words(made.role, made.way, made.stage, made.said)
+    screen.query_one(LogView).write(words, CALLS.get(made.stage, "warn"))
 
 
 def write_fault(screen: Screen[Any], event: FaultEvent) -> None:

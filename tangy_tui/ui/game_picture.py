@@ -7,6 +7,7 @@ from typing import Any
 
 from textual.screen import Screen
 
+from tangy_profiles.game_records import CallMade
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import (
     Acted,
@@ -36,7 +37,7 @@ from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.situations import OVER_NOW, lesson_words, moment_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
-from tangy_tui.ui.fault_log import write_fault
+from tangy_tui.ui.fault_log import write_call, write_fault
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.reasons import Ground, why_asked, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
@@ -120,6 +121,8 @@ class GamePicture:
                 case Diagnosed() | Moved():
                     write_fault(self._screen, event)
                     self.show_scene(0, drive=False, pace=pace)
+                case CallMade():
+                    write_call(self._screen, event)
                 case GameChanged():
                     lines = changed_lines(event, self._workspace.activity, self._workspace.name)
                     for line in lines:

@@ -10,6 +10,7 @@ from textual.constants import ESCAPE_DELAY
 from tangy_profiles import game_world
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import USUAL_PACE
+from tangy_tui.text.calls import REHEARSAL
 from tangy_tui.text.live_games import SWITCH_ON_DETAIL, parts_lines, switch_on_words
 from tangy_tui.ui.interruption import ask_about_interrupted
 
@@ -87,7 +88,9 @@ async def play_live(
             setup.carry_out(world)
         elif past is None:
             world.set_pace(pace)
-        supervision = workspace.supervision(policy, seed, asks=True, world=world)
+        supervision = workspace.supervision(
+            policy, seed, asks=True, world=world, rehearsal=REHEARSAL
+        )
         screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher, past=past)
         screen.minutes = setup.minutes if past is None else past.beginning.plan.minutes
         if program.hearing is not None:

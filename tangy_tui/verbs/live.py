@@ -14,6 +14,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
+from tangy_tui.text.calls import REHEARSAL
 from tangy_tui.text.command_line import SWITCHING_ON
 from tangy_tui.text.live_games import part_words
 from tangy_tui.text.outcomes import faults_logged, score_lines
@@ -244,7 +245,9 @@ def live(
                 if not lines.begins_anyway():
                     return
                 lines.setup.carry_out(there)
-            supervision = workspace.supervision(learnt, number, asks=asks, world=there)
+            supervision = workspace.supervision(
+                learnt, number, asks=asks, world=there, rehearsal="" if expert else REHEARSAL
+            )
             if plain_lines:
                 to_their_end = play_with_staff(
                     workspace, supervision, games, who, robot=there, past=past

@@ -105,4 +105,4 @@ def test_an_address_that_refuses_or_is_not_there_is_told() -> None:
         (told,) = news(Contact("Anna", url=url))
         assert told.stage == "failed" and "503" in told.said
     (told,) = news(Contact("Anna", url=url), 2.0)
-    assert told.stage == "failed" and told.said
+    assert told == CallNews("failed", "the address cannot be reached: Connection refused")

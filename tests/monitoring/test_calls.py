@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,11 +14,15 @@ from tangy_hw.calling import CallNews
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.game_records import CallMade
+from tangy_profiles.game_world import BENCH
 from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store
+from tangy_sim.worlds.injection import read_injection
+from tangy_tui.app.simulated_worlds import game_world
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.calls import Calls
-from tangy_tui.text.calls import call_words, expert_words
+from tangy_tui.text.calls import REHEARSAL, call_words, expert_words
 from tests.monitoring.conftest import Supervise
 from tests.support.telephone import ANNA, STATION, Line
 from tests.support.waiting import wait_until
@@ -115,6 +122,46 @@ def test_where_nobody_can_be_called_it_is_never_said_that_somebody_was(
     assert "Anna Berg was reached, by Ada." in expert_words(
         game
     )  # it is not said that she answered
+
+
+def test_the_outcomes_of_a_call_come_with_the_events_of_the_game(
+    supervise: Supervise, calls: Calls, line: Line
+) -> None:
+    game = supervise("link-lost@3")
+    game.call_by(calls)
+    game.begin()
+    told: list[CallMade] = []
+    while game.halted is None:
+        told += [one for one in game.step() if isinstance(one, CallMade)]
+    told += [one for one in game.look() if isinstance(one, CallMade)]
+    line.says("Station 2", "answered", "coming")
+    told += [one for one in game.look() if isinstance(one, CallMade)]
+    assert [(one.role, one.stage, one.said) for one in told] == [
+        (STAFF_ROLE, "tried", ""),
+        (STAFF_ROLE, "answered", "coming"),
+    ]
+    assert not game.look()  # each of them once
+
+
+def test_on_the_bench_people_are_called_if_calls_are_rehearsed_and_the_message_says_so(
+    workspace: Workspace, learnt: Policy, tmp_path: Path
+) -> None:
+    kept = tmp_path / "message"
+    program = "import sys; open(sys.argv[1], 'w').write(sys.stdin.read()); print('answered: me')"
+    ring = Contact("Station 2", command=(sys.executable, "-c", program, str(kept)))
+    workspace.robot = replace(workspace.robot, staff=ring)
+    world = game_world(
+        workspace.activity, list(workspace.names), 1, [read_injection("link-lost@3")]
+    )
+    world.played_in = BENCH
+    assert workspace.supervision(learnt, 1, world=world).calls is None
+    game = workspace.supervision(learnt, 1, world=world, rehearsal=REHEARSAL)
+    game.begin()
+    while game.halted is None:
+        game.step()
+    wait_until(lambda: (STAFF_ROLE, "answered", "me") in logged(workspace.store), "they answer")
+    message = json.loads(kept.read_text())
+    assert message["text"].startswith(REHEARSAL) and game.halted.unnamed in message["text"]
 
 
 def test_simulated_games_call_nobody(supervise: Supervise) -> None:

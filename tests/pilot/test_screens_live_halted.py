@@ -20,6 +20,7 @@ from tangy_tui.text import halts
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
+from tangy_tui.ui.widgets.log_view import LogView
 from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
 from tests.support.telephone import ANNA, STATION, Line
 from tests.support.waiting import until_shown
@@ -217,6 +218,14 @@ async def test_the_dialog_says_what_came_of_each_call_and_calls_again_after_one_
             pilot, lambda: "Anna Berg was reached, and answered: I am on my way." in seen(pilot)
         )
         await until_shown(pilot, lambda: "R reached" not in seen(pilot))
+        sentences = live(pilot).query_one(LogView).sentences
+        assert [one for one in sentences if one.startswith("The expert (http)")] == [
+            "The expert (http): a message is being sent.",
+            "The expert (http): could not be reached: no line.",
+            "The expert (http): a message is being sent.",
+            "The expert (http): a message was sent, and not answered yet.",
+            "The expert (http): was reached, and answered: I am on my way.",
+        ]
     calls = [e.record for e in workspace.store.events(CallMade) if e.record.role == EXPERT]
     assert [(call.stage, call.said) for call in calls] == [
         ("tried", ""),

@@ -233,11 +233,10 @@ class CriticalDialog(Dialog[None]):
         if key == "expert" and not self._called:
             if self._desk.restarts:
                 return halts.RESTARTING
-            if self._desk.simulated:
-                return halts.CALLING
             calls = self._desk.supervision.calls
-            contact = None if calls is None else calls.to_call(EXPERT)
-            return "" if contact is None else calling_words(contact)
+            if calls is not None and (contact := calls.to_call(EXPERT)) is not None:
+                return calling_words(contact)
+            return halts.CALLING if self._desk.simulated else ""
         return halts.LOOKING if key == "accept" and self._fault.acknowledged else ""
 
     async def _tried(self, key: str) -> None:
@@ -277,9 +276,9 @@ class CriticalDialog(Dialog[None]):
 
     def _whom_to_call(self, restarted: bool) -> str:
         """Tell whom to call, and the state of the call."""
-        if self._desk.simulated:
-            return halts.SIMULATED
         self._call = self._call_state()
+        if self._desk.simulated:
+            return halts.rehearsed_words(self._desk.supervision)
         return halts.called_words(self._desk.supervision, restarted=restarted)
 
     def _call_state(self) -> CallState | None:
