@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
 from tangy_profiles.teaching_records import (
@@ -33,7 +33,7 @@ def log_demonstration(store: Store, shown: Demonstration) -> None:
             },
         )
         for step in shown.steps:
-            append_body(store, DemonstrationStep, {"demonstration": shown.id, **written(step)})
+            append_body(store, DemonstrationStep, {"demonstration": shown.id, **encode(step)})
         if shown.finished:
             append_body(store, DemonstrationFinished, {"demonstration": shown.id})
 

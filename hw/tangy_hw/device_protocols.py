@@ -137,7 +137,7 @@ class Base(Device, Protocol):
 
     @property
     def odometry(self) -> Stamped[Odometry] | None:
-        """Newest odometry; None before the first."""
+        """LatestValue odometry; None before the first."""
         ...
 
     async def drive(self, twist: Twist) -> None:
@@ -158,7 +158,7 @@ class Laser(Device, Protocol):
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """Newest scan; None before the first."""
+        """LatestValue scan; None before the first."""
         ...
 
 

@@ -22,8 +22,8 @@ class RobotSetup:
     `requests` is a source of requests (see `perception.requests.sources`), `corners` are the
     table's in its image. `faces` are feature vectors by person, of the kind `face_kind`. `pairing`
     identifies tablets (see `drivers.chest_pairing`); without it they must pair again. `courtesies`
-    are sentences for people whom the robot waits for (see `Courtesies`). `record` is a file for the
-    scans of a manual drive; without a map, the pose is by odometry.
+    are sentences for people whom the robot waits for (see `WaitExplanations`). `record` is a file
+    for the scans of a manual drive; without a map, the pose is by odometry.
     """
 
     robot: str

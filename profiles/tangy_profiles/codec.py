@@ -33,17 +33,17 @@ from tangy_profiles.reading import nearest
 
 T = TypeVar("T")
 Reader = Callable[[Any], Any]
-"""Decodes a JSON value, or raises Unreadable."""
+"""Decodes a JSON value, or raises InvalidValue."""
 
 LARGEST = 1e12
 """The largest number in a log: s, counts, probabilities, readings of devices."""
 
 
-class Unreadable(ValueError):
+class InvalidValue(ValueError):
     """An invalid value; the text is the tail of a sentence ("is not text")."""
 
 
-class By(NamedTuple):
+class DecodedBy(NamedTuple):
     """Decodes a value with this reader instead of by its type."""
 
     reader: Reader
@@ -75,31 +75,31 @@ class Field(NamedTuple):
     default: Any
 
 
-def read(kind: type[T], value: Any) -> T:
+def decode(kind: type[T], value: Any) -> T:
     """Decode a value of a JSON document.
 
     Raises:
-        Unreadable: it is invalid; the message says where and why.
+        InvalidValue: it is invalid; the message says where and why.
     """
     return cast(T, reader(cast(Any, kind))(value))
 
 
-def written(value: Any) -> Any:
+def encode(value: Any) -> Any:
     """Encode a record, or a value within one, as JSON."""
     if isinstance(value, str | int | float | NoneType):
         return value
     if isinstance(value, Mapping):
-        return {key: written(one) for key, one in value.items()}
+        return {key: encode(one) for key, one in value.items()}
     if not _is_record(kind := cast(Any, type(value))):
-        return [written(one) for one in (sorted(value) if kind is frozenset else value)]
+        return [encode(one) for one in (sorted(value) if kind is frozenset else value)]
     table: dict[str, Any] = {}
     for field in fields_of(kind):
         one = getattr(value, field.name)
         if field.key.flat:
-            table |= written(one)
+            table |= encode(one)
         elif not (field.key.sparse and one == field.default):
-            table[field.key.name] = written(one)
-    return table | {key: written(getattr(value, name)) for key, name in _derived(kind).items()}
+            table[field.key.name] = encode(one)
+    return table | {key: encode(getattr(value, name)) for key, name in _derived(kind).items()}
 
 
 def keys_of(kind: Any) -> frozenset[str]:
@@ -138,8 +138,8 @@ def _derived(kind: Any) -> Mapping[str, str]:
 
 
 def _is_record(kind: Any) -> bool:
-    """Return whether a type is encoded as a table: a dataclass, or a named tuple with `glance`."""
-    return is_dataclass(kind) or hasattr(kind, "glance")
+    """Return whether a type is a table: a dataclass, or a named tuple with `decode_quickly`."""
+    return is_dataclass(kind) or hasattr(kind, "decode_quickly")
 
 
 def _unpacked(hint: Any) -> tuple[Any, tuple[Any, ...]]:
@@ -160,8 +160,8 @@ def reader(hint: Any) -> Reader:
     plain, marks = _unpacked(hint)
     origin, args = get_origin(hint), get_args(hint)
     if marks:
-        own = [mark.reader for mark in marks if isinstance(mark, By)] or [reader(plain)]
-        return _in_turn([*own, *(mark for mark in marks if not isinstance(mark, By))])
+        own = [mark.reader for mark in marks if isinstance(mark, DecodedBy)] or [reader(plain)]
+        return _in_turn([*own, *(mark for mark in marks if not isinstance(mark, DecodedBy))])
     if hint in _PLAIN:
         return _PLAIN[hint]
     if origin is Literal:
@@ -187,18 +187,18 @@ def at_least(least: int) -> Reader:
     def check(value: Any) -> Any:
         whole = isinstance(value, int)
         if not least <= (value if whole else len(value)) <= LARGEST:
-            raise Unreadable("is not a count" if whole else "is too short")
+            raise InvalidValue("is not a count" if whole else "is too short")
         return value
 
     return check
 
 
-def between(least: int, most: int) -> Reader:
+def within_range(least: int, most: int) -> Reader:
     """Accept whole numbers in an inclusive range."""
 
     def check(value: Any) -> Any:
         if not least <= value <= most:
-            raise Unreadable(f"is not a count from {least:,} to {most:,}")
+            raise InvalidValue(f"is not a count from {least:,} to {most:,}")
         return value
 
     return check
@@ -212,7 +212,7 @@ def measurement(value: Any) -> Any:
     """Accept a device's measurement: a finite number, yes or no, or a word."""
     number = isinstance(value, int | float) and abs(value) <= sys.float_info.max
     if not (number or isinstance(value, str)):
-        raise Unreadable("is not a measurement")
+        raise InvalidValue("is not a measurement")
     return value
 
 
@@ -221,7 +221,7 @@ def one_of(*words: str) -> Reader:
 
     def take(value: Any) -> Any:
         if _text(value) not in words:
-            raise Unreadable(f"is {value[:40]!r} ({nearest(value, words).rstrip('.')})")
+            raise InvalidValue(f"is {value[:40]!r} ({nearest(value, words).rstrip('.')})")
         return value
 
     return take
@@ -230,7 +230,7 @@ def one_of(*words: str) -> Reader:
 def _typed(kinds: type | UnionType, but: type | tuple[()], wrong: str) -> Reader:
     def take(value: Any) -> Any:
         if not isinstance(value, kinds) or isinstance(value, but):
-            raise Unreadable(wrong)
+            raise InvalidValue(wrong)
         return value
 
     return take
@@ -238,7 +238,7 @@ def _typed(kinds: type | UnionType, but: type | tuple[()], wrong: str) -> Reader
 
 def _within_measure(value: Any) -> Any:
     if not abs(value) <= LARGEST:  # also rejects NaN
-        raise Unreadable("is beyond all measure")
+        raise InvalidValue("is beyond all measure")
     return value
 
 
@@ -289,7 +289,7 @@ def _row_of(each: Any, made: Callable[..., Any]) -> Reader:
 
     def take(value: Any) -> Any:
         if not isinstance(value, list) or len(value) != len(inner):
-            raise Unreadable(f"is not a list of {len(inner)}")
+            raise InvalidValue(f"is not a list of {len(inner)}")
         return made(*[_held(test, one) for test, one in zip(inner, value, strict=True)])
 
     return take
@@ -303,10 +303,13 @@ def _record(kind: Any) -> Reader:
     """Return the decoder for a record's table; it also runs the record's own checks."""
     parts = [(*field, reader(field.hint)) for field in fields_of(kind)]
     only = keys_of(kind) if getattr(kind, "ONLY", False) else None  # None: other keys are allowed
-    misfit, glance = getattr(kind, "misfit", None), getattr(kind, "glance", None)
+    invalid_reason, decode_quickly = (
+        getattr(kind, "invalid_reason", None),
+        getattr(kind, "decode_quickly", None),
+    )
 
     def take(value: Any) -> Any:
-        if glance is not None and (seen := glance(value)) is not None:
+        if decode_quickly is not None and (seen := decode_quickly(value)) is not None:
             return seen
         found: dict[str, Any] = {}
         for name, key, _, default, inner in parts:
@@ -315,11 +318,11 @@ def _record(kind: Any) -> Reader:
             elif key.name in _table(value) or default is MISSING:
                 found[name] = _of_key(key.name, inner, value)
         if only is not None and (others := _table(value).keys() - only):
-            raise Unreadable(f"has {min(others)[:40]!r}, which is not known")
+            raise InvalidValue(f"has {min(others)[:40]!r}, which is not known")
         _table(value)
         made = kind(**found)
-        if misfit is not None and (why := misfit(made)):
-            raise Unreadable(why)
+        if invalid_reason is not None and (why := invalid_reason(made)):
+            raise InvalidValue(why)
         return made
 
     return take
@@ -327,15 +330,15 @@ def _record(kind: Any) -> Reader:
 
 def _of_key(key: str, inner: Reader, table: Mapping[str, Any]) -> Any:
     if key not in table:
-        raise Unreadable(f"has no {key!r}")
+        raise InvalidValue(f"has no {key!r}")
     try:
         return inner(table[key])
-    except Unreadable as why:
-        raise Unreadable(f"has {key!r} that {why}") from None
+    except InvalidValue as why:
+        raise InvalidValue(f"has {key!r} that {why}") from None
 
 
 def _held(inner: Reader, value: Any) -> Any:
     try:
         return inner(value)
-    except Unreadable as why:
-        raise Unreadable(f"holds one that {why}") from None
+    except InvalidValue as why:
+        raise InvalidValue(f"holds one that {why}") from None

@@ -32,7 +32,7 @@ class Step:
     id: Unlogged[int] = field(default=0, compare=False)
     teacher: Unlogged[str] = field(default="", compare=False)
 
-    def misfit(self) -> str:
+    def invalid_reason(self) -> str:
         """Return an inconsistency as the tail of a sentence; "" if there is none."""
         return not_the_same(self.state, self.after)
 

@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import Any
 
 from tangy_profiles import codec
-from tangy_profiles.codec import Unreadable
+from tangy_profiles.codec import InvalidValue
 from tangy_profiles.records import KINDS, VERSION_KEY
 from tangy_profiles.records import EventRecord as EventRecord
 from tangy_profiles.records import Unknown as Unknown
@@ -40,18 +40,20 @@ def read_record(
     """Return the record of an event.
 
     Raises:
-        Unreadable: the event is invalid; the text is the tail of a sentence.
+        InvalidValue: the event is invalid; the text is the tail of a sentence.
     """
     known = record_class(name)
     if known is Unknown:
         return Unknown(name, body)
     if known.ABOUT != "nobody" and person is None:
-        raise Unreadable("says of nobody whom it is about")
+        raise InvalidValue("says of nobody whom it is about")
     if known.ABOUT == "strategy" and strategy is None:
-        raise Unreadable("has no strategy")
+        raise InvalidValue("has no strategy")
     version = body.get(VERSION_KEY, 1) if isinstance(body, dict) else 1
     if version != known.VERSION:
         if type(version) is not int or not 1 <= version < known.VERSION:
-            raise Unreadable(f"is of version {str(version)[:20]!r}, and this Tangy knows none such")
+            raise InvalidValue(
+                f"is of version {str(version)[:20]!r}, and this Tangy knows none such"
+            )
         body = known.OLDER(version, dict(body))
-    return codec.read(known, body)
+    return codec.decode(known, body)

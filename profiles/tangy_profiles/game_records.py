@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
-from tangy_profiles.codec import By, Count, Flat, Sparse, measurement, read
+from tangy_profiles.codec import Count, DecodedBy, Flat, Sparse, decode, measurement
 from tangy_profiles.contacts import Role
 from tangy_profiles.declared.memory import GameMemory
 from tangy_profiles.demonstration import Step, not_the_same
@@ -74,10 +74,10 @@ def _state_of_a_game(value: Any) -> ActivityState:
     """Decode a state; the first logs lack `closed`."""
     if isinstance(value, dict) and "closed" not in value:
         value = {**value, "closed": None}
-    return read(ActivityState, value)
+    return decode(ActivityState, value)
 
 
-GameState: TypeAlias = Annotated[ActivityState, By(_state_of_a_game)]
+GameState: TypeAlias = Annotated[ActivityState, DecodedBy(_state_of_a_game)]
 
 
 @kind("game resumed")
@@ -161,7 +161,7 @@ class GameStep(EventRecord):
     after: GameState | None = None
     memory: Sparse[GameMemory | None] = None
 
-    def misfit(self) -> str:
+    def invalid_reason(self) -> str:
         """Return an inconsistency as the tail of a sentence; "" if there is none."""
         return not_the_same(self.state, self.after)
 
@@ -184,7 +184,7 @@ class GameEnding(EventRecord):
 
 
 Criticality = Literal["critical", "non-critical"]
-Measurement: TypeAlias = Annotated[Fact, By(measurement)]
+Measurement: TypeAlias = Annotated[Fact, DecodedBy(measurement)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal, cast, get_args
 
-from tangy_profiles.codec import Unreadable, one_of
+from tangy_profiles.codec import InvalidValue, one_of
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.extensions import extensions
 from tangy_profiles.reading import Table, nearest, plain
@@ -41,7 +41,7 @@ def _method(name: str) -> str:
 
 def _share(value: float) -> float:
     if not LEAST_KEPT <= value <= 1:
-        raise Unreadable("is not a share that can be kept")
+        raise InvalidValue("is not a share that can be kept")
     return value
 
 

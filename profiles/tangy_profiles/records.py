@@ -70,7 +70,7 @@ class EventRecord:
     @property
     def body(self) -> dict[str, Any]:
         """The body as the log stores it."""
-        table: dict[str, Any] = codec.written(self)
+        table: dict[str, Any] = codec.encode(self)
         return table if self.VERSION == 1 else {VERSION_KEY: self.VERSION, **table}
 
 

@@ -12,7 +12,7 @@ from datetime import datetime
 from functools import cache
 from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
 
-from tangy_profiles.codec import Unreadable
+from tangy_profiles.codec import InvalidValue
 from tangy_profiles.events import EventRecord, Unknown, read_record, record_class
 from tangy_profiles.reading import plain
 
@@ -80,7 +80,7 @@ def read_row(row: Sequence[Any]) -> Event[EventRecord]:
         raise BadRow(wrong, event)
     try:
         return event._replace(body=body, record=read_record(kind, person, strategy, body))
-    except Unreadable as why:
+    except InvalidValue as why:
         raise BadRow(f"it {why}", event) from None
 
 

@@ -7,7 +7,7 @@ from typing import Any, Literal
 from tangy_profiles.codec import Count, Sparse
 from tangy_profiles.records import EventRecord, kind
 
-StaffDeed = Literal[
+StaffActionKind = Literal[
     "stopped",
     "let go on",
     "took over",
@@ -41,7 +41,7 @@ StaffDeed = Literal[
 """What staff, or the program beside its behaviours, did in a game."""
 
 
-BEGINNINGS: dict[str, StaffDeed] = {
+BEGINNINGS: dict[str, StaffActionKind] = {
     "a fault was brought about: ": "fault injected",
     "a fault was lifted: ": "fault lifted",
     "faults are to be brought about: ": "faults planned",
@@ -70,7 +70,7 @@ class StaffAction(EventRecord):
     """
 
     game: str
-    did: StaffDeed
+    did: StaffActionKind
     by: str
     person: Sparse[str] = ""
     detail: Sparse[str] = ""

@@ -92,7 +92,7 @@ class ActivityState(NamedTuple):
                 return user
         raise KeyError(id)
 
-    def misfit(self) -> str:
+    def invalid_reason(self) -> str:
         """Return an inconsistency as the tail of a sentence; "" if there is none."""
         ids = [user.id for user in self.users]
         if len(set(ids)) < len(ids):
@@ -101,7 +101,7 @@ class ActivityState(NamedTuple):
         return "" if there else "has somebody 'attended' who is not among the 'users'"
 
     @classmethod
-    def glance(cls, value: Any) -> ActivityState | None:
+    def decode_quickly(cls, value: Any) -> ActivityState | None:
         """Decode a valid state quickly, as most of a log consists of states.
 
         Returns:

@@ -19,7 +19,7 @@ from pathlib import Path
 from threading import RLock
 from typing import TYPE_CHECKING, Any, Self, TypeVar, overload
 
-from tangy_profiles.codec import Unreadable
+from tangy_profiles.codec import InvalidValue
 from tangy_profiles.erased_log import count_left, erase_from_log
 from tangy_profiles.errors import ProfileError, StoreError
 from tangy_profiles.events import EventRecord, read_record
@@ -117,7 +117,7 @@ class Store:
             read_record(kind, person, strategy, json.loads(text))
         except RecursionError:
             raise ValueError("The body of an event is nested too deeply.") from None
-        except Unreadable as why:
+        except InvalidValue as why:
             raise ValueError(f"An event of the kind {kind!r} {why}.") from None
         if len(text) > LARGEST_BODY:
             raise ValueError("The body of an event is too long.")
@@ -167,7 +167,7 @@ class Store:
         """Yield the events of these kinds (default: all) with seq > `after`, by seq.
 
         A kind is named by its record. The events are those logged when the iteration begins;
-        appending meanwhile is allowed. Unreadable ones are left out and reported in `aside`.
+        appending meanwhile is allowed. Invalid ones are left out and reported in `aside`.
         """
         newest = self._rows("SELECT coalesce(max(seq), 0) FROM event")
         until = newest[0][0] if newest else 0

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeAlias
 
-from tangy_profiles.codec import Count, Flat, Sparse, Unlogged, at_least, between
+from tangy_profiles.codec import Count, Flat, Sparse, Unlogged, at_least, within_range
 from tangy_profiles.demonstration import Demonstration, Origin, Resolution, Step
 from tangy_profiles.records import EventRecord, kind
 from tangy_profiles.state import Request, Situation
@@ -35,7 +35,7 @@ class DemonstrationBegun(EventRecord):
         about: dict[str, Any] = {name: getattr(shown, name) for name in own}
         return cls(demonstration=shown.id, kept=kept, **about)
 
-    def misfit(self) -> str:
+    def invalid_reason(self) -> str:
         """Return an inconsistency as the tail of a sentence; "" if there is none."""
         lacks = self.origin == "again" and (not self.of or self.kept is None)
         return "has no 'of' or 'kept'" if lacks else ""
@@ -152,9 +152,9 @@ class ForestSettings:
 
     ONLY: ClassVar[bool] = True
 
-    trees: Annotated[int, between(1, 1_000)] = 100
+    trees: Annotated[int, within_range(1, 1_000)] = 100
     bootstrap: bool = False
-    min_samples_leaf: Annotated[int, between(1, 1_000_000)] = 1
+    min_samples_leaf: Annotated[int, within_range(1, 1_000_000)] = 1
     seed: int = 0
 
 
@@ -201,7 +201,7 @@ class PolicyLearnt(EventRecord):
     at: Unlogged[str] = ""
     """When it was logged (ISO 8601, UTC)."""
 
-    def misfit(self) -> str:
+    def invalid_reason(self) -> str:
         """Return an inconsistency as the tail of a sentence; "" if there is none.
 
         Repetitions would be learnt again, and a damaged row may have millions.

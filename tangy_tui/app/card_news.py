@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt
 from tangy_hw.robot_client.card_observations import CardObservations
-from tangy_profiles.staff_records import StaffDeed
+from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.interaction.game_events import GameBegun, ResumedGame
 from tangy_tui.monitoring.supervision import Event
 
@@ -22,7 +22,7 @@ class CardNote:
     `news` is what Tangy learnt or doubts; None: staff already know it.
     """
 
-    did: StaffDeed
+    did: StaffActionKind
     person: str = ""
     detail: str = ""
     news: CardLearnt | CardDoubt | None = None

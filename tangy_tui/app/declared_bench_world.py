@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
 from tangy_profiles.behaviour import Action
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.declared.speech import media
 from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.past_game import PastGame
@@ -32,7 +32,7 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         self._passed_on = 0
         memory = past.steps[-1].memory
         if memory is not None:
-            self.bench.do("rules", memory=written(memory))
+            self.bench.do("rules", memory=encode(memory))
         return super().resume(past)
 
     def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.process_log import serving
-from tangy_profiles.staff_records import StaffDeed
+from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import TAKEN_OVER, StaffNote
 from tangy_tui.app.robot_controls import ENDED, RobotControls
@@ -25,7 +25,7 @@ class EndingGames:
     stopped: bool
     _turn: threading.RLock
 
-    def note(self, did: StaffDeed, *, by: str = "", **what: Any) -> None:
+    def note(self, did: StaffActionKind, *, by: str = "", **what: Any) -> None:
         """Log what staff did (see `Supervision.note`)."""
         raise NotImplementedError
 

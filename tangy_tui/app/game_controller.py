@@ -16,7 +16,7 @@ from tangy_profiles.declared.whom import target_of
 from tangy_profiles.errors import TangyError
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
-from tangy_profiles.staff_records import StaffDeed
+from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.app.answers import Answers
 from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.ending_games import EndingGames
@@ -279,7 +279,7 @@ class GameController(EndingGames):
             case forgotten:
                 assert_never(forgotten)
 
-    def note(self, did: StaffDeed, *, by: str = "", **what: Any) -> None:
+    def note(self, did: StaffActionKind, *, by: str = "", **what: Any) -> None:
         """Log what staff did (see `Supervision.note`), unless the log is full."""
         with suppress(TangyError):
             self.supervision.note(did, by or self.by, **what)

@@ -19,7 +19,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.reading import plain
 
 if TYPE_CHECKING:
@@ -166,7 +166,7 @@ class SessionDoor:
     def _look(self) -> bytes:
         control = self._control
         view = None if control is None else _view_of(control)
-        return _line({"pid": os.getpid(), "view": None if view is None else written(view)})
+        return _line({"pid": os.getpid(), "view": None if view is None else encode(view)})
 
     def _tell(self, guest: socket.socket, line: bytes, ready: selectors.BaseSelector) -> None:
         """Send a line to an onlooker; disconnect one who does not read, so that nobody waits."""

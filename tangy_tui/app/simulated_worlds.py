@@ -79,10 +79,10 @@ def _declared_teaching(activity: DeclaredActivity, shown: Demonstration, store: 
 
     if not shown.guided:
         return DeclaredWorld(activity, shown.people, seed=shown.seed)
-    from tangy_profiles.declared.shown_moves import ShownMoves
+    from tangy_profiles.declared.demonstrated_moves import DemonstratedMoves
     from tangy_tui.learning.library import read_library
 
-    known = ShownMoves(activity.behaviours)
+    known = DemonstratedMoves(activity.behaviours)
     for id, entry in read_library(store, activity.name).entries.items():
         if id == shown.id:
             break

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from tangy_profiles.activity import Activity, known_activities, load_activity
-from tangy_profiles.codec import Unreadable, read
+from tangy_profiles.codec import InvalidValue, decode
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.person import MOST_PEOPLE, load_people
 from tangy_profiles.room import Room, room_for
@@ -159,8 +159,8 @@ class Guest:
                 self.stops += bool(said["stopped"])
                 return
             self.pid = int(said["pid"])
-            self.view = None if said["view"] is None else read(GameView, said["view"])
-        except (ValueError, TypeError, KeyError, RecursionError, Unreadable):
+            self.view = None if said["view"] is None else decode(GameView, said["view"])
+        except (ValueError, TypeError, KeyError, RecursionError, InvalidValue):
             self.close()  # from another version
 
 

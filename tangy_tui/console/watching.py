@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.app.watching import WATCH_SECONDS, Guest, WatchedLog
@@ -81,7 +81,7 @@ class WatchingLines:
             return
         self._said = said
         if self._as_json:
-            self._json({"kind": "view", **written(view)})
+            self._json({"kind": "view", **encode(view)})
         else:
             self._write(plain(f"-- {text.driver_words(view)}: {text.PHASES[view.phase]}"))
 

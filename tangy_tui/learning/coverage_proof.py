@@ -7,8 +7,8 @@ from time import thread_time
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.declared.search import Limit, Reach, reach
-from tangy_profiles.declared.shown_moves import ShownMoves
+from tangy_profiles.declared.demonstrated_moves import DemonstratedMoves
+from tangy_profiles.declared.search import Limit, SearchResult, explore_demonstrated
 from tangy_profiles.state import Situation
 from tangy_tui.learning.policy import Policy
 
@@ -28,7 +28,7 @@ class CoverageProof:
     that reached its limit.
     """
 
-    searches: tuple[tuple[int, Reach], ...]
+    searches: tuple[tuple[int, SearchResult], ...]
 
     @property
     def proved(self) -> tuple[int, ...]:
@@ -68,7 +68,7 @@ def prove_coverage(activity: Activity, policy: Policy) -> CoverageProof | None:
     """
     if not isinstance(activity, DeclaredActivity):
         return None
-    shown = ShownMoves(activity.behaviours)
+    shown = DemonstratedMoves(activity.behaviours)
     shown.whom = dict(policy.whom)
     for situation, decision in policy.table.items():
         if decision.sure:
@@ -78,7 +78,7 @@ def prove_coverage(activity: Activity, policy: Policy) -> CoverageProof | None:
 
 def search_groups(
     activity: DeclaredActivity,
-    shown: ShownMoves,
+    shown: DemonstratedMoves,
     limit: Limit = LIMIT,
     largest: Limit = LARGEST,
 ) -> CoverageProof:
@@ -92,11 +92,13 @@ def search_groups(
     """
     groups = [activity.teams] if activity.teams else [PLAYERS[:n] for n in (1, 2, 3)]
     until = thread_time() + limit.seconds
-    searches: list[tuple[int, Reach]] = []
+    searches: list[tuple[int, SearchResult]] = []
     for group in groups:
         one = largest if group == PLAYERS else limit
         left = Limit(one.states, min(one.seconds, until - thread_time()))
-        searches.append((len(group), reach(activity.declaration, group, shown, left)))
+        searches.append(
+            (len(group), explore_demonstrated(activity.declaration, group, shown, left))
+        )
         if not searches[-1][1].whole:
             break
     return CoverageProof(tuple(searches))

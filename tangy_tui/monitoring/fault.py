@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.events import EventRecord
 from tangy_profiles.faults import FaultRule
 from tangy_profiles.game_records import NAME as NAME
@@ -136,7 +136,7 @@ class Fault:
             "person": self.person,
             "status": self.status,
             "ladder": list(self.ladder),
-            "moves": written(self.moves),
+            "moves": encode(self.moves),
             "reason": f"{self.name}: {self.console}",
         }
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.memory import GameMemory
 from tangy_profiles.declared.silence import SILENCE
@@ -26,7 +26,7 @@ from tangy_profiles.game_records import (
 )
 from tangy_profiles.open_requests import OpenRequests
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
-from tangy_profiles.staff_records import StaffAction, StaffDeed
+from tangy_profiles.staff_records import StaffAction, StaffActionKind
 from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Event, Store
 from tangy_tui.monitoring.fault import Diagnosed, Fault, Moved, fold_faults
@@ -84,7 +84,7 @@ class AnsweredRequest:
 class Noted:
     """Other actions of people: stops, injected faults, a resumed game (see `StaffAction`)."""
 
-    did: StaffDeed | Literal["resumed"]
+    did: StaffActionKind | Literal["resumed"]
     by: str
     person: str = ""
     detail: str = ""
@@ -131,8 +131,8 @@ class Moment:
                     "target": done.target,
                     "strategy": done.strategy,
                     "situation": list(done.state.situation),
-                    "state": written(done.state),
-                    "after": written(done.after),
+                    "state": encode(done.state),
+                    "after": encode(done.after),
                     "completed": done.completed,
                     "right": done.right,
                     "teacher": done.teacher,
@@ -155,7 +155,7 @@ class Moment:
                     "kind": "staff", "what": did, "person": person, "detail": detail, "by": by,
                 }  # fmt: skip
             case Moved(fault, move):
-                return {"kind": "recovery", "fault": fault.id, "move": written(move)}
+                return {"kind": "recovery", "fault": fault.id, "move": encode(move)}
             case Unclear(person, asked_again):
                 return {"kind": "unclear", "person": person, "asked_again": asked_again}
             case CallMade() as made:

@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeAlias
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.persuading import PAPER
-from tangy_profiles.staff_records import StaffDeed
+from tangy_profiles.staff_records import StaffActionKind
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import FeedbackEntry
@@ -37,7 +37,7 @@ SET_ASIDE = "set aside"
 """The remedy that leaves a person alone: staff should look after them."""
 
 
-INJECTED: tuple[StaffDeed | Literal["resumed"], ...] = (
+INJECTED: tuple[StaffActionKind | Literal["resumed"], ...] = (
     "fault injected",
     "fault lifted",
     "faults planned",

@@ -18,7 +18,7 @@ from tangy_profiles.faults import Evidence, FaultBook
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
 from tangy_profiles.robot import Robot
-from tangy_profiles.staff_records import StaffAction, StaffDeed
+from tangy_profiles.staff_records import StaffAction, StaffActionKind
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import MOST_STEPS, Facilitation
 from tangy_tui.interaction.game_events import DoneOnce, Taught, Unsure
@@ -291,7 +291,7 @@ class Supervision:
         told += self.recovery.halt_if_critical()
         return told + self._end_if_hopeless()
 
-    def note(self, did: StaffDeed, by: str, **what: Any) -> None:
+    def note(self, did: StaffActionKind, by: str, **what: Any) -> None:
         """Log an action of staff in a game: a STOP, an injected fault (see `StaffAction`)."""
         if not self.over:
             now = max(self.seconds, self.game.log.seconds)  # of a later moment than the last step

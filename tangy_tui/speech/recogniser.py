@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from tangy_hw.worker_process import WorkerError, WorkerProcess
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.errors import TangyError
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
 
@@ -253,7 +253,7 @@ class Recogniser:
     async def _tell_what(self) -> None:
         if self._wanted is None:
             raise SpeechUnavailable("Speech was not started yet.")
-        answer = await self._ask({"wanted": written(self._wanted)}, START_SECONDS)
+        answer = await self._ask({"wanted": encode(self._wanted)}, START_SECONDS)
         self.left_out = tuple(answer["left_out"])
 
     async def _ask(self, request: dict[str, Any], seconds: float) -> dict[str, Any]:

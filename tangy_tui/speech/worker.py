@@ -30,7 +30,7 @@ from dataclasses import asdict
 from typing import Any, get_args
 
 from tangy_profiles import codec
-from tangy_profiles.codec import Unreadable
+from tangy_profiles.codec import InvalidValue
 from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.worker_lines import AnswerWriter, requests
 from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
@@ -110,13 +110,13 @@ class Worker:
         from tangy_tui.speech.decoder import Unspeakable, make_decoder
 
         try:
-            read = codec.read(Wanted, wanted)
+            read = codec.decode(Wanted, wanted)
             if self.decoder is not None:
                 self.decoder.close()
             self.decoder = make_decoder(read)
         except Unspeakable as reason:
             raise RequestRefused(str(reason)) from None
-        except Unreadable as why:
+        except InvalidValue as why:
             raise RequestRefused(f"What is wanted cannot be read: it {why}.") from None
         self.urgent = frozenset(read.urgent)
         return list(self.decoder.left_out)

@@ -69,18 +69,18 @@ def dead_end_lines(activity: DeclaredActivity, found: ActivityFlaw) -> Iterator[
     teams = bool(activity.teams)
     games = f"games of {_sizes_words((end.players,), teams=teams)}"
     yield f"The shortest way there, in {games}{' that go as expected' if end.as_expected else ''}:"
-    if not end.trap.way:
+    if not end.counterexample.way:
         yield "  It is where each game begins."
-    for number, step in enumerate(end.trap.way, 1):
+    for number, step in enumerate(end.counterexample.way, 1):
         whom = f" ({_player(step.whom)})" if step.whom is not None else ""
         yield f"  {number}. {activity.in_names(step.situation)} -> {step.behaviour}{whom}"
         yield from (f"     then {_event_words(event)}" for event in step.then)
     if found.flaw == "nothing possible":
         return
     yield "From then on only these are possible:"
-    for situation, behaviours in islice(end.trap.possible.items(), MOST_SITUATIONS):
+    for situation, behaviours in islice(end.counterexample.possible.items(), MOST_SITUATIONS):
         yield f"  {activity.in_names(situation)} -> {', '.join(behaviours)}"
-    more = len(end.trap.possible) - MOST_SITUATIONS
+    more = len(end.counterexample.possible) - MOST_SITUATIONS
     if more > 0:
         yield f"  and {counted(more, 'more situation')}"
 

@@ -275,9 +275,9 @@ def _change(
 
 
 def _edit_document(edit: Edit) -> dict[str, Any]:
-    from tangy_profiles.codec import written
+    from tangy_profiles.codec import encode
 
-    return {"edit": edit.seq, "at": edit.at, **written(edit.done)}
+    return {"edit": edit.seq, "at": edit.at, **encode(edit.done)}
 
 
 def _edit_words(workspace: Workspace, editor: Editor, edit: Edit) -> str:

@@ -60,7 +60,7 @@ def drill(
         workspace.activity.need_cards()
         name = workspace.teacher if who is None else read_name(who, "--who: a name")
         if scores:
-            from tangy_profiles.codec import written
+            from tangy_profiles.codec import encode
             from tangy_tui.monitoring.drill_log import read_sheets
             from tangy_tui.text.drills import sheets_lines
             from tangy_tui.text.times import local_time
@@ -68,7 +68,7 @@ def drill(
             only = "" if who is None else name
             if as_json:
                 sheets = read_sheets(workspace.store, only)
-                print_json([{"at": sheet.at, **written(sheet)} for sheet in sheets])
+                print_json([{"at": sheet.at, **encode(sheet)} for sheet in sheets])
             else:
                 for line in sheets_lines(read_sheets(workspace.store), local_time, only):
                     print_line(line)
@@ -108,9 +108,9 @@ def drill(
             raise
         if not made.over:
             say_notices([left_words(made)])
-        from tangy_profiles.codec import written
+        from tangy_profiles.codec import encode
 
-        print_json(written(made.sheet))
+        print_json(encode(made.sheet))
 
 
 def _interrupted(workspace: Workspace, who: str, *, resume: bool, discard: bool) -> Sheet | None:

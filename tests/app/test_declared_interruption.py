@@ -11,7 +11,7 @@ import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
-from tangy_profiles.codec import read, written
+from tangy_profiles.codec import decode, encode
 from tangy_profiles.declared.acts import acts, raw
 from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.declared.whom import first_addressee
@@ -41,7 +41,7 @@ def live(name: str) -> DeclaredLiveWorld:
 def past_of(name: str, steps: list[GameStep]) -> PastGame:
     """Return the game as it is read from the log."""
     beginning = GameBeginning(game="g", number=1, activity=name, people=PEOPLE, world=LIVE)
-    logged = tuple(read(GameStep, written(step)) for step in steps)
+    logged = tuple(decode(GameStep, encode(step)) for step in steps)
     return PastGame(beginning, datetime.now(UTC), logged)
 
 

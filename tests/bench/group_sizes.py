@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 from tangy_profiles.activity import load_activity, read_activity, shipped_activities
 from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.declared.search import reach
-from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
+from tangy_profiles.declared.demonstrated_moves import UNDECIDED, DemonstratedMoves
+from tangy_profiles.declared.search import explore_demonstrated
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import ActivityState
 from tangy_sim.worlds.declared_guidance import GuidedDeclaredWorld
@@ -44,9 +44,11 @@ def whom(activity: DeclaredActivity, state: ActivityState, name: str) -> str | N
     return None if selector == "group" else dict(state.whom).get(selector)
 
 
-def teach(activity: DeclaredActivity, people: Sequence[str], seed: int) -> tuple[ShownMoves, Row]:
+def teach(
+    activity: DeclaredActivity, people: Sequence[str], seed: int
+) -> tuple[DemonstratedMoves, Row]:
     """Show guided games until a search finds nothing that was not shown, four at most."""
-    taught, games = ShownMoves(activity.behaviours), 0
+    taught, games = DemonstratedMoves(activity.behaviours), 0
     while True:
         games += 1
         world = GuidedDeclaredWorld(activity, people, seed=seed + games, shown=taught)
@@ -59,13 +61,17 @@ def teach(activity: DeclaredActivity, people: Sequence[str], seed: int) -> tuple
                 activity.action(activity.behaviours[name], whom(activity, state, name), None)
             )
         taught = world.taught
-        found = reach(activity.declaration, people[:2], taught)
+        found = explore_demonstrated(activity.declaration, people[:2], taught)
         if not found.open or games == MOST_TAUGHT:
             return taught, Row(games, len(found.open), found.whole, 0, 0)
 
 
 def play(
-    activity: DeclaredActivity, people: Sequence[str], taught: ShownMoves, games: int, seed: int
+    activity: DeclaredActivity,
+    people: Sequence[str],
+    taught: DemonstratedMoves,
+    games: int,
+    seed: int,
 ) -> tuple[int, int]:
     """Play games by what was shown; return how many end, and how many questions there were.
 

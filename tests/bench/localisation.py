@@ -25,7 +25,7 @@ from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.localisation import Localisation
 from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.poses import HERE, between, compose, wrap
+from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
 from tangy_hw.navigation.scan_log import LoggedScan, read_log
 from tangy_hw.navigation.slip_detection import SlipDetector
 
@@ -51,12 +51,12 @@ def logged(folder: str) -> list[LoggedScan]:
 
 def moments(log: Sequence[LoggedScan], *, restored: bool = True) -> list[Moment]:
     """Return the log with the wheels' own count of the way."""
-    forward = np.array([between(a.pose, b.pose).x for a, b in pairwise(log)])
+    forward = np.array([relative_pose(a.pose, b.pose).x for a, b in pairwise(log)])
     around = np.convolve(forward, np.ones(2 * AROUND + 1), "same")
-    odometry = HERE
+    odometry = IDENTITY
     found = [Moment(odometry, log[0].scan, log[0].pose)]
     for (before, one), back in zip(pairwise(log), around < 0, strict=True):
-        step = between(before.pose, one.wheels or one.odometry)
+        step = relative_pose(before.pose, one.wheels or one.odometry)
         if restored and back:
             step = Pose(-step.x, -step.y, step.heading)
         odometry = compose(odometry, step)
@@ -99,7 +99,7 @@ def unturned(way: Sequence[Moment], seed: int) -> list[Moment]:
     middle = int(np.random.default_rng(seed).integers(len(way) // 5, len(way) * 3 // 5))
     found = [way[0]]
     for number, (before, one) in enumerate(pairwise(way)):
-        step = between(before.odometry, one.odometry)
+        step = relative_pose(before.odometry, one.odometry)
         if number == middle:
             step = step._replace(heading=wrap(step.heading - MISSED))
         found.append(Moment(compose(found[-1].odometry, step), one.scan, one.truth))
@@ -145,7 +145,9 @@ def kidnapped(map_: OccupancyMap, way: Sequence[Moment], seed: int) -> int | Non
         pass
     moved = [
         Moment(
-            compose(last.odometry, between(way[then].odometry, one.odometry)), one.scan, one.truth
+            compose(last.odometry, relative_pose(way[then].odometry, one.odometry)),
+            one.scan,
+            one.truth,
         )
         for one in way[then : then + 420]
     ]

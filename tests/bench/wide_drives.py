@@ -22,7 +22,7 @@ from tangy_hw.device_protocols import STILL, Odometry, Pose
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.planning import RADIUS, inflate
-from tangy_hw.navigation.poses import HERE, compose, placed
+from tangy_hw.navigation.poses import IDENTITY, compose, transform_points
 from tests.bench.people_simulation import MAP, ROOM, TICK, WALLS, followed
 from tests.hw.raycast import Wheels, driven, look
 
@@ -85,7 +85,7 @@ def touches(pose: Pose, limits: MotionLimits) -> bool:
     else:
         angles = np.linspace(-pi, pi, 72)
         edge = limits.radius * np.column_stack((np.cos(angles), np.sin(angles)))
-    x, y = placed(edge, pose).T
+    x, y = transform_points(edge, pose).T
     left, near, right, far = ROOM.table
     outside = min(x.min(), y.min()) < 0 or x.max() > ROOM.width or y.max() > ROOM.depth
     return bool(outside or ((x > left) & (x < right) & (y > near) & (y < far)).any())
@@ -106,7 +106,7 @@ def main() -> None:
     parser.add_argument("--drives", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
-    for name, limits, laser in (("wide", WIDE, ASIDE), ("round", ROUND, HERE)):
+    for name, limits, laser in (("wide", WIDE, ASIDE), ("round", ROUND, IDENTITY)):
         found = [drive(number, options.seed, limits, laser) for number in range(options.drives)]
         print(row(name, found), flush=True)
 

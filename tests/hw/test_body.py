@@ -13,9 +13,9 @@ import pytest
 from tangy_hw.device_protocols import STILL, Odometry, Pose, Twist
 from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.navigation.people_guard import Around, outside, passed
+from tangy_hw.navigation.people_guard import Around, limit_near_people, outside
 from tangy_hw.navigation.people_tracker import Track
-from tangy_hw.navigation.poses import Floats, compose, placed
+from tangy_hw.navigation.poses import Floats, compose, transform_points
 from tangy_profiles.body import BodyProfile
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.robot import Robot, load_robot
@@ -91,13 +91,13 @@ class TestGuard:
         assert outside(points, np.array(CORNERS)) == pytest.approx(expected)
 
     def test_it_stops_as_far_before_somebody_as_it_is_long(self) -> None:
-        round_, large = (passed(Twist(0.4, 0.0), person(0.78, 0.0), one).forward
+        round_, large = (limit_near_people(Twist(0.4, 0.0), person(0.78, 0.0), one).forward
                          for one in (MotionLimits(), LARGE))  # fmt: skip
         assert round_ > 0.0 and large == 0.0
 
     def test_its_corners_turn_into_nobody(self) -> None:
-        assert passed(Twist(0.0, 0.8), person(0.35, 0.65), LARGE) == STILL
-        assert passed(Twist(0.0, 0.8), person(1.5, 0.0), LARGE) == Twist(0.0, 0.8)
+        assert limit_near_people(Twist(0.0, 0.8), person(0.35, 0.65), LARGE) == STILL
+        assert limit_near_people(Twist(0.0, 0.8), person(1.5, 0.0), LARGE) == Twist(0.0, 0.8)
 
 
 def edge(pose: Pose) -> Floats:
@@ -105,7 +105,7 @@ def edge(pose: Pose) -> Floats:
     ends = np.array([*CORNERS, CORNERS[0]])
     sides = [a + np.linspace(0, 1, 17)[:, None] * (b - a)
              for a, b in pairwise(ends)]  # fmt: skip
-    return placed(np.vstack(sides), pose)
+    return transform_points(np.vstack(sides), pose)
 
 
 @pytest.mark.slow

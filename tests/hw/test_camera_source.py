@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tangy_hw.drivers.camera_source import CameraError, CameraSource, find_camera, pictures_in
-from tangy_profiles.codec import read, written
+from tangy_profiles.codec import decode, encode
 
 
 class TestNames:
@@ -69,7 +69,7 @@ class TestNames:
 
     def test_it_can_be_told_to_another_process(self) -> None:
         source = find_camera("http://host/")
-        assert read(CameraSource, written(source)) == source
+        assert decode(CameraSource, encode(source)) == source
 
 
 def test_pictures_come_in_the_order_that_people_count_in(tmp_path: Path) -> None:

@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import STILL, Pose, Twist
-from tangy_hw.navigation.clearance import REACH, guarded, room_ahead, speed_in
+from tangy_hw.navigation.clearance import REACH, limit_by_clearance, room_ahead, speed_in
 from tangy_hw.navigation.limits import MotionLimits
-from tangy_hw.navigation.people_guard import Around, passed
+from tangy_hw.navigation.people_guard import Around, limit_near_people
 from tangy_hw.navigation.people_tracker import Track
-from tangy_hw.navigation.poses import Floats, between
+from tangy_hw.navigation.poses import Floats, relative_pose
 from tests.hw.raycast import driven
 
 LIMITS = MotionLimits()
@@ -29,7 +29,7 @@ def at(*points: tuple[float, float]) -> Floats:
 
 
 def by_hand(twist: Twist, *points: tuple[float, float]) -> Twist:
-    return guarded(twist, at(*points), Around((), at(*points)), LIMITS)
+    return limit_by_clearance(twist, at(*points), Around((), at(*points)), LIMITS)
 
 
 def person(x: float, y: float, vx: float = 0.0, vy: float = 0.0, age: float = 3.0) -> Track:
@@ -38,7 +38,7 @@ def person(x: float, y: float, vx: float = 0.0, vy: float = 0.0, age: float = 3.
 
 
 def past(twist: Twist, *people: Track) -> Twist:
-    return passed(twist, Around(people, np.zeros((0, 2))), LIMITS)
+    return limit_near_people(twist, Around(people, np.zeros((0, 2))), LIMITS)
 
 
 class TestRoom:
@@ -62,7 +62,7 @@ class TestRoom:
 
 class TestPeople:
     def test_with_nobody_around_it_drives_as_it_is_told(self) -> None:
-        assert passed(Twist(0.5, 0.1), NOBODY, LIMITS) == Twist(0.5, 0.1)
+        assert limit_near_people(Twist(0.5, 0.1), NOBODY, LIMITS) == Twist(0.5, 0.1)
 
     def test_it_slows_down_before_somebody_who_stands_and_stops_short_of_them(self) -> None:
         speeds = [past(Twist(0.5, 0.0), person(x, 0.0)).forward for x in (2.5, 1.1, 0.9, 0.6)]
@@ -109,7 +109,7 @@ class TestPeople:
         x, y = far * np.cos(bearing), far * np.sin(bearing)
         pose, twist, late = Pose(0.0, 0.0, 0.0), STILL, STILL
         for _ in range(40):
-            there = between(pose, Pose(x, y, 0.0))
+            there = relative_pose(pose, Pose(x, y, 0.0))
             told = past(Twist(0.5, 0.0), person(there.x, there.y, vx, vy))
             change = float(np.clip(late.forward - twist.forward, -0.1, 0.08))
             twist, late = Twist(twist.forward + change, 0.0), told
@@ -156,7 +156,7 @@ class TestByHand:
         legs = [(x, y) for x, y in points if hypot(x, y) > CLOSE + 0.02]
         pose, twist, late = Pose(0.0, 0.0, 0.0), STILL, STILL
         for _ in range(60):
-            there = [between(pose, Pose(x, y, 0.0))[:2] for x, y in legs]
+            there = [relative_pose(pose, Pose(x, y, 0.0))[:2] for x, y in legs]
             told = by_hand(Twist(forward, turn), *(p for p in there if hypot(*p) < REACH))
             change = float(np.clip(late.forward - twist.forward, -0.1, 0.1))
             twist, late = Twist(twist.forward + change, late.turn), told

@@ -15,7 +15,7 @@ from tangy_hw.device_protocols import STILL, DeviceError, Odometry, Pose, Scan
 from tangy_hw.navigation.dead_reckoning import DeadReckoning
 from tangy_hw.navigation.mapping import Placed, map_of_scans
 from tangy_hw.navigation.occupancy import OCCUPIED
-from tangy_hw.navigation.poses import HERE, compose
+from tangy_hw.navigation.poses import IDENTITY, compose
 from tangy_hw.navigation.scan_log import read_log
 from tangy_hw.navigation.scan_recorder import ScanRecorder, robot_laser_line
 from tangy_profiles.health import ERROR, OK
@@ -57,7 +57,7 @@ def test_a_robot_that_stands_records_one_scan(tmp_path: Path) -> None:
     recorder = ScanRecorder(tmp_path / "a.log")
     scan = look(room_sides(ROOM), Pose(5.0, 2.0, 0.0))
     for _ in range(10):
-        recorder.note(scan, HERE, 0.0)
+        recorder.note(scan, IDENTITY, 0.0)
     recorder.note(scan, Pose(0.0, 0.0, 0.1), 1.0)
     recorder.close()
     assert len(read_log(tmp_path / "a.log")) == 2
@@ -80,7 +80,7 @@ def test_with_a_full_disk_the_robot_can_still_be_driven(
     scan = look(room_sides(ROOM), Pose(5.0, 2.0, 0.0))
     assert navigator.readings()[0].state == OK
     for _ in range(2):
-        assert navigator.tick(Odometry(HERE, STILL), scan, 0.1) == STILL
+        assert navigator.tick(Odometry(IDENTITY, STILL), scan, 0.1) == STILL
     assert navigator.readings()[0].state == ERROR
     with suppress(OSError):
         full.close()

@@ -13,7 +13,7 @@ from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.navigation.likelihood import LikelihoodField, thin
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
-from tangy_hw.navigation.poses import between, compose, wrap
+from tangy_hw.navigation.poses import compose, relative_pose, wrap
 from tangy_hw.navigation.scan_matching import Reference
 from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_profiles.room import load_room
@@ -184,4 +184,6 @@ class TestSlipDetector:
 def test_a_step_seen_from_a_pose_is_the_same_on_every_frame() -> None:
     frame = Pose(3, -1, 2)
     one, other = Pose(1, 2, 0.5), Pose(0.5, 3, -2)
-    assert between(compose(frame, one), compose(frame, other)) == pytest.approx(between(one, other))
+    assert relative_pose(compose(frame, one), compose(frame, other)) == pytest.approx(
+        relative_pose(one, other)
+    )

@@ -20,7 +20,7 @@ from tangy_hw.navigation.map_drawing import map_lines
 from tangy_hw.navigation.map_files import MapFileError, read_map, write_map
 from tangy_hw.navigation.mapping import MapError, Placed, map_of_scans, sparse
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyMap, map_of_room
-from tangy_hw.navigation.poses import between, compose
+from tangy_hw.navigation.poses import compose, relative_pose
 from tangy_hw.navigation.scan_log import LogError, read_log
 from tangy_profiles.room import load_room
 from tests.hw.raycast import Wheels, driven, look, room_sides, tour
@@ -268,4 +268,4 @@ class TestLogs:
 
 def test_a_step_between_two_poses_leads_from_one_to_the_other() -> None:
     one, other = Pose(1.0, 2.0, 3.0), Pose(-2.0, 0.5, -3.0)
-    assert compose(one, between(one, other)) == pytest.approx(other)
+    assert compose(one, relative_pose(one, other)) == pytest.approx(other)

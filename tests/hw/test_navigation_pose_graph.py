@@ -16,7 +16,7 @@ from tangy_hw.navigation.alignment import aligned
 from tangy_hw.navigation.mapping import Placed
 from tangy_hw.navigation.matched_map import JudgedMap, judged, with_loops_closed
 from tangy_hw.navigation.pose_graph import close_loops
-from tangy_hw.navigation.poses import between, compose
+from tangy_hw.navigation.poses import compose, relative_pose
 from tangy_hw.navigation.revisits import Loop
 from tests.hw.corridors import Slip, cluttered, driven_log, logged, ring
 
@@ -33,7 +33,7 @@ def drifting(poses: list[Pose], turn: float, scale: float) -> list[Placed]:
     """Return scans at the poses that wheels count which err by so much a step."""
     counted = [poses[0]]
     for start, end in pairwise(poses):
-        step = between(start, end)
+        step = relative_pose(start, end)
         counted.append(
             compose(counted[-1], Pose(step.x * scale, step.y * scale, step.heading + turn))
         )
@@ -47,9 +47,9 @@ def test_a_loop_that_drifts_is_closed_and_its_shape_comes_back(
 ) -> None:
     true = circle(number, 4.0)
     scans = drifting(true, turn, scale)
-    found = close_loops(scans, [Loop(0, number - 1, between(true[0], true[-1]), 0.0)])
+    found = close_loops(scans, [Loop(0, number - 1, relative_pose(true[0], true[-1]), 0.0)])
     assert found[0].pose == scans[0].pose
-    apart = between(found[0].pose, found[-1].pose)
+    apart = relative_pose(found[0].pose, found[-1].pose)
     assert hypot(apart.x, apart.y) < 0.1
     off = [hypot(f.pose.x - t.x, f.pose.y - t.y) for f, t in zip(found, true, strict=True)]
     before = [hypot(s.pose.x - t.x, s.pose.y - t.y) for s, t in zip(scans, true, strict=True)]
@@ -59,7 +59,7 @@ def test_a_loop_that_drifts_is_closed_and_its_shape_comes_back(
 def test_a_loop_with_what_only_looks_alike_is_left_out() -> None:
     true = circle(80, 4.0)
     scans = drifting(true, 0.001, 1.0)
-    right = [Loop(n, 79 - n, between(true[n], true[79 - n]), 0.0) for n in range(4)]
+    right = [Loop(n, 79 - n, relative_pose(true[n], true[79 - n]), 0.0) for n in range(4)]
     alike = Loop(10, 45, Pose(0.0, 0.0, 0.0), 6.0)
     found = close_loops(scans, [*right, alike])
     off = [hypot(f.pose.x - t.x, f.pose.y - t.y) for f, t in zip(found, true, strict=True)]

@@ -27,7 +27,7 @@ from tangy_hw.robot_process.control_loop import TICK
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import beat_of
 from tangy_hw.robot_process.process import RobotProcess
-from tangy_hw.robot_process.requests import AT_ONCE, DEEDS, Request
+from tangy_hw.robot_process.requests import IMMEDIATE_REQUESTS, LASTING_REQUESTS, Request
 from tangy_profiles.health import ERROR
 from tangy_profiles.process_log import PROGRAM_LOG, logging_to
 from tangy_profiles.robot import load_robot
@@ -238,7 +238,7 @@ async def test_the_id_of_a_command_goes_from_its_line_to_the_driver_and_back(
     assert served == ["begins relax", "has done relax"]
 
 
-@pytest.mark.parametrize("asked", (*AT_ONCE, *DEEDS))
+@pytest.mark.parametrize("asked", (*IMMEDIATE_REQUESTS, *LASTING_REQUESTS))
 async def test_every_request_of_the_closed_set_is_known_to_the_process(asked: Request) -> None:
     async with spoken() as one:
         await one.take(id=1, do=asked)

@@ -28,7 +28,7 @@ from tangy_hw.drivers.camera_source import CameraSource, find_camera
 from tangy_hw.drivers.chest import WebChestScreen
 from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_hw.worker_process import WorkerError, WorkerProcess
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.worker_lines import LONGEST_LINE
 from tangy_tui.app import device_simulator
 from tangy_tui.speech import recogniser
@@ -237,7 +237,7 @@ def child(request: pytest.FixtureRequest, tmp_path: Path) -> Child:
         return Child(bench, [], {"id": 8, "do": "truth"}, "truth")
     if request.param == "camera":
         cv2.imwrite(str(tmp_path / "a.png"), np.zeros((4, 4, 3), np.uint8))
-        source = written(find_camera(str(tmp_path), each=True))
+        source = encode(find_camera(str(tmp_path), each=True))
         begins = {"source": source, "first": 0}
         command = (sys.executable, *module, camera_child.__name__)
         return Child(command, [begins], {"frame": 3, "after": -1}, "frame")

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
@@ -35,7 +35,7 @@ def keep(store: Store, demonstration: Demonstration) -> None:
         },
     )
     for step in demonstration.steps:
-        append_body(store, DemonstrationStep, {**name, **written(step)})
+        append_body(store, DemonstrationStep, {**name, **encode(step)})
     append_body(store, DemonstrationFinished, name)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import GameBeginning, GameEnding, GameStep
 from tangy_profiles.people_records import ResponseGiven
@@ -46,7 +46,7 @@ def test_the_log_tells_the_game_again(facilitate: Make, store: Store, policy: Po
         assert kept.body["target"] == act.action.target
         assert kept.body["strategy"] == act.action.strategy
         assert kept.body["numbers"] == list(act.outcome.numbers)
-        assert kept.body["state"] == written(act.state)
+        assert kept.body["state"] == encode(act.state)
         assert (kept.body["draws"] or {}) == (dict(act.choice.draws) if act.choice else {})
 
 

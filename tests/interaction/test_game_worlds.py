@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import (
     BENCH,
@@ -27,7 +27,7 @@ from tangy_tui.interaction.memory import PersonModels
 from tangy_tui.interaction.record import read_records
 from tests.support.append_body import append_body
 
-STATE = written(ActivityState(0, Situation("s", "ANR", "u"), FRONT, None, ()))
+STATE = encode(ActivityState(0, Situation("s", "ANR", "u"), FRONT, None, ()))
 STRATEGIES = ("praise", "neutral")
 
 

@@ -14,7 +14,7 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
-from tangy_profiles.codec import Unreadable, read, written
+from tangy_profiles.codec import InvalidValue, decode, encode
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.persuading import (
     METHODS,
@@ -298,7 +298,7 @@ def test_with_what_earlier_people_liked_it_is_at_most_half() -> None:
 )
 def test_a_method_is_chosen_by_words_in_any_order(words: str, chosen: PersuasionConfig) -> None:
     assert spoken_persuading(words.split()) == chosen
-    assert read(PersuasionConfig, json.loads(json.dumps(written(chosen)))) == chosen
+    assert decode(PersuasionConfig, json.loads(json.dumps(encode(chosen)))) == chosen
 
 
 @pytest.mark.parametrize(
@@ -340,5 +340,5 @@ def test_each_method_can_be_made_and_has_words_for_people() -> None:
 
 
 def test_a_method_that_is_not_known_is_refused_and_not_taken_for_another() -> None:
-    with pytest.raises(Unreadable, match=r"has 'method' that is 'thomson' .did you mean"):
-        read(PersuasionConfig, {"method": "thomson"})
+    with pytest.raises(InvalidValue, match=r"has 'method' that is 'thomson' .did you mean"):
+        decode(PersuasionConfig, {"method": "thomson"})

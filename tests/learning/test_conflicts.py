@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity
-from tangy_profiles.codec import read, written
+from tangy_profiles.codec import decode, encode
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import FRONT, ActivityState, Situation
 from tangy_tui.learning.conflicts import (
@@ -218,4 +218,4 @@ def test_after_every_conflict_is_settled_there_is_none_and_nothing_else_is_lost(
     assert all(b in right.get(s, answers[s]) for s, b in learnt)
     assert [r for r in learnt if r[0] not in right] == [r for r in rows if r[0] not in right]
     for resolution in said:
-        assert read(Resolution, json.loads(json.dumps(written(resolution)))) == resolution
+        assert decode(Resolution, json.loads(json.dumps(encode(resolution)))) == resolution

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FRONT, ActivityState
@@ -53,7 +53,7 @@ def logged(
         situation = BINGO.situations[number % len(BINGO.situations)]
         state = ActivityState(number, situation, FRONT, None, ())
         step = Step(behaviour, None, state, state)
-        append_body(store, DemonstrationStep, {"demonstration": id, **written(step)})
+        append_body(store, DemonstrationStep, {"demonstration": id, **encode(step)})
     if finished:
         append_body(store, DemonstrationFinished, {"demonstration": id})
 
@@ -245,7 +245,7 @@ def test_what_is_shown_again_replaces_the_old_when_it_is_complete(store: Store) 
     assert new.steps == old.steps[:2]
     assert [s.id for s in new.steps] == [s.id for s in old.steps[:2]]
     assert used(library) == {"aaa": [s.id for s in old.steps]}
-    append_body(store, DemonstrationStep, {"demonstration": "bbb", **written(old.steps[2])})
+    append_body(store, DemonstrationStep, {"demonstration": "bbb", **encode(old.steps[2])})
     append_body(store, DemonstrationFinished, {"demonstration": "bbb"})
     library = read_library(store, "bingo")
     assert set(used(library)) == {"bbb"}

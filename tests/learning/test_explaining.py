@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
@@ -53,7 +53,7 @@ def log(store: Store, shown: Demonstration, teacher: str) -> None:
         {**name, "activity": shown.activity, "teacher": teacher, "seed": 1, "people": ["user1"]},
     )
     for step in shown.steps:
-        append_body(store, DemonstrationStep, {**name, **written(step)})
+        append_body(store, DemonstrationStep, {**name, **encode(step)})
     append_body(store, DemonstrationFinished, name)
 
 

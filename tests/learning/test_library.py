@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
@@ -81,7 +81,7 @@ def test_demonstrations_that_interleave_are_kept_apart(
     one, other = demonstrate("bingo", 1, 4), demonstrate("bingo", 2, 4)
     log_demonstration(store, replace(one, steps=one.steps[:3], finished=False))
     log_demonstration(store, other)
-    append_body(store, DemonstrationStep, {"demonstration": one.id, **written(one.steps[3])})
+    append_body(store, DemonstrationStep, {"demonstration": one.id, **encode(one.steps[3])})
     found = read_demonstrations(store, "bingo")
     assert found == [replace(one, steps=one.steps[:4], finished=False), other]
 
@@ -124,7 +124,7 @@ def test_steps_of_unknown_demonstrations_are_passed_over(
     store: Store, shown: list[Demonstration]
 ) -> None:
     for kind in (DemonstrationStep, DemonstrationStepUndone, DemonstrationFinished):
-        append_body(store, kind, {"demonstration": "nobody's", **written(shown[0].steps[0])})
+        append_body(store, kind, {"demonstration": "nobody's", **encode(shown[0].steps[0])})
     assert read_demonstrations(store, "bingo") == shown
 
 

@@ -15,7 +15,7 @@ from math import isclose
 import pytest
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import FRONT, ActivityState, Situation
 from tangy_tui.learning.conflicts import find_conflicts, training_rows
@@ -150,7 +150,7 @@ def test_another_process_learns_the_same_bit_for_bit(
         "shown = Demonstration('x', 'bingo', 'test', 0, (), steps)\n"
         "print(learn_policy(load_activity('bingo'), [shown], settings=PAPER).digest)\n"
     )
-    told = json.dumps([written(step) for step in shown.steps])
+    told = json.dumps([encode(step) for step in shown.steps])
     done = subprocess.run(  # noqa: S603 - this Python
         [sys.executable, "-c", code],
         input=told, capture_output=True, text=True, check=True,

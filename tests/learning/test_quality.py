@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
 from tangy_profiles.teaching_records import (
@@ -163,7 +163,7 @@ def test_one_that_was_shown_again_names_the_step(
             "kept": 6,
         },
     )
-    append_body(store, DemonstrationStep, {"demonstration": "again", **written(good[0].steps[6])})
+    append_body(store, DemonstrationStep, {"demonstration": "again", **encode(good[0].steps[6])})
     said = notes(activity, read_library(store, "bingo"), 2)
     assert "shown again from step 7 of demonstration 1" in said
 
@@ -202,7 +202,7 @@ def test_the_words_that_were_heard_are_found_by_step(
     store: Store, good: list[Demonstration]
 ) -> None:
     log_demonstration(store, replace(good[0], steps=good[0].steps[:1], finished=False))
-    second = written(good[0].steps[1])
+    second = encode(good[0].steps[1])
     append_body(
         store, DemonstrationStep, {"demonstration": good[0].id, **second, "heard": "next number"}
     )

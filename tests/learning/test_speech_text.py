@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from tangy_hw.audio.wav import read_wav
 from tangy_profiles.activity import load_activity
-from tangy_profiles.codec import read, written
+from tangy_profiles.codec import decode, encode
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.phones import PHONES
@@ -146,7 +146,7 @@ class TestLanguage:
         )
     )
     def test_what_is_wanted_goes_to_the_worker_and_back(self, one: Wanted) -> None:
-        assert read(Wanted, json.loads(json.dumps(written(one)))) == one
+        assert decode(Wanted, json.loads(json.dumps(encode(one)))) == one
 
     def test_nothing_heavy_is_imported_with_these_rooms(self) -> None:
         code = (

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity
-from tangy_profiles.codec import read, written
+from tangy_profiles.codec import decode, encode
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import StoreError
 from tangy_profiles.events import EventRecord
@@ -212,4 +212,4 @@ def test_every_step_survives_the_log_as_it_was(
     demonstrate: Callable[[str, int, int], Demonstration],
 ) -> None:
     for step in demonstrate("bingo", 1, 8).steps:
-        assert read(Step, json.loads(json.dumps(written(step)))) == step
+        assert decode(Step, json.loads(json.dumps(encode(step)))) == step

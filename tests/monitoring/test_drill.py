@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.drill_sheet import NOTHING_WRONG, AnsweredRound, Sheet
 from tangy_profiles.errors import TangyError
 from tangy_profiles.fault_file import load_faults
@@ -480,11 +480,11 @@ def test_the_sheet_is_a_table_that_fits(width: int) -> None:
 
 
 def test_a_sheet_survives_the_log(store: Store) -> None:
-    append_body(store, DrillHeld, written(SHEET))
+    append_body(store, DrillHeld, encode(SHEET))
     (kept,) = read_sheets(store, "ADA")
     assert replace(kept, at=SHEET.at) == SHEET
     assert read_sheets(store, "bea") == []
-    assert written(SHEET)["classes"] == {"expert": [1, 3], NOTHING_WRONG: [2, 2]}
+    assert encode(SHEET)["classes"] == {"expert": [1, 3], NOTHING_WRONG: [2, 2]}
     (head, line) = sheets_lines([SHEET], lambda at: at[:10])
     assert head.startswith("When")
     assert " ".join(line.split()) == "2026-03-01 ada 2 of 2 3 of 5 6 Neither voice nor screen"

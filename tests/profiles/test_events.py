@@ -20,7 +20,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tangy_profiles import codec, events, records
-from tangy_profiles.codec import Unreadable, fields_of, written
+from tangy_profiles.codec import InvalidValue, encode, fields_of
 from tangy_profiles.events import EventRecord, Unknown, kinds, read_record
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.health import Fact
@@ -150,7 +150,7 @@ def records_of(kind: Any) -> st.SearchStrategy[Any]:
     hints = get_type_hints(kind, include_extras=True)
     names = [field.name for field in fields_of(kind)]
     made = {n: OF_FIELDS[n] if n in OF_FIELDS else values(hints[n]) for n in names}
-    return st.builds(kind, **made).filter(lambda one: not getattr(one, "misfit", str)())
+    return st.builds(kind, **made).filter(lambda one: not getattr(one, "invalid_reason", str)())
 
 
 def values(hint: Any) -> st.SearchStrategy[Any]:
@@ -212,13 +212,13 @@ def test_every_kind_that_was_logged_before_is_known() -> None:
 
 @given(states(), st.data())
 def test_a_state_at_a_glance_is_one_looked_at_closely(state: ActivityState, data: Any) -> None:
-    table = json.loads(json.dumps(written(state)))
-    assert ActivityState.glance(table) == state
+    table = json.loads(json.dumps(encode(state)))
+    assert ActivityState.decode_quickly(table) == state
     spoilt = data.draw(st.sampled_from(sorted(table)))
     table[spoilt] = data.draw(ODD)
-    glance = ActivityState.glance(table)
+    glance = ActivityState.decode_quickly(table)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ActivityState, "glance", lambda _: None)
+        patch.setattr(ActivityState, "decode_quickly", lambda _: None)
         closely = codec.reader.__wrapped__(ActivityState)
         assert glance is None or closely(table) == glance
 
@@ -243,7 +243,7 @@ def test_a_body_that_is_spoilt_is_read_as_what_it_says_or_refused_in_words(
         body[key] = data.draw(ODD)
     try:
         record = read_record(name, "p", "s", body)
-    except Unreadable as why:
+    except InvalidValue as why:
         assert str(why).split()[0] in ("has", "is", "holds")
     else:
         again = read_record(name, "p", "s", json.loads(json.dumps(record.body)))
@@ -277,7 +277,7 @@ def test_a_body_of_an_earlier_version_is_read_as_one_of_this(renamed: Any) -> No
 
 @pytest.mark.parametrize("version", [3, 0, -1, "2", None, True])
 def test_a_body_of_a_version_that_is_not_known_is_refused(renamed: Any, version: Any) -> None:
-    with pytest.raises(Unreadable, match="is of version"):
+    with pytest.raises(InvalidValue, match="is of version"):
         read_record("renamed key", None, None, {"v": version, "after": "x"})
 
 
@@ -336,7 +336,7 @@ WHY = [
 
 @pytest.mark.parametrize(("name", "body", "words"), WHY)
 def test_a_body_that_is_refused_says_where_and_why(name: str, body: Any, words: str) -> None:
-    with pytest.raises(Unreadable) as refused:
+    with pytest.raises(InvalidValue) as refused:
         read_record(name, "p", "s", body)
     assert words in str(refused.value)
 

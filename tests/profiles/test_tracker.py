@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, StageRule, load_activity
-from tangy_profiles.codec import read, written
+from tangy_profiles.codec import decode, encode
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
 from tangy_profiles.tracker import Tracker
 
@@ -141,7 +141,7 @@ def test_the_state_says_what_the_rules_keep(told: list[tuple[str, str]]) -> None
     for kind, what in told:
         happen(tracker, kind, what)
         state = tracker.state()
-        assert read(ActivityState, json.loads(json.dumps(written(state)))) == state
+        assert decode(ActivityState, json.loads(json.dumps(encode(state)))) == state
         assert (state.step, state.place, state.closed) == (
             tracker.step, tracker.place, tracker.closed,
         )  # fmt: skip

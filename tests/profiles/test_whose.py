@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_profiles.codec import read, written
+from tangy_profiles.codec import decode, encode
 from tangy_profiles.declared.activity import DeclaredActivity, read_declared
 from tangy_profiles.declared.checking import findings
 from tangy_profiles.declared.game import DeclaredGame
@@ -56,7 +56,7 @@ def test_who_was_first_is_kept_in_the_log_and_tells_states_apart(game: DeclaredG
     for one in ("ann", "cat"):
         other.observe("guess", one, "a dog")
     assert state_key(game) != state_key(other)
-    logged = read(GameMemory, written(memory_of(game)))
+    logged = decode(GameMemory, encode(memory_of(game)))
     again = game_from(game.declaration, PLAYERS, logged)
     assert again is not None and again.whom(RIGHT) == "cat"
 

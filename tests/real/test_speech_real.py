@@ -23,7 +23,7 @@ import pytest
 
 from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import load_activity
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.person import Person, load_people
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.verification import Say, StopCommand
@@ -111,7 +111,7 @@ def hands_free(pcm: bytes) -> tuple[float, AcousticEvidence]:
     """Return the first utterance in a sound, and after how many s of it that was known."""
     answers: list[dict[str, Any]] = []
     worker = Worker(answers.append)
-    worker.take({"id": 1, "wanted": written(WANTED)})
+    worker.take({"id": 1, "wanted": encode(WANTED)})
     worker.take({"id": 2, "begin": "commands", "endpoint": True})
     pcm += bytes(2 * RATE)
     for place in range(0, len(pcm), PIECE):
@@ -434,13 +434,13 @@ class TestWorker:
             b"[" * 100_000 + b"\n",
             {"id": 1},
             {"id": 2, "begin": "commands"},
-            {"id": 3, "wanted": written(FEW)},
+            {"id": 3, "wanted": encode(FEW)},
             {"id": 4, "begin": "commands"},
             {"pcm": "not base64!"},
             {"id": 5, "begin": "answers"},
             {"id": 5, "end": True},
-            {"id": 6, "wanted": written(Wanted(("<s> (", "\\end\\", "a\nb", "/1/ a;")))},
-            {"id": 7, "wanted": written(Wanted(("a",), pronunciations={"a": ("QQ",)}))},
+            {"id": 6, "wanted": encode(Wanted(("<s> (", "\\end\\", "a\nb", "/1/ a;")))},
+            {"id": 7, "wanted": encode(Wanted(("a",), pronunciations={"a": ("QQ",)}))},
             {"id": 8, "pieces": ""},
         ]
         lines = b"".join(

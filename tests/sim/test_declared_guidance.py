@@ -10,9 +10,9 @@ from tangy_profiles.activity import load_activity, read_activity
 from tangy_profiles.declared.activity import DeclaredActivity, build_activity
 from tangy_profiles.declared.ahead import MOST_TRIED, nearest_way
 from tangy_profiles.declared.checking import expected_moves
+from tangy_profiles.declared.demonstrated_moves import UNDECIDED, DemonstratedMoves
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.search import reach
-from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
+from tangy_profiles.declared.search import explore_demonstrated
 from tangy_profiles.declared.vocabulary import Selector
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import ActivityState
@@ -50,12 +50,12 @@ def play(world: DeclaredWorld, activity: DeclaredActivity) -> list[ActivityState
 def test_two_guided_games_show_all_that_can_come_about(name: str, count: int) -> None:
     activity = declared(name)
     players = activity.teams or tuple(f"user{number}" for number in range(1, count + 1))
-    taught = ShownMoves(activity.behaviours)
+    taught = DemonstratedMoves(activity.behaviours)
     for seed in (1, 2):
         world = GuidedDeclaredWorld(activity, players, seed=seed, shown=taught)
         play(world, activity)
         taught = world.taught
-    found = reach(activity.declaration, players[:2], taught)
+    found = explore_demonstrated(activity.declaration, players[:2], taught)
     assert found.whole
     assert found.open == {}
     assert found.stuck is None
@@ -72,7 +72,7 @@ def test_the_same_seed_and_actions_give_the_same_states(name: str) -> None:
 
 def test_what_was_shown_before_is_not_brought_about_again() -> None:
     activity = declared("trivia")
-    nothing = ShownMoves(activity.behaviours)
+    nothing = DemonstratedMoves(activity.behaviours)
     first = GuidedDeclaredWorld(activity, ("user1", "user2"), seed=1, shown=nothing)
     long = play(first, activity)
     second = GuidedDeclaredWorld(activity, ("user1", "user2"), seed=1, shown=first.taught)
@@ -89,12 +89,12 @@ def test_two_guided_games_are_enough_where_something_comes_about_only_once_in_a_
     activity = read_activity(FILES / f"{name}.toml")
     assert isinstance(activity, DeclaredActivity)
     players = tuple(f"user{number}" for number in range(1, count + 1))
-    taught = ShownMoves(activity.behaviours)
+    taught = DemonstratedMoves(activity.behaviours)
     for seed in (1, 2):
         world = GuidedDeclaredWorld(activity, players, seed=seed, shown=taught)
         play(world, activity)
         taught = world.taught
-    found = reach(activity.declaration, players[:1], taught)
+    found = explore_demonstrated(activity.declaration, players[:1], taught)
     assert (found.whole, found.open, found.stuck) == (True, {}, None)
     world_of_games = DeclaredWorld(activity, players, seed=9)
     for _ in range(20):
@@ -109,7 +109,9 @@ def test_two_guided_games_are_enough_where_something_comes_about_only_once_in_a_
 def test_a_guided_game_that_goes_back_says_what_for() -> None:
     activity = read_activity(FILES / "toss.toml")
     assert isinstance(activity, DeclaredActivity)
-    world = GuidedDeclaredWorld(activity, ("user1",), seed=1, shown=ShownMoves(activity.behaviours))
+    world = GuidedDeclaredWorld(
+        activity, ("user1",), seed=1, shown=DemonstratedMoves(activity.behaviours)
+    )
     steps, back = [world.begin()], []
     while not world.over:
         name = activity.expected[steps[-1].situation]
@@ -156,23 +158,23 @@ class Copies(DeclaredGame):
 def test_a_guided_game_of_twelve_people_shows_as_much(name: str) -> None:
     activity = declared(name)
     players = activity.teams or tuple(f"user{number}" for number in range(1, 13))
-    taught = ShownMoves(activity.behaviours)
+    taught = DemonstratedMoves(activity.behaviours)
     for seed in (1, 2):
         world = GuidedDeclaredWorld(activity, players, seed=seed, shown=taught)
         play(world, activity)
         taught = world.taught
     pair = activity.teams or ("user1", "user2")
-    assert reach(activity.declaration, pair, taught).open == {}
+    assert explore_demonstrated(activity.declaration, pair, taught).open == {}
 
 
 def test_a_search_names_what_was_not_shown() -> None:
     activity = load_activity("trivia")
     assert isinstance(activity, DeclaredActivity)
-    taught = ShownMoves(activity.behaviours)
+    taught = DemonstratedMoves(activity.behaviours)
     taught.shown = dict(activity.expected)
     left_out = next(s for s in activity.situations if s.stage == "over")
     del taught.shown[left_out]
-    found = reach(activity.declaration, ("user1", "user2"), taught)
+    found = explore_demonstrated(activity.declaration, ("user1", "user2"), taught)
     assert found.open[left_out] == ""
     assert all(why == UNDECIDED for one, why in found.open.items() if one != left_out)
 
@@ -187,7 +189,7 @@ def test_other_words_for_everything_change_nothing(name: str, *, guided: bool) -
     players = activity.teams or ("user1", "user2", "user3")
 
     def told(one: DeclaredActivity) -> list[tuple[str, str, str | None, str]]:
-        shown = ShownMoves(one.behaviours)
+        shown = DemonstratedMoves(one.behaviours)
         world = (
             GuidedDeclaredWorld(one, players, seed=3, shown=shown)
             if guided

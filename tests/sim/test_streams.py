@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.behaviour import Action
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.person import load_people
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.worlds.users import UserModel, load_users
@@ -73,7 +73,7 @@ def test_the_games_of_seed_one_are_those_of_every_machine_and_version() -> None:
     steps = []
     for _ in range(20):
         for state, action, outcome in game(made):
-            steps.append([written(state), action.behaviour.name, outcome.numbers])
+            steps.append([encode(state), action.behaviour.name, outcome.numbers])
         steps.append(["called", list(made.scene().called)])
         made.begin()
     text = json.dumps(steps, sort_keys=True)

@@ -18,7 +18,7 @@ from tangy_hw.drivers.camera_look import Look
 from tangy_hw.drivers.camera_source import CameraError, CameraSource
 from tangy_hw.drivers.camera_state import USUAL, CameraLimits, CameraWatch, Sight, State
 from tangy_hw.worker_process import WorkerError, WorkerProcess
-from tangy_profiles.codec import written
+from tangy_profiles.codec import encode
 from tangy_profiles.health import Reading
 
 if TYPE_CHECKING:
@@ -248,7 +248,7 @@ class Camera:
             loop=asyncio.get_running_loop(),
         )
         self._began = time.monotonic()
-        worker.tell({"source": written(self.source), "first": self._next})
+        worker.tell({"source": encode(self.source), "first": self._next})
         for request, _ in self._asked.values():
             worker.tell(request)
         return worker

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Any
 
 from tangy_hw.drivers.camera_grabber import Gone, Grabber, Over, make_grabber
 from tangy_hw.drivers.camera_source import CameraSource
-from tangy_profiles.codec import Unreadable, read
+from tangy_profiles.codec import InvalidValue, decode
 from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.worker_lines import AnswerWriter, requests
 
@@ -80,8 +80,8 @@ class Child:
         match request:
             case {"source": dict(source), "first": int(first)} if not self._begun:
                 try:
-                    reads = read(CameraSource, source)
-                except Unreadable as why:
+                    reads = decode(CameraSource, source)
+                except InvalidValue as why:
                     self._answers.refuse(f"That is no source: it {why}.")
                     return
                 self._begun = True

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.dynamixel_bus import Bus, BusError, meaning
 from tangy_hw.drivers.joint_moves import TOLERANCE, JointMoves
-from tangy_hw.drivers.ros_newest import Newest
+from tangy_hw.drivers.latest_value import LatestValue
 from tangy_profiles.health import ERROR, OK, Reading
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Limb
@@ -107,7 +107,7 @@ class DynamixelArms:
         if unknown := self._servos.keys() - joints:
             raise DeviceError(plain(f"{name}: there is no joint {min(unknown)}."))
         self._by_id = {servo.id: joint for joint, servo in self._servos.items()}
-        self._newest: Newest[None] = Newest(clock)
+        self._newest: LatestValue[None] = LatestValue(clock)
         self._moves = JointMoves(name, math.radians(tolerance), clock)
         self._errors: dict[int, str] = {}
         self.bus: Bus | None = None

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Mapping
 
 from tangy_hw.device_protocols import DeviceError
-from tangy_hw.drivers.ros_newest import awaited
+from tangy_hw.drivers.latest_value import awaited
 from tangy_profiles.reading import plain
 
 TOLERANCE = 3.0  # degrees of position error within which a joint has arrived

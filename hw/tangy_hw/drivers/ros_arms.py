@@ -9,8 +9,8 @@ from contextlib import suppress
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.joint_moves import TOLERANCE, JointMoves
+from tangy_hw.drivers.latest_value import LatestValue
 from tangy_hw.drivers.ros_messages import Message, header, joints_of, trajectory_message
-from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, Reading
@@ -62,7 +62,7 @@ class RosArms:
             )
             for limb in limbs.values()
         }
-        self._newest: Newest[dict[str, float]] = Newest(bridge.clock)
+        self._newest: LatestValue[dict[str, float]] = LatestValue(bridge.clock)
         self._own = {joint for joints in self._joints.values() for joint in joints}
         self._moves = JointMoves(name, math.radians(tolerance), bridge.clock)
         self._limp = False

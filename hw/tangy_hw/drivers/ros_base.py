@@ -8,8 +8,8 @@ import math
 from contextlib import suppress
 
 from tangy_hw.device_protocols import STILL, DeviceError, Odometry, Stamped, Twist
+from tangy_hw.drivers.latest_value import LatestValue
 from tangy_hw.drivers.ros_messages import Message, odometry_of
-from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.ros_velocity import VelocityTopic
 from tangy_hw.drivers.rosbridge import Rosbridge
@@ -57,7 +57,7 @@ class RosBase:
         self._velocity = VelocityTopic(bridge, drive, stamped=stamped)
         self._odometry_topic = odometry
         self._lives, self._repeat, self._watchdog = lives, repeat, watchdog
-        self._newest: Newest[Odometry] = Newest(bridge.clock)
+        self._newest: LatestValue[Odometry] = LatestValue(bridge.clock)
         self._twist, self._since = STILL, -math.inf
         self._moved = asyncio.Event()
         self._repeating: asyncio.Task[None] | None = None
@@ -65,7 +65,7 @@ class RosBase:
 
     @property
     def odometry(self) -> Stamped[Odometry] | None:
-        """Newest odometry; None before the first."""
+        """LatestValue odometry; None before the first."""
         return self._newest.stamped
 
     async def start(self) -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from tangy_hw.drivers.latest_value import LatestValue
 from tangy_hw.drivers.ros_messages import Message, number
-from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import OK, Fact, Reading
 
@@ -25,7 +25,7 @@ class RosBattery:
         """
         self.name = name
         self._bridge, self._topic = bridge, topic
-        self._newest: Newest[dict[str, Fact]] = Newest(bridge.clock)
+        self._newest: LatestValue[dict[str, Fact]] = LatestValue(bridge.clock)
         self._begun = self._to_hundred = False
 
     async def start(self) -> None:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Scan, Stamped
+from tangy_hw.drivers.latest_value import LatestValue
 from tangy_hw.drivers.ros_messages import Message, changed_share, near_share, scan_of
-from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import Fact, Reading
@@ -43,13 +43,13 @@ class RosLaser:
         self.name = name
         self._bridge, self._topic, self._turned = bridge, topic, turned
         self._diagnostics = diagnostics
-        self._newest: Newest[Scan] = Newest(bridge.clock)
+        self._newest: LatestValue[Scan] = LatestValue(bridge.clock)
         self._seen: deque[tuple[float, NDArray[np.float64]]] = deque()
         self._begun = False
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """Newest scan; None before the first."""
+        """LatestValue scan; None before the first."""
         return self._newest.stamped
 
     async def start(self) -> None:

@@ -10,6 +10,7 @@ from itertools import count
 from typing import Any, Literal
 
 from tangy_hw.device_protocols import DeviceError, Pose, Stamped
+from tangy_hw.drivers.latest_value import LatestValue, awaited
 from tangy_hw.drivers.ros_messages import (
     Message,
     header,
@@ -20,7 +21,6 @@ from tangy_hw.drivers.ros_messages import (
     time_message,
     within,
 )
-from tangy_hw.drivers.ros_newest import Newest, awaited
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.rosbridge_waiting import Goal, LinkLost
 from tangy_hw.navigation.localisation import WIDE
@@ -73,8 +73,8 @@ class RosNavigator:
         self._bridge, self._frame, self._origin = bridge, frame, origin
         self._place, self._initial = place, initial
         self._action = action or ("/move_base" if bridge.ros == 1 else "/navigate_to_pose")
-        self._newest: Newest[None] = Newest(bridge.clock)
-        self._pose: Newest[Pose] = Newest(bridge.clock)
+        self._newest: LatestValue[None] = LatestValue(bridge.clock)
+        self._pose: LatestValue[Pose] = LatestValue(bridge.clock)
         self._spread = 0.0
         self._since = bridge.clock()  # start of the latest drive
         self._path: Path = "clear"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tangy_hw.drivers.latest_value import LatestValue
 from tangy_hw.drivers.ros_messages import Message, statuses_of
-from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Reading
 
@@ -50,7 +50,7 @@ class RosDiagnostics:
         self.name = name
         self._bridge, self._topic = bridge, topic
         self._names = dict(names or {})
-        self._newest: Newest[None] = Newest(bridge.clock)
+        self._newest: LatestValue[None] = LatestValue(bridge.clock)
         self._said: dict[str, dict[str, DeviceStatus]] = {}
         self._begun = False
 
@@ -126,7 +126,7 @@ class RosStopButton:
         self.name = name
         self._bridge, self._topic = bridge, topic
         self._pressed, self._changes_only = pressed, changes_only
-        self._newest: Newest[bool] = Newest(bridge.clock)
+        self._newest: LatestValue[bool] = LatestValue(bridge.clock)
         self._begun = False
 
     @property

@@ -10,8 +10,8 @@ from itertools import count
 from pathlib import Path
 
 from tangy_hw.device_protocols import DeviceError
+from tangy_hw.drivers.latest_value import awaited
 from tangy_hw.drivers.ros_messages import Message
-from tangy_hw.drivers.ros_newest import awaited
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, STALE, DeviceState, Reading

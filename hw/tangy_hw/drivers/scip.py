@@ -108,7 +108,7 @@ class ScipLaser:
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """Newest scan; None before the first."""
+        """LatestValue scan; None before the first."""
         return self._scan
 
     @property

@@ -14,7 +14,7 @@ from scipy.ndimage import distance_transform_edt
 
 from tangy_hw.navigation.mapping import Placed
 from tangy_hw.navigation.occupancy import OCCUPIED, OccupancyMap
-from tangy_hw.navigation.poses import Floats, endpoints, placed
+from tangy_hw.navigation.poses import Floats, endpoints, transform_points
 from tangy_hw.navigation.revisits import Revisits
 
 TORN = 0.15
@@ -64,7 +64,7 @@ def contradicted(scans: Sequence[Placed], map_: OccupancyMap) -> float:
         points = endpoints(one.scan, REACH)
         if not len(points):
             continue
-        ends, start = placed(points, one.pose), np.array([one.pose.x, one.pose.y])
+        ends, start = transform_points(points, one.pose), np.array([one.pose.x, one.pose.y])
         length = np.hypot(points[:, 0], points[:, 1])
         along = np.arange(STEP, REACH, STEP)
         on_way = start + (ends - start)[:, None, :] * (along / length[:, None])[..., None]

@@ -14,7 +14,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.mapping import Placed
-from tangy_hw.navigation.poses import between, compose, wrap
+from tangy_hw.navigation.poses import compose, relative_pose, wrap
 from tangy_hw.navigation.scan_matching import Reference
 
 NEAR = 3.0  # metres within which earlier scans are matched
@@ -37,7 +37,7 @@ def aligned(scans: Sequence[Placed], tell: Callable[[int], None] | None = None) 
     for number, one in enumerate(scans):
         pose = one.pose
         if found:
-            guess = compose(found[-1].pose, between(scans[number - 1].pose, one.pose))
+            guess = compose(found[-1].pose, relative_pose(scans[number - 1].pose, one.pose))
             pose = _matched(one, guess, found, references, places[:number])
         found.append(Placed(one.scan, pose))
         references.append(Reference(one.scan))

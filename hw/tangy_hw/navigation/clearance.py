@@ -11,7 +11,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import Twist
 from tangy_hw.navigation.limits import MotionLimits
-from tangy_hw.navigation.people_guard import Around, passed
+from tangy_hw.navigation.people_guard import Around, limit_near_people
 from tangy_hw.navigation.poses import Floats, lengths
 
 REACH = 3.0  # metres beyond which obstacles are ignored
@@ -65,7 +65,7 @@ def speed_in(room: float, limits: MotionLimits) -> float:
     return sqrt(2 * limits.brake * max(0.0, min(room, REACH)))
 
 
-def guarded(twist: Twist, points: Floats, around: Around, limits: MotionLimits) -> Twist:
+def limit_by_clearance(twist: Twist, points: Floats, around: Around, limits: MotionLimits) -> Twist:
     """Return a twist reduced to the available clearance: on the same arc, or turning only.
 
     The robot slows down near obstacles and stops before close ones, but may still turn: a round
@@ -85,7 +85,7 @@ def guarded(twist: Twist, points: Floats, around: Around, limits: MotionLimits) 
         most = min(most, limits.unseen) if forward < 0 else most
         if most >= SPOT:
             slower = min(1.0, most / abs(forward))
-            safe = passed(Twist(forward * slower, turn * slower), around, limits)
+            safe = limit_near_people(Twist(forward * slower, turn * slower), around, limits)
             if abs(safe.forward) >= SPOT:
                 return safe
     near = float(lengths(points).min()) if len(points) else inf

@@ -15,7 +15,7 @@ from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import State
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.planning import Path
-from tangy_hw.navigation.poses import HERE, Floats, between, compose
+from tangy_hw.navigation.poses import IDENTITY, Floats, compose, relative_pose
 from tangy_hw.navigation.scan_recorder import ScanRecorder
 from tangy_hw.navigation.surroundings import Held
 from tangy_profiles.health import ERROR, OK, DeviceState, Fact, Reading
@@ -33,7 +33,9 @@ class DeadReckoning:
     obstacles = unseen = NOWHERE
     particles: Floats = np.zeros((0, 3))
 
-    def __init__(self, recorder: ScanRecorder, start: Pose = HERE, laser: Pose = HERE) -> None:
+    def __init__(
+        self, recorder: ScanRecorder, start: Pose = IDENTITY, laser: Pose = IDENTITY
+    ) -> None:
         """Start at a pose.
 
         Args:
@@ -56,7 +58,7 @@ class DeadReckoning:
     def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
         """Update pose and tracks for `dt` s and record the scan; always return a zero twist."""
         if self._odometry is not None:
-            self._pose = compose(self._pose, between(self._odometry, odometry.pose))
+            self._pose = compose(self._pose, relative_pose(self._odometry, odometry.pose))
         self._odometry = odometry.pose
         self._time += dt
         if scan is not None:

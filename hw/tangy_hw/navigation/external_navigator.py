@@ -17,9 +17,9 @@ from tangy_hw.device_protocols import STILL, Odometry, OwnNavigation, Pose, Scan
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import SPIN, State
-from tangy_hw.navigation.people_guard import WALKS, Around, passed
+from tangy_hw.navigation.people_guard import WALKS, Around, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
-from tangy_hw.navigation.poses import HERE, Floats
+from tangy_hw.navigation.poses import IDENTITY, Floats
 from tangy_hw.navigation.surroundings import Held
 from tangy_profiles.health import Fact, Reading
 
@@ -31,7 +31,7 @@ class ExternalNavigator:
     """Drives to goals with a robot's own localisation and planner."""
 
     def __init__(
-        self, navigation: OwnNavigation, limits: MotionLimits | None = None, laser: Pose = HERE
+        self, navigation: OwnNavigation, limits: MotionLimits | None = None, laser: Pose = IDENTITY
     ) -> None:
         """Start without a goal; `laser` is the pose of the scanner on the robot."""
         self.state: State = "idle"
@@ -110,7 +110,10 @@ class ExternalNavigator:
         if self.lets and self._allowed < AGAIN_SECONDS:
             return  # go on after nobody has come for a moment
         walking = [one for one in self.tracks if one.speed > WALKS]
-        meets = passed(odometry.twist, Around(walking, np.zeros((0, 2))), self._limits) == STILL
+        meets = (
+            limit_near_people(odometry.twist, Around(walking, np.zeros((0, 2))), self._limits)
+            == STILL
+        )
         self.lets = "walking" if self.drives and meets and odometry.twist != STILL else ""
         if self.lets:
             self.held()

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.likelihood import NEAREST
-from tangy_hw.navigation.poses import HERE, Floats, bearings, compose
+from tangy_hw.navigation.poses import IDENTITY, Floats, bearings, compose
 
 FARTHEST = 5.0  # metres beyond which too few beams hit a leg
 SPLIT, SPLIT_SHARE = 0.10, 0.02  # gap between two clusters: metres, and share of the range
@@ -46,7 +46,7 @@ class Cluster(NamedTuple):
 
 
 def sightings(
-    scan: Scan, laser: Pose = HERE, unmapped: NDArray[np.bool_] | None = None
+    scan: Scan, laser: Pose = IDENTITY, unmapped: NDArray[np.bool_] | None = None
 ) -> list[LegSighting]:
     """Return the people and objects in a scan that are not on the map.
 

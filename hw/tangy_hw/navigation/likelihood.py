@@ -10,7 +10,7 @@ from scipy.ndimage import distance_transform_edt, label
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, OccupancyMap
-from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
+from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints, lengths, transform_points
 
 Field: TypeAlias = NDArray[np.float32]
 
@@ -24,7 +24,7 @@ MOST_STEPS = 60  # steps of the search along a beam
 WALL = 15  # connected cells that make a wall; chairs have fewer, and move
 
 
-def thin(scan: Scan, farthest: float, laser: Pose = HERE, beams: int = BEAMS) -> Floats:
+def thin(scan: Scan, farthest: float, laser: Pose = IDENTITY, beams: int = BEAMS) -> Floats:
     """Return the ends (n, 2), in m, of at most `beams` beams with a return, evenly spaced."""
     points = endpoints(scan, farthest, laser, NEAREST)
     if len(points) <= beams:
@@ -110,7 +110,7 @@ class LikelihoodField:
         """Return whether each beam crosses a wall; step by the distance to the nearest wall."""
         far = lengths(points)
         reach = far - SHORT
-        ends = placed(points, pose)
+        ends = transform_points(points, pose)
         unit = (ends - np.array([pose.x, pose.y])) / np.maximum(far, 1e-9)[:, None]
         gone = np.zeros(len(points))
         crossed = np.zeros(len(points), dtype=np.bool_)

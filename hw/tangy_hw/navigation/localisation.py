@@ -18,7 +18,7 @@ from tangy_hw.navigation.likelihood import LikelihoodField, covered, thin
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.particles import MOST, around, likeliest, move, needed, resample
 from tangy_hw.navigation.pose_search import Search
-from tangy_hw.navigation.poses import HERE, Floats, between, compose, wrap
+from tangy_hw.navigation.poses import IDENTITY, Floats, compose, relative_pose, wrap
 
 LOST = 0.85  # of the usual fit: below this the estimated pose is probably wrong
 WIDE = 0.5  # metres of spread above which several places are possible
@@ -75,7 +75,7 @@ class Localisation:
     """Estimates the robot's pose on a map."""
 
     def __init__(
-        self, map_: OccupancyMap, rng: Generator, start: Pose | None = None, laser: Pose = HERE
+        self, map_: OccupancyMap, rng: Generator, start: Pose | None = None, laser: Pose = IDENTITY
     ) -> None:
         """Start.
 
@@ -121,7 +121,7 @@ class Localisation:
         """
         points = thin(scan, FARTHEST, self._laser)
         first = self._odometry is None
-        step = HERE if self._odometry is None else between(self._odometry, odometry)
+        step = IDENTITY if self._odometry is None else relative_pose(self._odometry, odometry)
         if first:
             self._odometry = odometry
         moved = hypot(step.x, step.y) > MOVED or abs(step.heading) > TURNED

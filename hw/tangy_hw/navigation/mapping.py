@@ -15,7 +15,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyMap
-from tangy_hw.navigation.poses import Floats, between, endpoints, placed
+from tangy_hw.navigation.poses import Floats, endpoints, relative_pose, transform_points
 from tangy_profiles.errors import TangyError
 
 REACH = 20.0  # metres of a beam that count
@@ -41,7 +41,7 @@ def sparse(scans: Iterable[Placed], metres: float = 0.1, radians: float = 0.1) -
     kept: list[Placed] = []
     for one in scans:
         if kept:
-            step = between(kept[-1].pose, one.pose)
+            step = relative_pose(kept[-1].pose, one.pose)
             if hypot(step.x, step.y) < metres and abs(step.heading) < radians:
                 continue
         kept.append(one)
@@ -80,7 +80,7 @@ class MapMaker:
         through = np.where(met, np.maximum(ranges - self.resolution, 0), np.where(known, REACH, 0))
         angles = scan.first + scan.step * np.arange(len(ranges))
         free = np.column_stack((through * np.cos(angles), through * np.sin(angles)))
-        corners = self._cells(placed(np.vstack(([[0.0, 0.0]], free)), pose))
+        corners = self._cells(transform_points(np.vstack(([[0.0, 0.0]], free)), pose))
         low = np.maximum(np.floor(corners.min(axis=0)).astype(int), 0)
         high = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 2, self._seen.shape[::-1])
         if (high <= low).any():
@@ -91,7 +91,7 @@ class MapMaker:
         # OpenCV pixels have their centres at integers
         drawn = np.round((corners - low - 0.5) * (1 << SHIFT)).astype(np.int32)
         cv2.fillPoly(seen, [drawn.reshape(-1, 1, 2)], 1, shift=SHIFT)
-        ends = np.floor(self._cells(placed(endpoints(scan, REACH), pose))).astype(int)
+        ends = np.floor(self._cells(transform_points(endpoints(scan, REACH), pose))).astype(int)
         on = ((ends >= 0) & (ends < self._seen.shape[::-1])).all(axis=1)
         ends = np.unique(ends[on], axis=0)
         self._hits[ends[:, 1], ends[:, 0]] += 1
@@ -114,7 +114,7 @@ class MapMaker:
 
 def extent(scans: Sequence[Placed], margin: float = 0.5) -> tuple[float, float, float, float]:
     """Return left, near, right and far of everything that the scans saw, in m."""
-    ends = [placed(endpoints(one.scan, REACH), one.pose) for one in scans]
+    ends = [transform_points(endpoints(one.scan, REACH), one.pose) for one in scans]
     places = np.array([(one.pose.x, one.pose.y) for one in scans])
     every = np.vstack((*ends, places))
     left, near = np.floor(every.min(axis=0) - margin)

@@ -29,7 +29,7 @@ from tangy_hw.navigation.planning import (
     near_ends,
     plan,
 )
-from tangy_hw.navigation.poses import HERE, Floats, between, lengths, placed
+from tangy_hw.navigation.poses import IDENTITY, Floats, lengths, relative_pose, transform_points
 from tangy_hw.navigation.pursuit import Pursuit
 from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_hw.navigation.surroundings import Held, Surroundings
@@ -64,7 +64,7 @@ class Navigator:
         start: Pose | None = None,
         *,
         limits: MotionLimits | None = None,
-        laser: Pose = HERE,
+        laser: Pose = IDENTITY,
         people: Floats | None = None,
     ) -> None:
         """Start at a pose.
@@ -187,7 +187,7 @@ class Navigator:
             return np.zeros((0, 2))
         pose, edge = estimate.pose, self.map.keep_out_edge
         edge = edge[lengths(edge - (pose.x, pose.y)) < REACH]
-        return placed(edge, between(pose, HERE))
+        return transform_points(edge, relative_pose(pose, IDENTITY))
 
     @property
     def particles(self) -> Floats:
@@ -235,7 +235,7 @@ class Navigator:
         if before is None or (abs(self._told.forward) < 0.02 and abs(self._told.turn) < 0.05):
             self.still = 0.0
             return
-        step = between(before, odometry.pose)
+        step = relative_pose(before, odometry.pose)
         moved = (
             hypot(step.x, step.y) > 0.1 * abs(self._told.forward) * dt + 1e-6
             or abs(step.heading) > 0.1 * abs(self._told.turn) * dt + 1e-6
@@ -328,7 +328,7 @@ class Navigator:
         obstacles = self._around.standing
         wary_of = np.vstack((self.people, obstacles))
         wanted = pursuit.command(pose, odometry.twist, scan, dt, wary_of)
-        twist = self._around.passed(wanted)
+        twist = self._around.limited(wanted)
         if pursuit.state == "arrived":
             self.state, self._way = "arrived", "clear"
             self._stop_following()

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.likelihood import NEAREST
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.poses import HERE, Floats, compose, endpoints, placed, wrap
+from tangy_hw.navigation.poses import IDENTITY, Floats, compose, endpoints, transform_points, wrap
 
 OFF = 0.1  # metres from everything on the map beyond which a return is an obstacle
 FIDGETING = 0.2  # the same where seated people move their feet
@@ -25,7 +25,7 @@ BEHIND = 0.15  # metres that a beam must pass behind an obstacle to clear it
 class Obstacles:
     """Remembers obstacles for a while, in the cells of a map."""
 
-    def __init__(self, map_: OccupancyMap, laser: Pose = HERE) -> None:
+    def __init__(self, map_: OccupancyMap, laser: Pose = IDENTITY) -> None:
         self._map = map_
         self._laser = laser
         # keep people beside a wall or table apart from it, as far as scan and pose are accurate
@@ -39,7 +39,7 @@ class Obstacles:
         if there.any():
             self._age[there] += dt
             self._clear(pose, scan)
-        points = placed(endpoints(scan, RANGE, self._laser, NEAREST), pose)
+        points = transform_points(endpoints(scan, RANGE, self._laser, NEAREST), pose)
         rows, columns = self._map.cells_of(points)
         hit = np.zeros(self._map.shape, dtype=np.bool_)
         hit[rows, columns] = True

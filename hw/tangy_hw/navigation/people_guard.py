@@ -36,7 +36,7 @@ class Around(NamedTuple):
     ends: Floats
 
 
-def passed(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
+def limit_near_people(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
     """Return the part of a twist that is safe near people, on the same arc: all, less, or none.
 
     A round robot may always turn on the spot; a robot with corners only if they stay clear of

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.leg_detection import REACH, TORSO, LegSighting, sightings, turned
-from tangy_hw.navigation.poses import HERE, between, compose, wrap
+from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
 
 ACCELERATION = 3.0  # m/s^2, standard deviation of changes of velocity
 MEASURED = 0.07  # metres, standard deviation of a measured centre
@@ -62,7 +62,7 @@ class Track:
 
     def seen_from(self, pose: Pose) -> Track:
         """Transform it into the frame of a pose given in the current frame."""
-        there = between(pose, Pose(self.x, self.y, 0.0))
+        there = relative_pose(pose, Pose(self.x, self.y, 0.0))
         vx, vy = turned(self.vx, self.vy, -pose.heading)
         return Track(there.x, there.y, vx, vy, self.half, self.age, self.stood, self.person,
                      self.hidden, self.pace)  # fmt: skip
@@ -150,7 +150,7 @@ class _Followed:
 class PeopleTracker:
     """Tracks all people and objects that a scanner sees and a map lacks."""
 
-    def __init__(self, laser: Pose = HERE) -> None:
+    def __init__(self, laser: Pose = IDENTITY) -> None:
         """Start without tracks; `laser` is the pose of the scanner on the robot."""
         self._laser = laser
         self._followed: list[_Followed] = []
@@ -246,7 +246,7 @@ def _placed(one: LegSighting, pose: Pose) -> LegSighting:
 def _hidden(one: _Followed, scan: Scan, eye: Pose) -> bool:
     """Return whether a track is occluded or out of view."""
     x, y = one.state[0]
-    there = between(eye, Pose(float(x), float(y), 0.0))
+    there = relative_pose(eye, Pose(float(x), float(y), 0.0))
     beam = round((wrap(atan2(there.y, there.x) - scan.first)) % (2 * np.pi) / scan.step)
     if not 0 <= beam < len(scan.ranges):
         return True

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import splu
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.mapping import Placed
-from tangy_hw.navigation.poses import Floats, between, wrap
+from tangy_hw.navigation.poses import Floats, relative_pose, wrap
 from tangy_hw.navigation.revisits import Loop
 
 STEP = (0.02, 0.02, 0.005)
@@ -52,7 +52,7 @@ def close_loops(scans: Sequence[Placed], loops: Sequence[Loop]) -> list[Placed]:
     ends = np.vstack(
         (np.column_stack((chain, chain + 1)), [(one.earlier, one.later) for one in loops])
     )
-    steps = [between(a.pose, b.pose) for a, b in pairwise(scans)]
+    steps = [relative_pose(a.pose, b.pose) for a, b in pairwise(scans)]
     told = np.array([*steps, *(one.step for one in loops)])
     spread = np.vstack((np.tile(STEP, (len(steps), 1)), np.tile(LOOP, (len(loops), 1))))
     kept = np.ones(len(ends), dtype=np.bool_)

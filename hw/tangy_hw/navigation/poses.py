@@ -16,7 +16,7 @@ from tangy_hw.device_protocols import Pose, Scan
 Floats: TypeAlias = NDArray[np.float64]
 Angle = TypeVar("Angle", float, Floats)
 
-HERE = Pose(0.0, 0.0, 0.0)
+IDENTITY = Pose(0.0, 0.0, 0.0)
 
 
 def wrap(angle: Angle) -> Angle:
@@ -34,14 +34,14 @@ def compose(start: Pose, step: Pose) -> Pose:
     )
 
 
-def between(start: Pose, end: Pose) -> Pose:
+def relative_pose(start: Pose, end: Pose) -> Pose:
     """Return the step from one pose to another, in the frame of the first."""
     c, s = cos(start.heading), sin(start.heading)
     x, y = end.x - start.x, end.y - start.y
     return Pose(c * x + s * y, c * y - s * x, wrap(end.heading - start.heading))
 
 
-def placed(points: Floats, pose: Pose) -> Floats:
+def transform_points(points: Floats, pose: Pose) -> Floats:
     """Transform points (n, 2) from the frame of a pose into its parent frame."""
     c, s = cos(pose.heading), sin(pose.heading)
     turned = points @ np.array([[c, s], [-s, c]]) + np.array([pose.x, pose.y])
@@ -59,7 +59,7 @@ def bearings(scan: Scan) -> Floats:
 
 
 def endpoints(
-    scan: Scan, farthest: float = np.inf, laser: Pose = HERE, nearest: float = 0.0
+    scan: Scan, farthest: float = np.inf, laser: Pose = IDENTITY, nearest: float = 0.0
 ) -> Floats:
     """Return the ends of the beams with a return (m, 2), in the robot's frame.
 
@@ -72,4 +72,4 @@ def endpoints(
     met = (scan.ranges > nearest) & (scan.ranges < min(farthest, scan.farthest))
     angles, ranges = bearings(scan)[met], scan.ranges[met]
     points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
-    return points if laser == HERE else placed(points, laser)
+    return points if laser == IDENTITY else transform_points(points, laser)

@@ -16,7 +16,7 @@ import numpy as np
 from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import REACH, room_ahead, speed_in
 from tangy_hw.navigation.limits import MotionLimits
-from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, wrap
+from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints, lengths, relative_pose, wrap
 
 State = Literal["driving", "turning", "waiting", "arrived"]
 """On the path; turning on the spot; waiting for an obstacle to go away; at the goal."""
@@ -37,7 +37,7 @@ class Pursuit:
         path: Floats,
         heading: float | None = None,
         limits: MotionLimits | None = None,
-        laser: Pose = HERE,
+        laser: Pose = IDENTITY,
     ) -> None:
         """Start at the beginning of a path.
 
@@ -88,7 +88,7 @@ class Pursuit:
         if self.state == "arrived":
             return STILL
         self._advance(pose)
-        goal = between(pose, Pose(float(self.path[-1, 0]), float(self.path[-1, 1]), 0.0))
+        goal = relative_pose(pose, Pose(float(self.path[-1, 0]), float(self.path[-1, 1]), 0.0))
         off = hypot(goal.x, goal.y)
         if off < THERE or (off < PASSED and (self._close or goal.x < 0)):
             self._close = off < PASSED
@@ -116,7 +116,7 @@ class Pursuit:
         gone = self.left - self._left[self._at :]
         beyond = int(np.searchsorted(gone, look))
         target = self.path[min(self._at + beyond, len(self.path) - 1)]
-        to = between(pose, Pose(float(target[0]), float(target[1]), 0.0))
+        to = relative_pose(pose, Pose(float(target[0]), float(target[1]), 0.0))
         off = atan2(to.y, to.x)
         if abs(off) > AIM or (self._aiming and abs(off) > AIMED):
             self._aiming = True

@@ -23,7 +23,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.mapping import Placed
-from tangy_hw.navigation.poses import Floats, between, compose
+from tangy_hw.navigation.poses import Floats, compose, relative_pose
 from tangy_hw.navigation.scan_matching import Reference
 
 LOOP = 8.0  # metres driven between two scans that can close a loop
@@ -132,7 +132,7 @@ def _loop(
     spread = candidates[NEAREST :: 1 + len(candidates) // CANDIDATES]
     for candidate in (*candidates[:NEAREST], *spread):
         earlier = chosen[candidate]
-        told = between(scans[earlier].pose, one.pose)
+        told = relative_pose(scans[earlier].pose, one.pose)
         guesses = [Pose(0.0, 0.0, told.heading)] + ([told] if apart[candidate] < 1.0 else [])
         for guess in guesses:
             match = references[earlier].match(one.scan, guess)

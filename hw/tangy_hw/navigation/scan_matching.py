@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from tangy_hw.device_protocols import Pose, Scan
-from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed, wrap
+from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints, lengths, transform_points, wrap
 
 REACH = 12.0  # metres beyond which points are too sparse
 POINTS = 120  # of a scan to match
@@ -42,7 +42,7 @@ class ScanMatch:
 class Reference:
     """A scan that others are matched with."""
 
-    def __init__(self, scan: Scan | None, laser: Pose = HERE) -> None:
+    def __init__(self, scan: Scan | None, laser: Pose = IDENTITY) -> None:
         points = np.zeros((0, 2)) if scan is None else endpoints(scan, REACH, laser)
         self._take(*_lines(points))
 
@@ -51,8 +51,10 @@ class Reference:
         """Join scans at their poses into one reference."""
         made = cls(None)
         made._take(
-            np.vstack([placed(part._points, pose) for part, pose in parts]),
-            np.vstack([placed(part._normals, Pose(0, 0, pose.heading)) for part, pose in parts]),
+            np.vstack([transform_points(part._points, pose) for part, pose in parts]),
+            np.vstack(
+                [transform_points(part._normals, Pose(0, 0, pose.heading)) for part, pose in parts]
+            ),
         )
         return made
 
@@ -60,7 +62,7 @@ class Reference:
         self._points, self._normals = points, normals
         self._tree = cKDTree(points) if len(points) else None
 
-    def match(self, scan: Scan, guess: Pose, laser: Pose = HERE) -> ScanMatch:
+    def match(self, scan: Scan, guess: Pose, laser: Pose = IDENTITY) -> ScanMatch:
         """Find the relative pose of another scan, starting from a guess."""
         points = endpoints(scan, REACH, laser)
         if len(points) > POINTS:
@@ -69,7 +71,7 @@ class Reference:
             return ScanMatch(guess, 0.0, np.zeros((2, 2)))
         pose, hessian = guess, np.zeros((3, 3))
         for ring in RINGS:
-            moved = placed(points, pose)
+            moved = transform_points(points, pose)
             far, partner = self._tree.query(moved, distance_upper_bound=ring)
             near = np.isfinite(far)
             if near.sum() < 10:
@@ -86,7 +88,7 @@ class Reference:
         return ScanMatch(pose, self._fits(points, pose), _told(hessian))
 
     def _fits(self, points: Floats, pose: Pose) -> float:
-        moved = placed(points, pose)
+        moved = transform_points(points, pose)
         tree = self._tree
         if tree is None:
             return 0.0

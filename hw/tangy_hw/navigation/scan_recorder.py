@@ -12,7 +12,7 @@ from math import hypot, isfinite
 from pathlib import Path
 
 from tangy_hw.device_protocols import DeviceError, Pose, Scan
-from tangy_hw.navigation.poses import between
+from tangy_hw.navigation.poses import relative_pose
 
 _LOG = logging.getLogger(__name__)
 
@@ -43,7 +43,7 @@ class ScanRecorder:
     def note(self, scan: Scan, pose: Pose, stamp: float) -> None:
         """Record a scan if the laser has moved since the last one; `stamp` is in s."""
         if self._last is not None:
-            step = between(self._last, pose)
+            step = relative_pose(self._last, pose)
             if hypot(step.x, step.y) < MOVED and abs(step.heading) < TURNED:
                 return
         if self.failed:

@@ -13,7 +13,7 @@ from math import hypot
 import numpy as np
 
 from tangy_hw.device_protocols import Pose, Scan
-from tangy_hw.navigation.poses import HERE, Floats, between, wrap
+from tangy_hw.navigation.poses import IDENTITY, Floats, relative_pose, wrap
 from tangy_hw.navigation.scan_matching import Reference, ScanMatch
 
 STEP, TURN = 0.1, 0.15  # metres and radians of odometry between compared scans
@@ -27,12 +27,12 @@ ARM = 0.25  # metres from the robot's centre to its wheels: converts a turn into
 class SlipDetector:
     """Difference between wheel odometry and matched scans over the last stretch of the way."""
 
-    def __init__(self, laser: Pose = HERE) -> None:
+    def __init__(self, laser: Pose = IDENTITY) -> None:
         self._laser = laser
         self._steps: deque[tuple[int, Floats]] = deque(maxlen=STEPS)
         self._count = 0
         self._reference: Reference | None = None
-        self._from = HERE
+        self._from = IDENTITY
 
     def update(self, odometry: Pose, scan: Scan) -> float:
         """Update with simultaneous odometry and scan; return the disagreement in m."""
@@ -42,7 +42,7 @@ class SlipDetector:
         if self._reference is None:
             self._begin(odometry, scan)
         else:
-            step = between(self._from, odometry)
+            step = relative_pose(self._from, odometry)
             if hypot(step.x, step.y) > STEP or abs(step.heading) > TURN:
                 self._compare(self._reference, step, scan)
                 self._begin(odometry, scan)
@@ -66,7 +66,7 @@ class SlipDetector:
     def _compare(self, reference: Reference, step: Pose, scan: Scan) -> None:
         match = reference.match(scan, step, self._laser)
         if match.fits < FITS:  # perhaps the robot stood still, or went the other way
-            others = (HERE, Pose(-step.x, -step.y, step.heading))
+            others = (IDENTITY, Pose(-step.x, -step.y, step.heading))
             match = max(
                 (match, *(reference.match(scan, other, self._laser) for other in others)),
                 key=lambda one: one.fits,

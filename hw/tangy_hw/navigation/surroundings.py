@@ -13,9 +13,9 @@ from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.people_guard import Around, passed
+from tangy_hw.navigation.people_guard import Around, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
-from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
+from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints, lengths, transform_points
 
 Held = Literal["", "walking", "standing"]
 """Kind of person that the robot waits for: nobody, a walking one, a standing one."""
@@ -40,7 +40,7 @@ class Surroundings:
         self._obstacles = Obstacles(map_, laser)
         self._tracker = PeopleTracker(laser)
         self._laser, self._limits = laser, limits
-        self._pose = HERE
+        self._pose = IDENTITY
         self._tracks: tuple[Track, ...] = ()
         self._ends: Floats = np.zeros((0, 2))
 
@@ -54,7 +54,7 @@ class Surroundings:
         self._tracks = tuple(one.seen_from(odometry) for one in tracks)
         points = endpoints(scan, REACH, self._laser)
         if unmapped is not None:
-            points = points[self._obstacles.among(placed(points, estimate.pose))]
+            points = points[self._obstacles.among(transform_points(points, estimate.pose))]
         self._ends = points
 
     def forget(self) -> None:
@@ -77,7 +77,7 @@ class Surroundings:
         points, walkers = self.points, self._walkers
         if not len(points) or not walkers:
             return points
-        at = placed(np.array([(one.x, one.y) for one in walkers]), self._pose)
+        at = transform_points(np.array([(one.x, one.y) for one in walkers]), self._pose)
         apart = ((points[:, None] - at[None]) ** 2).sum(axis=2).min(axis=1)
         return np.asarray(points[apart > WALKERS**2])
 
@@ -89,20 +89,20 @@ class Surroundings:
             for one in self._walkers
             for after in AHEAD
         ]
-        return placed(np.array(found, dtype=np.float64).reshape(-1, 2), self._pose)
+        return transform_points(np.array(found, dtype=np.float64).reshape(-1, 2), self._pose)
 
-    def passed(self, twist: Twist) -> Twist:
+    def limited(self, twist: Twist) -> Twist:
         """Return the part of a command that may be driven near the people around."""
-        return passed(twist, Around(self._tracks, self._ends), self._limits)
+        return limit_near_people(twist, Around(self._tracks, self._ends), self._limits)
 
     def held(self, twist: Twist) -> Held:
         """Return the kind of person who blocks a command; "" if it is not blocked."""
-        if self.passed(twist) != STILL or twist == STILL:
+        if self.limited(twist) != STILL or twist == STILL:
             return ""
         walkers = self._walkers
         standing = [one for one in self._tracks if one not in walkers]
         ends = self._ends[~_near(self._ends, walkers)]
-        without = passed(twist, Around(standing, ends), self._limits)
+        without = limit_near_people(twist, Around(standing, ends), self._limits)
         return "standing" if without == STILL else "walking"
 
     @property

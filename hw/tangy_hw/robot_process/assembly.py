@@ -22,7 +22,7 @@ from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.navigation.occupancy import map_of_room, with_feet
-from tangy_hw.navigation.poses import HERE
+from tangy_hw.navigation.poses import IDENTITY
 from tangy_hw.navigation.scan_recorder import ScanRecorder
 from tangy_hw.perception.camera_hub import CameraHub, camera_sources
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
@@ -200,7 +200,7 @@ def _wayfinder(
     limits, laser = MotionLimits.of(robot), laser_of(robot)
     start = None if setup.start is None else Pose(*setup.start)
     if setup.record:
-        return DeadReckoning(ScanRecorder(Path(setup.record)), start or HERE, laser)
+        return DeadReckoning(ScanRecorder(Path(setup.record)), start or IDENTITY, laser)
     if own is not None:
         return ExternalNavigator(own, limits, laser)
     count = len(setup.people)

@@ -22,7 +22,6 @@ from tangy_hw.perception.requests.help_request_source import Ask, RequestSource,
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.control_loop import ControlLoop
-from tangy_hw.robot_process.courtesies import Courtesies
 from tangy_hw.robot_process.device_diagnostics import device_diagnostics
 from tangy_hw.robot_process.drive_monitor import DriveMonitor
 from tangy_hw.robot_process.hand_drive import HandDrive
@@ -30,6 +29,7 @@ from tangy_hw.robot_process.pause_watch import PauseWatch
 from tangy_hw.robot_process.performer import Performer
 from tangy_hw.robot_process.stop_latch import FAULT, STAFF, Preempted, StopLatch
 from tangy_hw.robot_process.tick_watchdog import TickWatch
+from tangy_hw.robot_process.wait_explanations import WaitExplanations
 from tangy_hw.robot_process.wheels import Wheels
 from tangy_hw.watchdogs import Watchdogs
 from tangy_profiles.health import DeviceState, Health
@@ -70,7 +70,7 @@ class LiveRobot:
             senses: readers of its images.
             requests: source of requests for help.
             stepped: whether its time stands still while nothing is done.
-            courtesies: sentences for people whom it waits for (see `Courtesies`).
+            courtesies: sentences for people whom it waits for (see `WaitExplanations`).
         """
         self.robot = robot
         self.navigator = navigator
@@ -94,7 +94,7 @@ class LiveRobot:
         self._left_alone = False
         self._performer = Performer(body, self.passing, robot, navigator, lambda: self._halted)
         self.perform = self._performer.perform
-        self._courtesies = Courtesies(courtesies or {}, lambda text: self.perform(text=text))
+        self._courtesies = WaitExplanations(courtesies or {}, lambda text: self.perform(text=text))
         self._wanted: Pose | None = None
         self._was = ""  # state at the end of the last drive
         self._evidence = DriveMonitor(navigator, clock.now)

@@ -9,11 +9,11 @@ from typing import Literal
 import numpy as np
 
 from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
-from tangy_hw.navigation.clearance import REACH, guarded
+from tangy_hw.navigation.clearance import REACH, limit_by_clearance
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.people_guard import Around
 from tangy_hw.navigation.people_tracker import Track
-from tangy_hw.navigation.poses import HERE, Floats, endpoints
+from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints
 
 HOLDS_SECONDS = 0.4  # for which a manual command is valid
 
@@ -30,7 +30,7 @@ class HandDrive:
     The robot's pose on a map does not matter, and every return may be a person.
     """
 
-    def __init__(self, limits: MotionLimits, laser: Pose = HERE) -> None:
+    def __init__(self, limits: MotionLimits, laser: Pose = IDENTITY) -> None:
         self.held: Held = ""
         self._limits, self._laser = limits, laser
         self._told = STILL
@@ -82,7 +82,7 @@ class HandDrive:
         around = Around(tracks, points)
         if unseen is not None and len(unseen):
             points = np.vstack((points, unseen))
-        twist = guarded(self._told, points, around, self._limits)
+        twist = limit_by_clearance(self._told, points, around, self._limits)
         self.held = _held(self._told, twist)
         return twist
 

@@ -39,7 +39,7 @@ from tangy_hw.robot_process.protocol import (
     pose_of,
     text_of,
 )
-from tangy_hw.robot_process.requests import Deed, at_once_of, deed_of
+from tangy_hw.robot_process.requests import LastingRequest, immediate_request, lasting_request
 from tangy_hw.robot_process.startup import switched_on
 from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
@@ -150,8 +150,8 @@ class RobotProcess:
         Raises:
             LineError: the request is invalid.
         """
-        at_once = at_once_of(asked.get("do"))
-        match at_once:
+        immediate = immediate_request(asked.get("do"))
+        match immediate:
             case None:
                 self._begin(asked)
                 return
@@ -174,13 +174,13 @@ class RobotProcess:
         self._answer(asked, done={})
 
     def _begin(self, asked: Asked) -> None:
-        deed, number = deed_of(asked.get("do")), id_of(asked)
-        if deed is None:
+        lasting, number = lasting_request(asked.get("do")), id_of(asked)
+        if lasting is None:
             raise LineError(f"It cannot do {asked.get('do')!r:.100}.")
-        _LOG.log(level_of(deed), "begins %s", deed)
+        _LOG.log(level_of(lasting), "begins %s", lasting)
         if number is None or number in self._doing:
-            raise LineError(f"{deed} needs an id of its own, to be answered by.")
-        task = asyncio.create_task(self._do(deed, asked))
+            raise LineError(f"{lasting} needs an id of its own, to be answered by.")
+        task = asyncio.create_task(self._do(lasting, asked))
         self._doing[number] = task
         task.add_done_callback(lambda task: self._over(task, asked))
 
@@ -192,8 +192,8 @@ class RobotProcess:
         if id_of(asked) is not None:
             self._say({"id": asked["id"], "at": self.robot.passing.clock.now(), **what})
 
-    def _deed(self, deed: Deed) -> Callable[[Asked], Awaitable[Answer | None]]:
-        match deed:
+    def _handler(self, lasting: LastingRequest) -> Callable[[Asked], Awaitable[Answer | None]]:
+        match lasting:
             case "perform":
                 return self._perform
             case "go":
@@ -227,9 +227,9 @@ class RobotProcess:
             case forgotten:
                 assert_never(forgotten)
 
-    async def _do(self, deed: Deed, asked: Asked) -> None:
+    async def _do(self, lasting: LastingRequest, asked: Asked) -> None:
         try:
-            done = await self._deed(deed)(asked)
+            done = await self._handler(lasting)(asked)
         except Preempted as error:
             self._answer(asked, failed=str(error), broken=True)
         except asyncio.CancelledError:

@@ -1,16 +1,16 @@
 """The requests to the robot process: a closed set, the same at both ends.
 
-An immediate request is done when its line arrives; a deed takes time, and is answered at its end.
+An immediate request is done when its line arrives; a lasting one is answered at its end.
 """
 
 from __future__ import annotations
 
 from typing import Literal, TypeAlias, get_args
 
-AtOnce = Literal["stop", "release", "seen to", "cancel", "drive", "show calls"]
-AT_ONCE: tuple[AtOnce, ...] = get_args(AtOnce)
+ImmediateRequest = Literal["stop", "release", "seen to", "cancel", "drive", "show calls"]
+IMMEDIATE_REQUESTS: tuple[ImmediateRequest, ...] = get_args(ImmediateRequest)
 
-Deed = Literal[
+LastingRequest = Literal[
     "perform",
     "go",
     "spin",
@@ -27,16 +27,16 @@ Deed = Literal[
     "place",
     "fail",
 ]
-DEEDS: tuple[Deed, ...] = get_args(Deed)
+LASTING_REQUESTS: tuple[LastingRequest, ...] = get_args(LastingRequest)
 
-Request: TypeAlias = AtOnce | Deed
+Request: TypeAlias = ImmediateRequest | LastingRequest
 
 
-def at_once_of(asked: object) -> AtOnce | None:
+def immediate_request(asked: object) -> ImmediateRequest | None:
     """Return the immediate request of a line."""
-    return next((one for one in AT_ONCE if one == asked), None)
+    return next((one for one in IMMEDIATE_REQUESTS if one == asked), None)
 
 
-def deed_of(asked: object) -> Deed | None:
+def lasting_request(asked: object) -> LastingRequest | None:
     """Return the lasting request of a line."""
-    return next((one for one in DEEDS if one == asked), None)
+    return next((one for one in LASTING_REQUESTS if one == asked), None)

@@ -6,10 +6,10 @@ from collections import deque
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
+from tangy_profiles.declared.demonstrated_moves import UNDECIDED, DemonstratedMoves
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.search import done_move, ends_game, events, happen
 from tangy_profiles.declared.search_way import Event
-from tangy_profiles.declared.shown_moves import UNDECIDED, ShownMoves
 from tangy_profiles.declared.state_keys import rough_key, state_key
 from tangy_profiles.state import Situation
 
@@ -57,7 +57,7 @@ class _Step:
 
 
 def nearest_way(
-    moments: Sequence[DeclaredGame], taught: ShownMoves, most: int | None = None
+    moments: Sequence[DeclaredGame], taught: DemonstratedMoves, most: int | None = None
 ) -> Way | None:
     """Return a shortest path, along demonstrated moves, to a situation not shown yet.
 
@@ -91,7 +91,7 @@ def moment_key(game: DeclaredGame) -> Hashable:
 class _Search:
     """A breadth-first search of paths: in `late` with events that end a game, in `soon` without."""
 
-    def __init__(self, taught: ShownMoves, most: int) -> None:
+    def __init__(self, taught: DemonstratedMoves, most: int) -> None:
         self._taught = taught
         self._most = most
         self._known: set[Hashable] = set()

@@ -9,10 +9,10 @@ from time import thread_time
 from typing import Literal
 
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.demonstrated_moves import UNDECIDED, DemonstratedMoves, Move
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.search import Cut, Limit, Reach, explore
-from tangy_profiles.declared.search_way import Trap
-from tangy_profiles.declared.shown_moves import UNDECIDED, Move, ShownMoves
+from tangy_profiles.declared.search import Cut, Limit, SearchResult, explore
+from tangy_profiles.declared.search_way import Counterexample
 from tangy_profiles.declared.speech import empty_slots
 from tangy_profiles.declared.state_keys import Share
 from tangy_profiles.state import EVERYBODY
@@ -41,7 +41,7 @@ class DeadEnd:
 
     players: int
     as_expected: bool
-    trap: Trap
+    counterexample: Counterexample
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +92,9 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
     slots: dict[tuple[str, str], bool] = {}
     players = (activity.teams or PLAYERS)[:2]
     sizes = [players] if activity.teams else [players[:1], players]
-    found: list[tuple[SearchedGames, Reach]] = []
+    found: list[tuple[SearchedGames, SearchResult]] = []
 
-    def note(group: Sequence[str], one: Reach, *, as_expected: bool = False) -> None:
+    def note(group: Sequence[str], one: SearchResult, *, as_expected: bool = False) -> None:
         searched = SearchedGames(len(group), one.states, one.cut, as_expected, one.shares)
         found.append((searched, one))
 
@@ -122,7 +122,7 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
 
 
 def _dead_ends(
-    activity: DeclaredActivity, found: Sequence[tuple[SearchedGames, Reach]]
+    activity: DeclaredActivity, found: Sequence[tuple[SearchedGames, SearchResult]]
 ) -> Iterator[ActivityFlaw]:
     """Yield a flaw for each search with a dead end.
 
@@ -133,13 +133,13 @@ def _dead_ends(
     for games, one in found:
         if one.lost is None or one.loop is None:
             continue
-        trap = one.loop if games.as_expected or not one.lost.way else one.lost
-        end = DeadEnd(games.players, games.as_expected, trap)
-        yield ActivityFlaw("never ends", activity.in_names(trap.situation), dead_end=end)
+        counterexample = one.loop if games.as_expected or not one.lost.way else one.lost
+        end = DeadEnd(games.players, games.as_expected, counterexample)
+        yield ActivityFlaw("never ends", activity.in_names(counterexample.situation), dead_end=end)
 
 
 def _idle(
-    activity: DeclaredActivity, found: Sequence[tuple[SearchedGames, Reach]]
+    activity: DeclaredActivity, found: Sequence[tuple[SearchedGames, SearchResult]]
 ) -> Iterator[ActivityFlaw]:
     """Yield a flaw for each search with a state in which no behaviour is possible."""
     for games, one in found:
@@ -149,7 +149,7 @@ def _idle(
             yield ActivityFlaw("nothing possible", name, dead_end=end)
 
 
-def _missing(activity: DeclaredActivity, found: Sequence[Reach]) -> Iterator[ActivityFlaw]:
+def _missing(activity: DeclaredActivity, found: Sequence[SearchResult]) -> Iterator[ActivityFlaw]:
     """Yield the stages, situations and behaviours that no search reached."""
     reached = {situation for one in found for situation in one.reached}
     stages = {situation.stage for situation in reached}
@@ -169,11 +169,11 @@ def _tried(
     players: Sequence[str],
     slots: dict[tuple[str, str], bool],
     limit: Limit,
-) -> Reach:
+) -> SearchResult:
     """Search with every behaviour, and record texts that always have an empty slot."""
     declaration = activity.declaration
     rounds = min(declaration.items.rounds, max(1, declaration.most_counted))
-    situations = ShownMoves(activity.behaviours)
+    situations = DemonstratedMoves(activity.behaviours)
 
     def moves(game: DeclaredGame) -> list[Move]:
         able: list[Move] = []
@@ -192,7 +192,7 @@ def _tried(
 
 def _played_as_expected(
     activity: DeclaredActivity, players: Sequence[str], limit: Limit
-) -> tuple[dict[tuple[str, str], bool], Reach]:
+) -> tuple[dict[tuple[str, str], bool], SearchResult]:
     """Search games with the expected behaviours; also return texts with slots that can be empty."""
     slots: dict[tuple[str, str], bool] = {}
     declaration = activity.declaration
@@ -210,9 +210,9 @@ def _played_as_expected(
     return slots, explore(game, moves, shown.situation, limit)
 
 
-def expected_moves(activity: DeclaredActivity) -> ShownMoves:
+def expected_moves(activity: DeclaredActivity) -> DemonstratedMoves:
     """Return the expected behaviours of an activity as if they had been demonstrated."""
-    shown = ShownMoves(activity.behaviours)
+    shown = DemonstratedMoves(activity.behaviours)
     for situation, behaviour in activity.expected.items():
         shown.shown[situation] = behaviour
         to = activity.behaviours[behaviour].to

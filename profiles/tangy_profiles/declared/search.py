@@ -13,10 +13,10 @@ from typing import Literal
 
 from tangy_profiles.declared.acts import Act, acts, take_in
 from tangy_profiles.declared.dead_ends import loop_in, without_end
+from tangy_profiles.declared.demonstrated_moves import UNDECIDED, DemonstratedMoves, Move
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.model import Declaration
-from tangy_profiles.declared.search_way import Came, Event, Node, Trap, way_to
-from tangy_profiles.declared.shown_moves import UNDECIDED, Move, ShownMoves
+from tangy_profiles.declared.search_way import Arrival, Counterexample, Event, Node, way_to
 from tangy_profiles.declared.state_keys import Share, shares, state_key
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.state import Situation
@@ -88,7 +88,7 @@ def happen(game: DeclaredGame, event: Event) -> None:
 
 
 @dataclass
-class Reach:
+class SearchResult:
     """The reachable situations, under the demonstrations or under any behaviour.
 
     `open` are those reached that were not shown, or in which selectors disagree. `cut` says why the
@@ -102,9 +102,9 @@ class Reach:
     open: dict[Situation, str] = field(default_factory=dict)
     states: int = 0
     cut: Cut = ""
-    lost: Trap | None = None
-    loop: Trap | None = None
-    idle: Trap | None = None
+    lost: Counterexample | None = None
+    loop: Counterexample | None = None
+    idle: Counterexample | None = None
     shares: tuple[Share, ...] = ()
     played: dict[str, int] = field(default_factory=dict)
 
@@ -133,7 +133,7 @@ def explore(
     moves: Callable[[DeclaredGame], Sequence[Move]],
     situation: Callable[[DeclaredGame], Situation],
     limit: Limit = USUAL,
-) -> Reach:
+) -> SearchResult:
     """Search everything that is reachable from a game.
 
     Between two behaviours any number of people may act, one after another, and time may pass.
@@ -144,13 +144,13 @@ def explore(
         situation: returns the situation of a state.
         limit: the limits of the search.
     """
-    found = Reach()
+    found = SearchResult()
     until, looked = thread_time() + limit.seconds, 0
     begin = (True, state_key(game))
     waiting: deque[tuple[DeclaredGame, Node]] = deque([(game, begin)])
     known: dict[Node, DeclaredGame] = {begin: game}
     before: dict[Node, list[Node]] = {}
-    came: dict[Node, Came] = {}
+    came: dict[Node, Arrival] = {}
     ends: list[Node] = []
 
     def reach_node(
@@ -169,14 +169,14 @@ def explore(
                 found.cut = "states"
                 return
             known[new] = other
-            came[new] = Came(node, move, event)
+            came[new] = Arrival(node, move, event)
             waiting.append((other, new))
 
     def possible(one: DeclaredGame) -> tuple[str, ...]:
         return tuple(dict.fromkeys(name for name, _ in moves(one)))
 
-    def trap(nodes: Sequence[Node]) -> Trap:
-        return Trap(
+    def counterexample(nodes: Sequence[Node]) -> Counterexample:
+        return Counterexample(
             way_to(nodes[0], came, lambda node: situation(known[node])),
             {situation(known[node]): possible(known[node]) for node in nodes},
         )
@@ -200,7 +200,7 @@ def explore(
         if not able or able[0][0] == UNDECIDED:
             found.open[here] = able[0][0] if able else ""
             if not able and found.idle is None:
-                found.idle = trap([node])
+                found.idle = counterexample([node])
             ends.append(node)  # how it continues depends on the answer
             continue
         for move in able:
@@ -215,8 +215,8 @@ def explore(
     stuck = without_end(known, before, ends)
     lost = next((node for node in stuck if node[0]), None)
     if lost is not None:
-        found.lost = trap([lost])
-        found.loop = trap([node for node in loop_in(stuck, before) if node[0]])
+        found.lost = counterexample([lost])
+        found.loop = counterexample([node for node in loop_in(stuck, before) if node[0]])
     return found
 
 
@@ -239,9 +239,12 @@ def _until_next_band(game: DeclaredGame) -> float | None:
     return min(left, default=None)
 
 
-def reach(
-    declaration: Declaration, players: Sequence[str], taught: ShownMoves, limit: Limit = USUAL
-) -> Reach:
+def explore_demonstrated(
+    declaration: Declaration,
+    players: Sequence[str],
+    taught: DemonstratedMoves,
+    limit: Limit = USUAL,
+) -> SearchResult:
     """Search every game that can occur under the demonstrations.
 
     Args:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 
 from tangy_profiles.declared.acts import Act
-from tangy_profiles.declared.shown_moves import Move
+from tangy_profiles.declared.demonstrated_moves import Move
 from tangy_profiles.state import Situation
 
 Node = tuple[bool, Hashable]
@@ -16,7 +16,7 @@ Event = tuple[Act, ...] | float
 
 
 @dataclass(frozen=True, slots=True)
-class Came:
+class Arrival:
     """How a search first reached a node: the previous node, and a move, an event, or neither."""
 
     earlier: Node
@@ -35,7 +35,7 @@ class WayStep:
 
 
 @dataclass(frozen=True, slots=True)
-class Trap:
+class Counterexample:
     """Situations from which no game ends, with the possible behaviours, and the path there."""
 
     way: tuple[WayStep, ...]
@@ -48,7 +48,7 @@ class Trap:
 
 
 def way_to(
-    node: Node, came: Mapping[Node, Came], situation: Callable[[Node], Situation]
+    node: Node, came: Mapping[Node, Arrival], situation: Callable[[Node], Situation]
 ) -> tuple[WayStep, ...]:
     """Return the path on which a search first reached a node.
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from tangy_profiles.cards import PATTERNS
-from tangy_profiles.codec import read
+from tangy_profiles.codec import decode
 from tangy_profiles.declared.memory import GameMemory
 from tangy_sim.device_simulator.declared_people import DeclaredPeople
 from tangy_sim.device_simulator.people import People
@@ -28,10 +28,10 @@ def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
 
     Raises:
         KeyError: an unknown person or pattern.
-        Unreadable: the interrupted game is invalid.
+        InvalidValue: the interrupted game is invalid.
     """
     if "memory" in told and isinstance(people, DeclaredPeople):
-        people.remember(read(GameMemory, told["memory"]))
+        people.remember(decode(GameMemory, told["memory"]))
     if "rows" in told and isinstance(people, DeclaredPeople):
         people.perceived = tuple(map(int, told["rows"]))
     if "patterns" in told:

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.ahead import Leg, moment_key, nearest_way
+from tangy_profiles.declared.demonstrated_moves import DemonstratedMoves
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.search_way import Event
-from tangy_profiles.declared.shown_moves import ShownMoves
 from tangy_profiles.scene import ArrangedSituation
 from tangy_profiles.state import EVERYBODY, ActivityState, Outcome
 from tangy_sim.worlds.declared_world import DeclaredWorld
@@ -31,7 +31,12 @@ class GuidedDeclaredWorld(DeclaredWorld):
     """
 
     def __init__(
-        self, activity: DeclaredActivity, people: Sequence[str], *, seed: int, shown: ShownMoves
+        self,
+        activity: DeclaredActivity,
+        people: Sequence[str],
+        *,
+        seed: int,
+        shown: DemonstratedMoves,
     ) -> None:
         self._shown = shown
         super().__init__(activity, people, seed=seed)

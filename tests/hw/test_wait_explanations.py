@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 
 from tangy_hw.navigation.surroundings import Held
-from tangy_hw.robot_process.courtesies import AFTER_SECONDS, AGAIN_SECONDS, Courtesies
 from tangy_hw.robot_process.stop_latch import Preempted
+from tangy_hw.robot_process.wait_explanations import AFTER_SECONDS, AGAIN_SECONDS, WaitExplanations
 
 WORDS = {"walking": "After you.", "standing": "May I?"}
 LONGEST = 5.0  # s for which nobody has to wait without hearing why
@@ -22,7 +22,7 @@ async def said(lets: list[Held], *, halted: bool = False) -> list[tuple[float, s
         if halted:
             raise Preempted("stopped")
 
-    courtesies = Courtesies(WORDS, says)
+    courtesies = WaitExplanations(WORDS, says)
     for one in lets:
         courtesies.note(one, now)
         await asyncio.sleep(0)
@@ -50,6 +50,6 @@ async def test_a_robot_that_is_stopped_meanwhile_is_quiet_and_lives() -> None:
 
 
 async def test_without_words_nothing_is_said() -> None:
-    courtesies = Courtesies({}, lambda text: asyncio.sleep(0))
+    courtesies = WaitExplanations({}, lambda text: asyncio.sleep(0))
     for tick in range(60):
         courtesies.note("walking", tick / 10)

@@ -16,13 +16,13 @@ NOTHING: Mapping[str, Fact] = MappingProxyType({})
 LOOK_SECONDS = 0.1  # of real time, after which a simulated clock is checked
 
 
-class Newest(Generic[Value]):
+class LatestValue(Generic[Value]):
     """A value with its number and time of arrival."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
         """Start without a value; the age counts from now."""
         self.stamped: Stamped[Value] | None = None
-        """Newest value; None before the first."""
+        """LatestValue value; None before the first."""
         self._clock = clock
         self._arrivals = RateEstimator()
         self._since = clock()

@@ -13,7 +13,7 @@ AFTER_SECONDS = 1.0  # of standing for a person until it speaks
 AGAIN_SECONDS = 8.0  # until it repeats a sentence
 
 
-class Courtesies:
+class WaitExplanations:
     """Says why the robot waits, in given sentences."""
 
     def __init__(self, words: Mapping[str, str], says: Callable[[str], Awaitable[object]]) -> None:

@@ -15,7 +15,7 @@ Move = tuple[str, str | None]
 UNDECIDED = "?"
 
 
-class ShownMoves:
+class DemonstratedMoves:
     """The last behaviour shown in each situation; selectors for each stage and behaviour."""
 
     def __init__(self, behaviours: Mapping[str, Behaviour]) -> None:
@@ -29,9 +29,9 @@ class ShownMoves:
         self._behaviours = behaviours
         self._situations: dict[tuple[str, tuple[str, ...]], Situation] = {}
 
-    def copy(self) -> ShownMoves:
+    def copy(self) -> DemonstratedMoves:
         """Return an independent copy of the demonstrated moves."""
-        other = ShownMoves(self._behaviours)
+        other = DemonstratedMoves(self._behaviours)
         other.shown, other.whom = dict(self.shown), dict(self.whom)
         return other
 
