@@ -51,7 +51,7 @@ def by_keys(number: int, seed: int) -> tuple[Drive, bool]:
         if scan is None or rng.random() >= NO_SCAN:
             scan = drive.look()
         navigator.tick(Odometry(wheels.pose, drive.twist), scan, TICK)
-        hand.tell(Twist(limits.speed, _steers(drive, aim)), drive.time)
+        hand.tell(Twist(limits.max_speed, _steers(drive, aim)), drive.time)
         told = _commanded(hand, navigator, scan, drive.time)
         sent.append(told)
         drive.twist = followed(drive.twist, sent.pop(0))

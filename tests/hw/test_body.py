@@ -42,14 +42,14 @@ def described(folder: Path, body: str) -> Robot:
 class TestFile:
     def test_what_is_left_out_is_as_it_always_was(self) -> None:
         assert load_robot().body == BodyProfile()
-        assert MotionLimits.of(load_robot()) == MotionLimits(speed=load_robot().speed)
+        assert MotionLimits.of(load_robot()) == MotionLimits(max_speed=load_robot().speed)
         assert laser_of(load_robot()) == Pose(0.0, 0.0, 0.0)
 
     def test_a_body_is_read(self, tmp_path: Path) -> None:
         robot = described(tmp_path, WIDE)
         limits = MotionLimits.of(robot)
         assert limits.radius == pytest.approx(0.5) and len(limits.corners) == 4
-        assert (limits.turn, limits.stops) == (0.8, 0.9) and limits.brake < 0.9
+        assert (limits.max_turn, limits.full_braking) == (0.8, 0.9) and limits.planned_braking < 0.9
         assert laser_of(robot) == pytest.approx((0.25, 0.0, radians(10)))
         assert robot.body.cameras["camera"].height == 1.3 and robot.body.arms == 0.7
 

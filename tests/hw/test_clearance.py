@@ -44,7 +44,7 @@ def past(twist: Twist, *people: Track) -> Twist:
 class TestRoom:
     def test_room_ends_at_what_is_seen(self) -> None:
         assert room_ahead(at((2.0, 0.0)), 0.0, LIMITS) == pytest.approx(
-            2.0 - LIMITS.radius - LIMITS.gap, abs=0.03
+            2.0 - LIMITS.radius - LIMITS.clearance, abs=0.03
         )
         assert room_ahead(at((-0.6, 0.1)), 0.0, LIMITS) == inf
 
@@ -83,7 +83,9 @@ class TestPeople:
 
     def test_it_is_slower_while_somebody_who_walked_is_out_of_sight_behind_it(self) -> None:
         behind = replace(person(-1.2, 0.2, 0.8), hidden=True)
-        assert past(Twist(0.5, 0.2), behind) == Twist(LIMITS.gentle, 0.2 * LIMITS.gentle / 0.5)
+        assert past(Twist(0.5, 0.2), behind) == Twist(
+            LIMITS.people_speed, 0.2 * LIMITS.people_speed / 0.5
+        )
         assert past(Twist(0.5, 0.2), replace(behind, hidden=False)) == Twist(0.5, 0.2)
         assert past(Twist(0.5, 0.2), replace(behind, pace=0.0)) == Twist(0.5, 0.2)
 
@@ -134,13 +136,13 @@ class TestByHand:
     def test_from_what_is_close_it_can_be_turned_away_and_driven_back(self) -> None:
         around = (0.35, 0.0), (0.3, 0.2)
         assert by_hand(Twist(0.3, 0.0), *around) == STILL
-        assert by_hand(Twist(-0.3, 0.0), *around).forward == -LIMITS.unseen
+        assert by_hand(Twist(-0.3, 0.0), *around).forward == -LIMITS.unseen_speed
         turned = by_hand(Twist(0.0, 1.0), *around)
-        assert turned == Twist(0.0, LIMITS.turn_close)
+        assert turned == Twist(0.0, LIMITS.close_turn)
         assert by_hand(Twist(0.3, 1.0), *around) == turned
 
     def test_where_it_does_not_see_it_drives_slowly_and_up_to_nothing_that_it_sees(self) -> None:
-        assert by_hand(Twist(-0.5, 0.0)) == Twist(-LIMITS.unseen, 0.0)
+        assert by_hand(Twist(-0.5, 0.0)) == Twist(-LIMITS.unseen_speed, 0.0)
         assert by_hand(Twist(-0.5, 0.0), (-0.45, 0.2)) == STILL
 
     @pytest.mark.slow

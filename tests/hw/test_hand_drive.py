@@ -111,13 +111,13 @@ def may_drive(told: list[Any], speed: float) -> None:
         if twist == "stop":
             continue
         assert all(map(math.isfinite, twist))
-        assert abs(twist.forward) <= speed and abs(twist.turn) <= LIMITS.turn
+        assert abs(twist.forward) <= speed and abs(twist.turn) <= LIMITS.max_turn
 
 
 class TestClamp:
     @given(TWISTS, st.floats(0.05, 3.0))
     def test_a_twist_is_slowed_down_on_its_own_arc(self, twist: Twist, speed: float) -> None:
-        limits = replace(LIMITS, speed=speed)
+        limits = replace(LIMITS, max_speed=speed)
         clamped = limits.clamped(twist)
         may_drive([clamped], speed)
         if all(map(math.isfinite, twist)) and clamped != twist and clamped != STILL:
@@ -133,8 +133,8 @@ class TestClamp:
         if wheels.sent is not None:
             await soon(wheels.sent)
         assert len(parts.told) == 1
-        may_drive(parts.told, LIMITS.speed)
-        may_drive([wheels.driven], LIMITS.speed)
+        may_drive(parts.told, LIMITS.max_speed)
+        may_drive([wheels.driven], LIMITS.max_speed)
 
     @pytest.mark.slow
     @given(TWISTS, TWISTS, st.sampled_from(["line", "hand", "navigator", "both"]))

@@ -202,10 +202,10 @@ class TestPursuit:
         path = resample(np.array([[0, 0], [3, 0], [3, 3]], dtype=float))
         _, told, _ = follow(Pursuit(path, pi), Pose(0, 0, pi / 2))
         forward, turn = np.array(told).T
-        assert forward.min() >= 0 and forward.max() <= LIMITS.speed + 1e-9
-        assert abs(turn).max() <= LIMITS.turn + 1e-9
-        assert np.diff(forward).max() <= LIMITS.gain * 0.1 + 1e-9
-        assert forward.max() > 0.9 * LIMITS.speed
+        assert forward.min() >= 0 and forward.max() <= LIMITS.max_speed + 1e-9
+        assert abs(turn).max() <= LIMITS.max_turn + 1e-9
+        assert np.diff(forward).max() <= LIMITS.acceleration * 0.1 + 1e-9
+        assert forward.max() > 0.9 * LIMITS.max_speed
 
     def test_it_first_turns_on_the_spot_when_the_way_lies_behind(self) -> None:
         pursuit = Pursuit(resample(np.array([[0.0, 0.0], [-2.0, 0.0]])))
@@ -238,8 +238,8 @@ class TestPursuit:
         person = np.array([[3.0, 0.8]])
         for _ in range(300):
             twist = pursuit.command(pose, twist, EMPTY, 0.1, person)
-            near = hypot(pose.x - 3.0, pose.y - 0.8) < LIMITS.wary
-            assert not near or twist.forward <= LIMITS.gentle
+            near = hypot(pose.x - 3.0, pose.y - 0.8) < LIMITS.people_range
+            assert not near or twist.forward <= LIMITS.people_speed
             pose = driven(pose, twist, 0.1)
         assert pursuit.state == "arrived"
 

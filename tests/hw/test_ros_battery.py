@@ -96,7 +96,7 @@ class TestShipped:
     ) -> None:
         robot = load_robot(name)
         assert find_camera(robot.devices["camera"].source).live
-        assert MotionLimits.of(robot).speed <= 0.306  # as far as a Create 3 lets itself go
+        assert MotionLimits.of(robot).max_speed <= 0.306  # as far as a Create 3 lets itself go
 
     def test_it_has_the_postures_of_the_activity(self, name: str, activity: Activity) -> None:
         load_robot(name).check(activity)

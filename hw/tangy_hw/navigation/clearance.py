@@ -57,12 +57,15 @@ def room_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
     if not len(points):
         return inf
     at_most = np.maximum(lengths(points) - AWAY, 0.0)
-    return free_ahead(points, curvature, np.minimum(limits.radius + MARGIN, at_most)) - limits.gap
+    return (
+        free_ahead(points, curvature, np.minimum(limits.radius + MARGIN, at_most))
+        - limits.clearance
+    )
 
 
 def speed_in(room: float, limits: MotionLimits) -> float:
     """Return the speed in m/s from which a robot can stop within `room` m."""
-    return sqrt(2 * limits.brake * max(0.0, min(room, REACH)))
+    return sqrt(2 * limits.planned_braking * max(0.0, min(room, REACH)))
 
 
 def limit_by_clearance(twist: Twist, points: Floats, around: Around, limits: MotionLimits) -> Twist:
@@ -82,13 +85,13 @@ def limit_by_clearance(twist: Twist, points: Floats, around: Around, limits: Mot
     if abs(forward) >= SPOT:
         view = points if forward > 0 else points * np.array([-1.0, 1.0])
         most = speed_in(room_ahead(view, turn / forward, limits), limits)
-        most = min(most, limits.unseen) if forward < 0 else most
+        most = min(most, limits.unseen_speed) if forward < 0 else most
         if most >= SPOT:
             slower = min(1.0, most / abs(forward))
             safe = limit_near_people(Twist(forward * slower, turn * slower), around, limits)
             if abs(safe.forward) >= SPOT:
                 return safe
     near = float(lengths(points).min()) if len(points) else inf
-    if near < limits.radius + limits.close:
-        turn = max(-limits.turn_close, min(limits.turn_close, turn))
+    if near < limits.radius + limits.close_range:
+        turn = max(-limits.close_turn, min(limits.close_turn, turn))
     return Twist(0.0, turn)

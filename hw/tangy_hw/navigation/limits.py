@@ -16,31 +16,31 @@ class MotionLimits:
     """Limits of a base in m/s, rad/s, m/s^2, rad/s^2, and m.
 
     `radius` is that of the robot, or of its outermost corner if it has `corners` (x, y in m,
-    counter-clockwise). `gap` always stays free ahead. Within `wary` of people on any side, the
-    speed limit is `gentle`; `unseen` is the limit in directions that the laser does not see. Within
-    `close` of obstacles, `turn_close` limits turning.
+    counter-clockwise). `clearance` always stays free ahead. Within `people_range` of people on any
+    side, the speed limit is `people_speed`; `unseen_speed` is the limit in directions that the
+    laser does not see. Within `close_range` of obstacles, `close_turn` limits turning.
 
-    Near people the robot must be able to stop in time (see `people_guard`): `late` is the latency
-    until it brakes in s, `stops` the deceleration, `spare` the distance left at the end. People are
-    assumed to approach `approach` m/s faster than now, and new tracks `approach_new`; walkers may
-    turn round and approach at `approach_turned`.
+    Near people the robot must be able to stop in time (see `people_guard`): `latency` is the time
+    until it brakes in s, `full_braking` the deceleration, `margin` the distance left at the end.
+    People are assumed to approach `approach` m/s faster than now, and new tracks `approach_new`;
+    walkers may turn round and approach at `approach_turned`.
     """
 
-    speed: float = 0.5
-    turn: float = 1.0
-    gain: float = 0.5
-    brake: float = 0.6
-    spin_up: float = 2.0
+    max_speed: float = 0.5
+    max_turn: float = 1.0
+    acceleration: float = 0.5
+    planned_braking: float = 0.6
+    turn_acceleration: float = 2.0
     radius: float = 0.25
-    gap: float = 0.12
-    wary: float = 1.2
-    gentle: float = 0.25
-    unseen: float = 0.1
-    turn_close: float = 0.4
-    close: float = 0.27
-    late: float = 0.3
-    stops: float = 1.0
-    spare: float = 0.09
+    clearance: float = 0.12
+    people_range: float = 1.2
+    people_speed: float = 0.25
+    unseen_speed: float = 0.1
+    close_turn: float = 0.4
+    close_range: float = 0.27
+    latency: float = 0.3
+    full_braking: float = 1.0
+    margin: float = 0.09
     approach: float = 0.35
     approach_new: float = 0.8
     approach_turned: float = 1.25
@@ -51,12 +51,12 @@ class MotionLimits:
         """Return the limits of a robot from the body in its file."""
         body = robot.body
         return cls(
-            speed=robot.speed,
-            turn=body.turn,
-            gain=body.acceleration,
-            brake=PLANNED * body.braking,
+            max_speed=robot.speed,
+            max_turn=body.turn,
+            acceleration=body.acceleration,
+            planned_braking=PLANNED * body.braking,
             radius=body.radius,
-            stops=body.braking,
+            full_braking=body.braking,
             corners=body.corners,
         )
 
@@ -65,12 +65,12 @@ class MotionLimits:
         forward, turn = twist
         if not (isfinite(forward) and isfinite(turn)):
             return STILL
-        over = max(abs(forward) / self.speed, abs(turn) / self.turn)
+        over = max(abs(forward) / self.max_speed, abs(turn) / self.max_turn)
         if over <= 1.0:
             return twist
         clamped = Twist(
-            max(-self.speed, min(self.speed, forward / over)),
-            max(-self.turn, min(self.turn, turn / over)),
+            max(-self.max_speed, min(self.max_speed, forward / over)),
+            max(-self.max_turn, min(self.max_turn, turn / over)),
         )
         return clamped if isfinite(over) else STILL
 

@@ -57,7 +57,7 @@ def limit_near_people(twist: Twist, around: Around, limits: MotionLimits) -> Twi
 
 
 def _slower_before_followers(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
-    """Return a twist limited to `gentle` while a walker is hidden behind the robot.
+    """Return a twist limited to `people_speed` while a walker is hidden behind the robot.
 
     The walker may overtake the robot, or approach where the scanner does not see.
     """
@@ -65,10 +65,10 @@ def _slower_before_followers(twist: Twist, around: Around, limits: MotionLimits)
         one.hidden and one.x < 0.0 and one.pace > WALKS and np.hypot(one.x, one.y) < REACH
         for one in around.tracks
     )
-    if not follows or twist.forward <= limits.gentle:
+    if not follows or twist.forward <= limits.people_speed:
         return twist
-    share = limits.gentle / twist.forward
-    return Twist(limits.gentle, twist.turn * share)
+    share = limits.people_speed / twist.forward
+    return Twist(limits.people_speed, twist.turn * share)
 
 
 class _Bodies(NamedTuple):
@@ -96,13 +96,13 @@ def _bodies(around: Around, limits: MotionLimits) -> _Bodies:
             one.y,
             one.vx,
             one.vy,
-            one.half + limits.spare,
+            one.half + limits.margin,
             limits.approach_new if one.age < FRESH else limits.approach,
             limits.approach_turned if one.pace > WALKS else 0.0,
         )
         for one in tracks
     ]
-    rows += [(x, y, 0.0, 0.0, END + limits.spare, limits.approach, 0.0) for x, y in ends]
+    rows += [(x, y, 0.0, 0.0, END + limits.margin, limits.approach, 0.0) for x, y in ends]
     table = np.array(rows, dtype=np.float64).reshape(-1, 7)
     apart = table[:, 4]
     walks = np.hypot(table[:, 2], table[:, 3]) > WALKS
@@ -112,12 +112,12 @@ def _bodies(around: Around, limits: MotionLimits) -> _Bodies:
 
 def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
     """Return whether a robot that drives this twist and then brakes stays clear of people."""
-    fast, brakes = abs(twist.forward), limits.stops
+    fast, brakes = abs(twist.forward), limits.full_braking
     if not fast:
-        fast, brakes = abs(twist.turn), limits.spin_up
-    until = limits.late + fast / brakes
+        fast, brakes = abs(twist.turn), limits.turn_acceleration
+    until = limits.latency + fast / brakes
     times = np.append(np.arange(STEP, until, STEP), until)
-    braking = np.maximum(times - limits.late, 0.0)
+    braking = np.maximum(times - limits.latency, 0.0)
     gone = (fast * times - brakes * braking**2 / 2) / fast  # equivalent time at full speed, in s
     along, turned = twist.forward * gone, twist.turn * gone
     half = turned / 2

@@ -126,29 +126,33 @@ class Pursuit:
         far = max(hypot(to.x, to.y), 0.1)
         curvature = 2 * to.y / far**2
         left = max(self.left, hypot(self.path[-1][0] - pose.x, self.path[-1][1] - pose.y))
-        most = min(limits.speed, sqrt(2 * limits.brake * left) * 0.8, left * 1.5 + CREEP)
+        most = min(
+            limits.max_speed, sqrt(2 * limits.planned_braking * left) * 0.8, left * 1.5 + CREEP
+        )
         if abs(curvature) > 0.01:
-            most = min(most, limits.turn / abs(curvature))
+            most = min(most, limits.max_turn / abs(curvature))
         room = room_ahead(seen, curvature, limits)
-        if room + limits.gap > left:  # obstacles behind the goal do not block it
+        if room + limits.clearance > left:  # obstacles behind the goal do not block it
             room = max(room, left)
         most = min(most, speed_in(room, limits))
         if wary_of is not None and len(wary_of):
             near = float(lengths(wary_of - (pose.x, pose.y)).min())
-            most = min(most, limits.gentle) if near < limits.wary else most
+            most = min(most, limits.people_speed) if near < limits.people_range else most
         if most < CREEP:
             self.state = "waiting"
             return STILL
         self.state = "driving"
-        forward = min(most, max(0.0, twist.forward) + limits.gain * dt)
-        return Twist(forward, float(np.clip(curvature * forward, -limits.turn, limits.turn)))
+        forward = min(most, max(0.0, twist.forward) + limits.acceleration * dt)
+        return Twist(
+            forward, float(np.clip(curvature * forward, -limits.max_turn, limits.max_turn))
+        )
 
     def _turn(self, off: float, twist: Twist, dt: float) -> Twist:
         """Turn on the spot by an angle in rad, no faster than the robot can brake."""
         limits = self.limits
         if abs(twist.forward) > 2 * CREEP:  # stop first
-            return Twist(max(0.0, twist.forward - limits.brake * dt), 0.0)
-        fast = min(limits.turn, sqrt(limits.spin_up * abs(off)) * 0.7, 2.5 * abs(off))
+            return Twist(max(0.0, twist.forward - limits.planned_braking * dt), 0.0)
+        fast = min(limits.max_turn, sqrt(limits.turn_acceleration * abs(off)) * 0.7, 2.5 * abs(off))
         fast = max(fast, min(0.15, abs(off) / max(dt, 1e-3)))
-        fast = min(fast, abs(twist.turn) + limits.spin_up * dt)
+        fast = min(fast, abs(twist.turn) + limits.turn_acceleration * dt)
         return Twist(0.0, fast if off > 0 else -fast)

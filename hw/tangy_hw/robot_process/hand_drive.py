@@ -44,7 +44,7 @@ class HandDrive:
         """
         limits = self._limits
         if overrides:
-            limits = replace(limits, speed=OVERRIDE, turn=limits.turn_close)
+            limits = replace(limits, max_speed=OVERRIDE, max_turn=limits.close_turn)
         self._told, self._overrides = limits.clamped(twist), overrides
         self._until = now + HOLDS_SECONDS
 

@@ -46,7 +46,9 @@ class PauseWatch:
         """Total duration of the pauses."""
         self.longest = 0.0
         self._liveness = liveness
-        self._slow = MotionLimits(speed=min(liveness.slow_speed, limits.speed), turn=SLOW_TURN)
+        self._slow = MotionLimits(
+            max_speed=min(liveness.slow_speed, limits.max_speed), max_turn=SLOW_TURN
+        )
         self._label = label
         self._clock = clock
         self._looked: float | None = None
