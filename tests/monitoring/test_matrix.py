@@ -47,6 +47,29 @@ def test_what_comes_to_nothing_with_nothing_left_to_mend_is_a_request_that_stays
     assert not world.can_show(KINDS["no-effect"], action)
 
 
+def test_a_request_that_a_person_refuses_does_not_close_so_its_sign_cannot_stay_up_for_long(
+    supervise: Supervise,
+) -> None:
+    world = world_of(supervise(seed=3))
+    person = world.people[0]
+    player = world.players[person]
+    player.called |= 1  # a number of the card was called, and not marked
+    mending = next(
+        behaviour
+        for behaviour in world.activity.behaviours.values()
+        if behaviour.closes == "when correct" and behaviour.effect != "clear wrong marks"
+    )
+    world.tracker.ask(person)
+    world.tracker.arrive(person)
+    world.tracker.seen = WITH_MARKS[0]
+    action = world.activity.action(mending, person, None)
+    assert world.can_show(KINDS["request-stuck"], action)
+    world.inject("never-complies")
+    world.execute(action)  # which refuses
+    assert "never-complies" in world.present
+    assert not world.can_show(KINDS["request-stuck"], action)
+
+
 @pytest.mark.slow
 def test_what_a_person_did_not_do_after_an_answer_is_no_effect_to_be_expected(
     supervise: Supervise,

@@ -61,6 +61,8 @@ class OccasionWorld(SimulatedWorld):
         """Return whether a behaviour would close the request of the person beside the robot."""
         if behaviour.closes != "when correct":
             return behaviour.closes == "always" and self.tracker.seen == self._settled
+        if self._never_complies(self.tracker.place):
+            return False  # nothing is corrected, so the request stays open
         player = self.players[self.tracker.place]
         wrong, missing = player.marked & ~player.called, player.called & ~player.marked
         left = missing if behaviour.effect == "clear wrong marks" else wrong
