@@ -38,10 +38,10 @@ class CallNews:
     said: str = ""
 
 
-Told = Callable[[CallNews], None]
+OnNews = Callable[[CallNews], None]
 
 
-def call(contact: Contact, message: Mapping[str, Any], seconds: float, told: Told) -> None:
+def call(contact: Contact, message: Mapping[str, Any], seconds: float, told: OnNews) -> None:
     """Send a message to a person, and wait up to `seconds` s for an answer.
 
     `told` receives the outcome, at the latest at the timeout; nothing is raised.
@@ -58,7 +58,7 @@ def call(contact: Contact, message: Mapping[str, Any], seconds: float, told: Tol
 
 
 def _by_command(
-    command: tuple[str, ...], message: Mapping[str, Any], seconds: float, told: Told
+    command: tuple[str, ...], message: Mapping[str, Any], seconds: float, told: OnNews
 ) -> None:
     process = subprocess.Popen(  # noqa: S603 - the facility's own command, from its robot's file
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -96,7 +96,7 @@ def _first_answer(lines: IO[bytes]) -> str | None:
     return None
 
 
-def _by_post(url: str, message: Mapping[str, Any], seconds: float, told: Told) -> None:
+def _by_post(url: str, message: Mapping[str, Any], seconds: float, told: OnNews) -> None:
     from urllib.error import HTTPError, URLError  # slow to import, and few robots need them
     from urllib.request import Request, urlopen
 
@@ -115,7 +115,7 @@ def _by_post(url: str, message: Mapping[str, Any], seconds: float, told: Told) -
     told(CallNews("sent") if said is None else CallNews("answered", said))
 
 
-def _by_topic(url: str, message: Mapping[str, Any], seconds: float, told: Told) -> None:
+def _by_topic(url: str, message: Mapping[str, Any], seconds: float, told: OnNews) -> None:
     try:
         from paho.mqtt import client as mqtt
         from paho.mqtt.enums import CallbackAPIVersion

@@ -59,7 +59,7 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
-Told: TypeAlias = Result | Verification
+ControllerOutput: TypeAlias = Result | Verification
 TOOK_OVER = "You say what Tangy does next."
 
 

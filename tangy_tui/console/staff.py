@@ -29,7 +29,7 @@ from tangy_tui.app.game_commands import (
     StaffNote,
     StopRobot,
 )
-from tangy_tui.app.game_controller import GameController, Told
+from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.console.inputs import WAIT, any_waits
 from tangy_tui.console.inquiries import Inquiries
@@ -101,7 +101,7 @@ class StaffLines:
         self._alone = self._stopped = self._ended = self._by_turns = False
         self._leaves = False  # staff ended it while no game could begin
         self._begun = threading.Event()
-        self._tasks: queue.Queue[Callable[[], Sequence[Told]] | None] = queue.Queue()
+        self._tasks: queue.Queue[Callable[[], Sequence[ControllerOutput]] | None] = queue.Queue()
         self._command = command_reader(self._game.world.activity, find_person)
 
     def run(self, games: int) -> bool:
@@ -206,7 +206,7 @@ class StaffLines:
             if asked:
                 self._write(asked)
 
-    def _tell(self, told: Sequence[Told]) -> None:
+    def _tell(self, told: Sequence[ControllerOutput]) -> None:
         answered = next((e.teacher for e in told if isinstance(e, Taught | DoneOnce)), "")
         events: list[Event] = []
         for one in told:
@@ -368,7 +368,7 @@ class StaffLines:
     def _answer(self, said: Verified) -> None:
         """Carry out an answer, which takes time."""
 
-        def answer() -> Sequence[Told]:
+        def answer() -> Sequence[ControllerOutput]:
             try:
                 return self._controller.answer(said.behaviour, said.target)
             except TangyError as error:

@@ -10,7 +10,7 @@ from tangy_profiles.robot import Robot
 from tangy_tui.interaction.reading_error import FusedLook
 from tangy_tui.learning.effects import Mismatch
 
-STATES = {OK: "it works", STALE: "no data", ERROR: "failed", WARN: "it warns"}
+STATES = {OK: "working", STALE: "no data", ERROR: "failed", WARN: "warning"}
 """The states of a device in words, for lists, evidence, drills and banners."""
 
 

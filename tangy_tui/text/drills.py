@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.drill_policy import DrillNote
     from tangy_tui.monitoring.drill_rounds import DrillSimulator, Round
 
-Told = tuple[str, str]
+StyledLine = tuple[str, str]
 """A line and its ink (an ink of the screens: text, dim, strong, ...)."""
 
 CLASS_WORDS: Mapping[str, str] = MappingProxyType(
@@ -151,7 +151,7 @@ def question_words(question: Question, shown: Round) -> str:
     return asked_words(question.kind)
 
 
-def told_lines(table: DrillSimulator, shown: Round, answered: AnsweredRound) -> list[Told]:
+def told_lines(table: DrillSimulator, shown: Round, answered: AnsweredRound) -> list[StyledLine]:
     """Tell the right answers of a round, the reasons, and the advice."""
     fault = shown.fault
     what = "nothing was wrong" if fault is None else fault.name
@@ -177,7 +177,7 @@ def told_lines(table: DrillSimulator, shown: Round, answered: AnsweredRound) -> 
     return [(ink, plain(text)) for ink, text in lines]
 
 
-def _verdict(right: bool, was: str, said: str) -> Told:
+def _verdict(right: bool, was: str, said: str) -> StyledLine:
     if right:
         return "good", f"Right: {was}."
     return "bad", f"Not quite. Right would be: {was}. You said: {said}."
@@ -196,14 +196,14 @@ def _done(recovery: str) -> str:
     return next(action_words(action) for action in ACTIONS if action == recovery)
 
 
-def sheet_lines(sheet: Sheet, width: int = 80, before: Sheet | None = None) -> list[Told]:
+def sheet_lines(sheet: Sheet, width: int = 80, before: Sheet | None = None) -> list[StyledLine]:
     """Format a score sheet for a width in characters: table, totals, and what to rehearse again.
 
     `before` is the person's previous sheet.
     """
     state = "" if sheet.finished else f", left after {len(sheet.answered)} of {sheet.rounds}"
     took = "" if sheet.median is None else f" Median time {sheet.median:.0f} s."
-    lines: list[Told] = [
+    lines: list[StyledLine] = [
         ("strong", f"{sheet.who}: {sheet.points} of {counted(sheet.most, 'point')}{state}.{took}")
     ]
     if before is not None:

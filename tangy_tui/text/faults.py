@@ -230,11 +230,11 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[EvidenceLin
         expected = _expected(key, value, rule, book)
         if expected:
             observed = _observed(fact, value)
-            pieces.append(EvidenceLine(f"{what}: {observed}", f"to be expected: {expected}"))
+            pieces.append(EvidenceLine(f"{what}: {observed}", f"expected: {expected}"))
     for one in fault.mismatches:
         words = mismatch_words(one)
         wanted = listed(one.expected, "or") or "nothing known"
-        note = f"{one.variable}: {one.seen}; to be expected: {wanted}"
+        note = f"{one.variable}: {one.seen}; expected: {wanted}"
         pieces.append(EvidenceLine(f"{words[:1].upper()}{words[1:]}", note))
     return pieces
 
@@ -282,7 +282,7 @@ def still_there_words(fault: Fault, supervision: Supervision) -> str:
 def _age(device: DeviceProfile, age: Fact) -> list[EvidenceLine]:
     if isinstance(age, (bool, str)) or age <= device.stale_after:
         return []
-    expected = f"to be expected: at most {device.stale_after:g} s old"
+    expected = f"expected: at most {device.stale_after:g} s old"
     return [EvidenceLine(f"{device.label}, newest data: {written(age)} s old", expected)]
 
 

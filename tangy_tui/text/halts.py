@@ -42,7 +42,7 @@ def title(fault: Fault) -> str:
 def halted_words(fault: Fault) -> str:
     """Tell the kind of the fault, and after which step it halted the robot."""
     where = f"{kind_words(fault).capitalize()}, after step {fault.step}."
-    return f"{where} Tangy has stopped, and nothing moves before this is cleared."
+    return f"{where} Tangy has stopped, and nothing moves until you clear this."
 
 
 def last_move_words(move: RecoveryEvent) -> str:

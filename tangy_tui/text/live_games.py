@@ -11,10 +11,10 @@ READY, NOW = "Ready: {}.", "Starting now: {} ..."
 PARTS = {
     "bench": "simulated devices and people",
     "faces": "pictures of people's faces",
-    "program": "the program in the robot",
-    "senses": "what reads cards and faces",
-    "first words": "every device reports",
-    "requests": "who asks for help",
+    "program": "the robot's program",
+    "senses": "card and face reader",
+    "first words": "first reports of the devices",
+    "requests": "requests for help",
 }
 CALLED_OFF = "It is being switched off again."
 

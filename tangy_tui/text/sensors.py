@@ -77,7 +77,7 @@ class Sensing(AbstractAsyncContextManager[Any, Any], Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class DeviceSummary:
     """A device as shown to people: its state, since when (s; None: unknown), and why.
 
     `code` is the state that the device reports, "" if unknown; `age` is that of its newest data, in
@@ -107,7 +107,7 @@ class Told:
         return self.code in BAD
 
 
-class Teller:
+class DeviceSummaries:
     """Describes the devices of a robot, real and simulated."""
 
     def __init__(
@@ -135,7 +135,7 @@ class Teller:
         self._live = live
         self._since: dict[str, tuple[str, float]] = {}
 
-    def tell(self) -> list[Told]:
+    def current(self) -> list[DeviceSummary]:
         """Describe every device, in the order of the profile."""
         readings = {reading.device: reading for reading in self._health()}
         sensors = self._sensors
@@ -147,12 +147,12 @@ class Teller:
             for device in self._robot.devices.values()
         ]
 
-    def _other(self, device: DeviceProfile, reading: Reading | None) -> Told:
+    def _other(self, device: DeviceProfile, reading: Reading | None) -> DeviceSummary:
         if reading is None:
             self._since.pop(device.name, None)
             if self._live:
-                return Told(device, "", ABSENT, "No driver in the robot file.")
-            return Told(device, "", SIMULATED, "No data until a game runs.")
+                return DeviceSummary(device, "", ABSENT, "No driver in the robot file.")
+            return DeviceSummary(device, "", SIMULATED, "No data until a game runs.")
         code, now = state_of(device, reading), self._clock()
         before, since = self._since.get(device.name, ("", now))
         if code != before:
@@ -165,7 +165,7 @@ class Teller:
             why = "It reports a failure."
         elif code == WARN:
             why = "It warns of something."
-        return Told(
+        return DeviceSummary(
             device,
             code,
             STATES[code],
@@ -179,12 +179,12 @@ class Teller:
         )
 
 
-def _camera(device: DeviceProfile, sight: Sight, source: str) -> Told:
+def _camera(device: DeviceProfile, sight: Sight, source: str) -> DeviceSummary:
     facts: dict[str, Fact] = dict(sight.reading(device.name).facts)
     told = _facts(device, facts)
     if sight.sharpness is not None:
         told += (f"sharpness of the picture, 0 to 1: {sight.sharpness:.2f}",)
-    return Told(
+    return DeviceSummary(
         device,
         sight.state,
         CAMERA_STATES[sight.state],
@@ -224,14 +224,14 @@ def age_words(seconds: float | None) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.0f} h"
 
 
-def rate_words(told: Told) -> str:
+def rate_words(told: DeviceSummary) -> str:
     """Format the rate of a device's data in Hz, "" if not measured."""
     if told.rate is None:
         return ""
     return f"{told.rate:.0f} Hz" if told.rate >= 9.5 else f"{told.rate:.1f} Hz"
 
 
-def remark(told: Told) -> str:
+def remark(told: DeviceSummary) -> str:
     """Return a remark beside the age: the rate, and the problem."""
     return "  ".join(filter(None, (rate_words(told), told.why)))
 
@@ -252,7 +252,7 @@ def card_words(cards: CardSight) -> tuple[str, str]:
     return words, problem
 
 
-def sensor_line(told: Told, width: int) -> str:
+def sensor_line(told: DeviceSummary, width: int) -> str:
     """Format a device as one line, its name padded to a width."""
     if not told.code:
         return f"{told.device.label:<{width}}  {told.state}"
@@ -261,7 +261,7 @@ def sensor_line(told: Told, width: int) -> str:
     return line.rstrip()
 
 
-def sensor_document(told: Told) -> dict[str, Any]:
+def sensor_document(told: DeviceSummary) -> dict[str, Any]:
     """Return a device as its JSON document."""
     return {
         "device": told.device.name,

@@ -17,7 +17,7 @@ from tangy_tui.verbs.opening import full_screen, open_workspace
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import CameraHub
     from tangy_tui.app.workspace import Workspace
-    from tangy_tui.text.sensors import Told
+    from tangy_tui.text.sensors import DeviceSummary
 
 Cameras = Annotated[
     list[str] | None,
@@ -88,14 +88,14 @@ def sensors(
 
 async def _look(
     workspace: Workspace, sensors: CameraHub, seconds: float
-) -> tuple[list[Told], dict[str, Any]]:
+) -> tuple[list[DeviceSummary], dict[str, Any]]:
     """Watch all devices for some s; return their descriptions, and the last card."""
-    from tangy_tui.text.sensors import Teller, card_document, card_words
+    from tangy_tui.text.sensors import DeviceSummaries, card_document, card_words
 
     async with sensors:
         with sensors.reading_cards():
             await asyncio.sleep(seconds)
-        found = Teller(workspace.robot, sensors).tell()
+        found = DeviceSummaries(workspace.robot, sensors).current()
         if not sensors.card_device:
             return found, {"document": None, "words": []}
         cards = sensors.cards

@@ -35,7 +35,7 @@ from tangy_tui.app.game_commands import (
     TakeOver,
     VoidResponse,
 )
-from tangy_tui.app.game_controller import GameController, Told
+from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameEnded, Unsure
 from tangy_tui.learning.policies import load_policy
@@ -80,7 +80,7 @@ class Played:
         return [(e.record.did, e.record.by) for e in self.workspace.store.events(StaffAction)]
 
 
-def kinds(told: Sequence[Told]) -> list[str]:
+def kinds(told: Sequence[ControllerOutput]) -> list[str]:
     return [one.kind if isinstance(one, StaffNote) else type(one).__name__ for one in told]
 
 

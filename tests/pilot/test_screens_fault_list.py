@@ -177,7 +177,7 @@ async def test_the_timeline_has_times_evidence_and_steps_for_staff(
             "0:31 staff were shown whom to call, by ann",
             "5:31 was cleared, by ann",
             "emergency stop, pressed: yes",
-            "to be expected: no",
+            "expected: no",
             "What should I do?",
             "2. Ask who pressed it, and why.",
         ):

@@ -79,7 +79,7 @@ async def test_the_dialog_says_what_was_expected_and_observed_and_when(
         await halting(pilot, "laser-disconnected")
         text = seen(pilot)
         assert "Still there: laser scanner: no data (STALE)." in text
-        assert "to be expected: OK" in text
+        assert "expected: OK" in text
         assert "laser scanner, newest data: 2 s old" in text
         assert "at most 0.25 s old" in text
         assert "1. Do not push or pull the robot." in text
@@ -288,7 +288,7 @@ async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
         await pilot.press("e", "r")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert await asked(pilot) is not first
-        assert "This was not to be expected" in seen(pilot)
+        assert "Tangy did not expect this" in seen(pilot)
 
 
 @pytest.mark.slow

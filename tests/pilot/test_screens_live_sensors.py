@@ -113,11 +113,11 @@ async def test_7_shows_the_devices_of_the_robot_and_none_as_simulated(
         assert "TANGY live" in screen_text(pilot.app)
         await pilot.press("7")
         assert isinstance(pilot.app.screen, SensorsScreen)
-        await shown(pilot, "it works for 8")
+        await shown(pilot, "working for 8")
         told = pilot.text()
         assert "TANGY live" in told and "simulated" not in told
         assert "on the bench" not in told
-        assert "it works" in row(pilot, "wheels") and "0.1 s" in row(pilot, "wheels")
+        assert "working" in row(pilot, "wheels") and "0.1 s" in row(pilot, "wheels")
         assert "from /dev/video0" in told
         await pilot.press("escape")
         assert live(pilot).is_current
@@ -173,7 +173,7 @@ async def test_a_robot_process_that_is_silent_is_not_asked_and_that_is_said(
     run: Run, make: Callable[[], SensorsScreen], link: SeeingLink
 ) -> None:
     async with run(make()) as pilot:
-        await shown(pilot, "it works for 8")
+        await shown(pilot, "working for 8")
         link.silent = "the robot process does not answer"
         link.state = replace(
             link.state, health=tuple(r._replace(state=STALE) for r in link.state.health)

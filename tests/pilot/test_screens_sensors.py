@@ -130,8 +130,8 @@ async def test_a_camera_is_told_of_in_a_word_with_age_reason_and_since_when(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
 ) -> None:
     async with run(make()) as pilot:
-        assert "it works" in row(pilot, "head camera") and "0.1 s" in row(pilot, "head camera")
-        assert "it works for 8.0 s" in pilot.text()
+        assert "working" in row(pilot, "head camera") and "0.1 s" in row(pilot, "head camera")
+        assert "working for 8.0 s" in pilot.text()
         why = "No picture has come: it stopped sending."
         sensors.now = Sight("DISCONNECTED", why, 42.0, 44.0, 0.0, 0.5, 0.2, 0.6)
         await later(pilot)
@@ -144,7 +144,7 @@ async def test_a_camera_is_told_of_in_a_word_with_age_reason_and_since_when(
         assert "cover the lens" in pilot.text()
         sensors.now = WELL
         await later(pilot)
-        assert "it works" in row(pilot, "   head camera")
+        assert "working" in row(pilot, "   head camera")
 
 
 async def test_what_is_simulated_is_said_to_be(

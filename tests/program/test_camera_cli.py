@@ -107,7 +107,7 @@ class TestCapture:
         tangy("capture", tmp_path / "set", "--from", folder, "--count", 2)
         before = (tmp_path / "set" / "000001.png").read_bytes()
         done = tangy("capture", tmp_path / "set", "--from", folder, "--count", 1)
-        assert "000003.png  it works" in done.stdout
+        assert "000003.png  working" in done.stdout
         assert (tmp_path / "set" / "000001.png").read_bytes() == before
 
     @pytest.mark.slow
@@ -168,7 +168,7 @@ class TestSensors:
             done = tangy("sensors", "--camera", f"camera={server.url}", "--seconds", 2)
         lines = done.stdout.splitlines()
         assert (done.returncode, done.stderr) == (0, "")
-        assert any(line.startswith("head camera") and "it works" in line for line in lines)
+        assert any(line.startswith("head camera") and "working" in line for line in lines)
         assert "laser scanner      simulated" in lines
         assert lines[-2:] == ["No card was read yet.", "Now: no card in sight."]
 

@@ -6,16 +6,24 @@ import pytest
 
 from tangy_profiles.health import OK, Health, Reading
 from tangy_profiles.robot import load_robot
-from tangy_tui.text.sensors import Teller, Told, rate_words, sensor_document, sensor_line
+from tangy_tui.text.sensors import (
+    DeviceSummaries,
+    DeviceSummary,
+    rate_words,
+    sensor_document,
+    sensor_line,
+)
 
 ROBOT = load_robot()
 
 
-def told(*readings: Reading) -> dict[str, Told]:
+def told(*readings: Reading) -> dict[str, DeviceSummary]:
     def health() -> Health:
         return readings
 
-    return {one.device.name: one for one in Teller(ROBOT, health=health, live=True).tell()}
+    return {
+        one.device.name: one for one in DeviceSummaries(ROBOT, health=health, live=True).current()
+    }
 
 
 @pytest.mark.parametrize(

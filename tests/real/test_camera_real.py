@@ -208,7 +208,7 @@ class TestProcess:
         process.send_signal(signal.SIGINT)
         rest, said = await asyncio.wait_for(process.communicate(), PATIENCE)
         assert (process.returncode, said) == (0, b"")
-        assert first == b"000001.png  it works\n"
+        assert first == b"000001.png  working\n"
         assert rest.decode().splitlines()[-1].startswith("The pictures are in ")
         names = [path.name for path in sorted((tmp_path / "set").iterdir())]
         assert names[:2] == ["000001.json", "000001.png"]

@@ -30,7 +30,7 @@ def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
 ) -> None:
     with CameraServer() as server:
         terminal = open_terminal("sensors", "--camera", f"camera={server.url}")
-        terminal.until("it works")
+        terminal.until("working")
         terminal.type("V")
         terminal.until("▀▀▀▀▀▀▀▀")
         started = children(terminal.process.pid)
@@ -38,12 +38,12 @@ def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
         server.mode = "covered"
         terminal.until("!  head camera       covered")
         server.mode = "live"
-        terminal.until("   head camera       it works")
+        terminal.until("   head camera       working")
         server.unplug()
         terminal.until("!! head camera       disconnected")
         server.mode = "live"
         server.listen()
-        text = terminal.until("   head camera       it works")
+        text = terminal.until("   head camera       working")
         assert "TANGY sensors" in text and "Last card" in text  # and nothing lies over them
         terminal.type("\x1b")
         assert terminal.wait() == 0
@@ -54,7 +54,7 @@ def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
 def test_a_window_that_is_closed_leaves_no_camera(open_terminal: OpenTerminal) -> None:
     with CameraServer() as server:
         terminal = open_terminal("sensors", "--camera", f"camera={server.url}")
-        terminal.until("it works")
+        terminal.until("working")
         started = children(terminal.process.pid)
         terminal.close()
         terminal.process.wait(20)

@@ -22,7 +22,7 @@ from tangy_tui.text.drills import (
     SHEET_KEPT,
     WAS_RIGHT,
     WELCOME,
-    Told,
+    StyledLine,
     note_words,
     option_words,
     question_words,
@@ -167,7 +167,7 @@ class DrillScreen(TangyScreen[None]):
         choices = tuple((choice.key, option_words(question, choice)) for choice in question.choices)
         self._ask(question_words(question, shown), choices)
 
-    def _show_told(self, shown: Round, told: Sequence[Told]) -> None:
+    def _show_told(self, shown: Round, told: Sequence[StyledLine]) -> None:
         page = self.query_one(Page)
         page.border_title = WAS_RIGHT
         page.show(

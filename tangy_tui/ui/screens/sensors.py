@@ -16,7 +16,15 @@ from tangy_profiles.health import Health
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text import sensors as text
 from tangy_tui.text.keys import with_keys
-from tangy_tui.text.sensors import Sensing, Teller, Told, age_words, card_words, rate_words, remark
+from tangy_tui.text.sensors import (
+    DeviceSummaries,
+    DeviceSummary,
+    Sensing,
+    age_words,
+    card_words,
+    rate_words,
+    remark,
+)
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -98,11 +106,11 @@ class SensorsScreen(TangyScreen[None]):
         super().__init__()
         self._workspace = workspace
         self._sensors = sensors
-        self._teller = Teller(workspace.robot, sensors, health, live=live)
+        self._summaries = DeviceSummaries(workspace.robot, sensors, health, live=live)
         self._no_source = text.no_source_words("live" if live else "sensors")
         self._where = where
         self._shown = shown
-        self.told: dict[str, Told] = {}
+        self.told: dict[str, DeviceSummary] = {}
         self._frames: dict[Widget, tuple[str | None, str | None]] = {}
         self._seen = False
         """Whether a picture is shown."""
@@ -221,7 +229,7 @@ class SensorsScreen(TangyScreen[None]):
         """Update all devices, if the screen is visible."""
         if self.told and not self.is_active:
             return
-        self.told = {told.device.name: told for told in self._teller.tell()}
+        self.told = {told.device.name: told for told in self._summaries.current()}
         self.query_one(StatusLine).show(self._status())
         devices = self._devices
         devices.show(self._device_lines)
@@ -274,7 +282,7 @@ class SensorsScreen(TangyScreen[None]):
         page.show(lambda width: card_page(cards, letters, width), None)
 
 
-def device_row(told: Told, width: int) -> Row:
+def device_row(told: DeviceSummary, width: int) -> Row:
     """Format a device: mark, state, age of its data, and the reason if there is room."""
     label = min(20, max(10, width - 24))
     ink = state_ink(told)
@@ -291,14 +299,14 @@ def device_row(told: Told, width: int) -> Row:
     )
 
 
-def state_ink(told: Told) -> str:
+def state_ink(told: DeviceSummary) -> str:
     """Return the ink of a state, whose word tells the same."""
     if not told.code or told.code in ("OPENING", "ENDED"):
         return "dim"
     return "good" if told.well else "bad" if told.bad else "warn"
 
 
-def about_lines(told: Told, width: int) -> list[PageLine]:
+def about_lines(told: DeviceSummary, width: int) -> list[PageLine]:
     """Describe a device: state, reason, duration, and measurements."""
     since = f" for {age_words(told.seconds)}" if told.seconds is not None and told.code else ""
     kind = "" if told.live or not told.code else " (simulated)"
