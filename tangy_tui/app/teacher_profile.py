@@ -1,10 +1,10 @@
-"""The teacher's name, stored in `teacher.toml` in the data folder."""
+"""The teacher's name and theme, stored in `teacher.toml` in the data folder."""
 
 from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from tangy_profiles.errors import TangyError
@@ -18,9 +18,13 @@ NOBODY = "teacher"
 
 @dataclass(frozen=True, slots=True)
 class TeacherProfile:
-    """The stored teacher; `name` is "" if they were not asked."""
+    """The stored teacher.
+
+    `name` is "" if they were not asked; `theme` names the colours that they chose ("": none yet).
+    """
 
     name: str = ""
+    theme: str = ""
 
 
 def read_profile(folder: Path) -> TeacherProfile:
@@ -34,8 +38,9 @@ def read_profile(folder: Path) -> TeacherProfile:
         return TeacherProfile()
     table = read_toml(path)
     name = table.text("name", "")
+    theme = table.text("theme", "")
     table.close()
-    return TeacherProfile(checked(name) if name else "")
+    return TeacherProfile(checked(name) if name else "", theme)
 
 
 def save_profile(folder: Path, profile: TeacherProfile) -> None:
@@ -44,10 +49,14 @@ def save_profile(folder: Path, profile: TeacherProfile) -> None:
     Raises:
         TangyError: the file cannot be written.
     """
-    name = json.dumps(profile.name, ensure_ascii=False)
+    lines = (
+        f"{key} = {json.dumps(value, ensure_ascii=False)}\n"
+        for key, value in asdict(profile).items()
+        if value
+    )
     new = folder / f"{FILE}.new"
     try:
-        new.write_text(f"name = {name}\n", encoding="utf-8")
+        new.write_text("".join(lines), encoding="utf-8")
         new.replace(folder / FILE)
     except OSError as error:
         raise TangyError(plain(f"{folder / FILE}: cannot be written: {error.strerror}.")) from None
@@ -62,6 +71,15 @@ def change_name(folder: Path, name: str) -> str:
     name = checked(name)
     save_profile(folder, replace(read_profile(folder), name=name))
     return name
+
+
+def change_theme(folder: Path, theme: str) -> None:
+    """Store the theme that the teacher chose.
+
+    Raises:
+        TangyError: the file has a mistake, or cannot be written.
+    """
+    save_profile(folder, replace(read_profile(folder), theme=theme))
 
 
 def checked(name: str) -> str:

@@ -21,6 +21,7 @@ import signal
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from threading import Thread
 from time import monotonic
@@ -32,6 +33,7 @@ from textual.app import App, SystemCommand
 from textual.css.query import NoMatches
 from textual.screen import Screen
 
+from tangy_profiles.errors import TangyError
 from tangy_tui.app.terminal_session import QuestionKey, terminal_session
 from tangy_tui.text import program as text
 from tangy_tui.text.keys import with_keys
@@ -42,7 +44,7 @@ from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
 from tangy_tui.ui.screen_diff import ScreenDiff, Written
 from tangy_tui.ui.terminal import SERVED, TerminalKind
-from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
+from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES, first_theme
 from tangy_tui.ui.writer import HeldWrites
 
 if TYPE_CHECKING:
@@ -96,6 +98,8 @@ class TangyApp(App[None]):
         question: QuestionKey = "auto",
         keymap: Keymap = DEFAULT,
         link: LinkSpeed = "auto",
+        theme: str = "",
+        keep_theme: Callable[[str], None] = lambda _: None,
     ) -> None:
         """Create the application.
 
@@ -107,12 +111,15 @@ class TangyApp(App[None]):
             question: the key for a yes to a question.
             keymap: the keys of the actions.
             link: the speed of the connection to the terminal.
+            theme: the theme chosen earlier ("": none). A terminal of 16 colours keeps its own.
+            keep_theme: stores the name of a theme that is chosen.
         """
         kind = kind or TerminalKind()
         super().__init__(ansi_color=True if kind.ansi else None)
-        for theme in THEMES:
-            self.register_theme(theme)
-        self._use_theme(ANSI.name if kind.ansi else DARK.name)
+        for known in THEMES:
+            self.register_theme(known)
+        self._use_theme(first_theme(theme, ansi=kind.ansi))
+        self._keep_theme = keep_theme
         self._filters.append(CleanOutput(ascii=kind.ascii))
         self.animation_level = "none"
         self.kind = kind
@@ -337,7 +344,7 @@ class TangyApp(App[None]):
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """List the commands of the palette that have no key."""
         for (name, like), theme in zip(text.THEMES.items(), (DARK, LIGHT, ANSI), strict=True):
-            yield SystemCommand(name, like, self._themed(theme.name))
+            yield SystemCommand(name, like, partial(self._choose_theme, theme.name))
 
     def action_command_palette(self) -> None:
         """Show the command palette, unless it is open."""
@@ -355,12 +362,13 @@ class TangyApp(App[None]):
                 begin()
                 return
 
-    def _themed(self, name: str) -> Callable[[], None]:
-        def use() -> None:
-            self.ansi_color = None
-            self.theme = name
-
-        return use
+    def _choose_theme(self, name: str) -> None:
+        self.ansi_color = None
+        self.theme = name
+        try:
+            self._keep_theme(name)
+        except TangyError as error:
+            self.say(str(error), bad=True)
 
     def _use_theme(self, name: str) -> None:
         """Set the theme before the program runs, so that the styles are parsed once."""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.game_rules import USUAL_PACE
 from tangy_profiles.store import Store
+from tangy_tui.app.teacher_profile import change_theme, read_profile
 from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.app import run_app
@@ -197,15 +199,12 @@ def run_watching(folder: Path, *, who: str, note: str, ascii_only: bool) -> int:
 
     outlive_terminal()
     read_replies()
-    settings = read_settings(folder)
     with Store.open(folder, write=False) as store:
         guest = Guest(folder)
         app = TangyApp(
             lambda: WatchScreen(guest, store, who=who, note=note),
-            kind=terminal_kind(ascii=True if ascii_only else None),
             pictures=folder,
-            keymap=settings.keymap,
-            link=settings.link,
+            **_appearance(folder, ascii_only),
         )
         return run_app(app)
 
@@ -222,10 +221,8 @@ def run_map_drive(
     screen = MapDriveScreen(link, record, workspace.robot.title)
     app = TangyApp(
         lambda: screen,
-        kind=terminal_kind(ascii=True if ascii_only else None),
         pictures=workspace.store.folder,
-        keymap=workspace.settings.keymap,
-        link=workspace.settings.link,
+        **_appearance(workspace.store.folder, ascii_only),
     )
     status = run_app(app)
     return screen.done, status
@@ -254,18 +251,27 @@ def _run(
 ) -> int:
     outlive_terminal()
     read_replies()
-    kind = terminal_kind(ascii=True if ascii_only else None)
     program = Program(
         workspace,
         start,
-        kind=kind,
         ears=ears,
         voice=voice,
         sensors=sensors,
         live=live,
         question=workspace.settings.question,
         asks_name=asks_name,
-        keymap=workspace.settings.keymap,
-        link=workspace.settings.link,
+        **_appearance(workspace.store.folder, ascii_only),
     )
     return run_app(program)
+
+
+def _appearance(folder: Path, ascii_only: bool) -> dict[str, Any]:
+    """Return what the terminal and a data folder decide about the look and the keys."""
+    settings = read_settings(folder)
+    return {
+        "kind": terminal_kind(ascii=True if ascii_only else None),
+        "keymap": settings.keymap,
+        "link": settings.link,
+        "theme": read_profile(folder).theme,
+        "keep_theme": partial(change_theme, folder),
+    }

@@ -126,3 +126,10 @@ THEMES = (DARK, LIGHT, ANSI)
 
 INK_DEFAULTS = DARK.variables
 """The inks in a theme that does not define them (Textual's own, from the palette)."""
+
+
+def first_theme(chosen: str, *, ansi: bool) -> str:
+    """Return the theme to begin with: the chosen one if it exists and the terminal can show it."""
+    if ansi:
+        return ANSI.name
+    return chosen if chosen in {theme.name for theme in THEMES} else DARK.name

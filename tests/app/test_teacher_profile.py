@@ -10,6 +10,8 @@ import pytest
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.teacher_profile import (
     TeacherProfile,
+    change_name,
+    change_theme,
     login_name,
     read_profile,
     save_profile,
@@ -70,3 +72,9 @@ def test_a_file_with_a_mistake_is_told(tmp_path: Path) -> None:
     (tmp_path / "teacher.toml").write_text("name = 3\n")
     with pytest.raises(TangyError):
         read_profile(tmp_path)
+
+
+def test_a_theme_is_kept_beside_the_name(tmp_path: Path) -> None:
+    change_theme(tmp_path, "tangy-light")
+    assert change_name(tmp_path, "Ada") == "Ada"
+    assert read_profile(tmp_path) == TeacherProfile("Ada", "tangy-light")

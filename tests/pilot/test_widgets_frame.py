@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,8 +12,10 @@ import pytest
 from syrupy.assertion import SnapshotAssertion
 from textual.app import ComposeResult
 from textual.css.query import NoMatches
+from textual.theme import Theme
 from textual.widgets import Input, Label
 
+from tangy_tui.app.teacher_profile import change_theme, read_profile
 from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -20,7 +23,7 @@ from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.terminal import TerminalKind
-from tangy_tui.ui.themes import ANSI, DARK, LIGHT, THEMES
+from tangy_tui.ui.themes import ANSI, DARK, LIGHT, THEMES, first_theme
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.support.gallery import GalleryScreen
@@ -408,6 +411,34 @@ async def test_every_theme_draws_everything(run: Run, theme: str) -> None:
         pilot.app.theme = theme
         await pilot.pause()
         assert "What works with whom" in pilot.text()
+
+
+@pytest.mark.parametrize(
+    ("chosen", "ansi", "begins"),
+    [
+        ("", False, DARK),
+        (LIGHT.name, False, LIGHT),
+        ("from a later version", False, DARK),
+        (LIGHT.name, True, ANSI),
+    ],
+)
+def test_the_chosen_theme_is_used_again_if_the_terminal_can_show_it(
+    chosen: str, ansi: bool, begins: Theme
+) -> None:
+    assert first_theme(chosen, ansi=ansi) == begins.name
+
+
+async def test_a_theme_of_the_palette_is_kept(run: Run, tmp_path: Path) -> None:
+    keep = partial(change_theme, tmp_path)
+    async with run(app=TangyApp(theme=DARK.name, keep_theme=keep)) as pilot:
+        (light,) = (
+            command
+            for command in pilot.app.get_system_commands(pilot.app.screen)
+            if command.title == "Light theme"
+        )
+        light.callback()
+        assert pilot.app.theme == LIGHT.name
+    assert TangyApp(theme=read_profile(tmp_path).theme).theme == LIGHT.name
 
 
 async def test_ansi_writes_the_terminals_own_colours_only(run: Run) -> None:
