@@ -155,7 +155,8 @@ async def test_what_is_simulated_is_said_to_be(
     def health() -> Health:
         return tuple(readings)
 
-    async with run(make(health=health)) as pilot:
+    clock = StillClock()
+    async with run(make(health=health, clock=clock)) as pilot:
         assert "simulated" in row(pilot, "laser scanner")
         near = {"near_share": 0.9, "variety": 0.3}
         readings += [
@@ -165,9 +166,11 @@ async def test_what_is_simulated_is_said_to_be(
         assert "~laser scanner" in row(pilot, "laser scanner") and "~ simulated" in pilot.text()
         assert "!!~link to the robot" in pilot.text()
         assert "no data" in row(pilot, "link to") and "failed" in row(pilot, "arms")
+        clock.now += 2.0
+        await later(pilot)
         pilot.type("home")
         await pilot.pause()
-        assert "no data for 0.1 s (simulated)" in pilot.text()
+        assert "no data for 2.0 s (simulated)" in pilot.text()
         assert "at most 0.25 s" in pilot.text()
         pilot.type("down", "down")
         await pilot.pause()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar
 
@@ -17,6 +18,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.text import sensors as text
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.sensors import (
+    Clock,
     DeviceSummaries,
     DeviceSummary,
     Sensing,
@@ -92,6 +94,7 @@ class SensorsScreen(TangyScreen[None]):
         shown: Shown | None = None,
         live: bool = False,
         where: str = "",
+        clock: Clock = time.monotonic,
     ) -> None:
         """Create the screen.
 
@@ -102,11 +105,12 @@ class SensorsScreen(TangyScreen[None]):
             shown: returns the status of that game.
             live: whether those devices are real.
             where: a note on the robot, in a few words.
+            clock: returns s, for the time that a device has been in its state.
         """
         super().__init__()
         self._workspace = workspace
         self._sensors = sensors
-        self._summaries = DeviceSummaries(workspace.robot, sensors, health, live=live)
+        self._summaries = DeviceSummaries(workspace.robot, sensors, health, clock, live=live)
         self._no_source = text.no_source_words("live" if live else "sensors")
         self._where = where
         self._shown = shown
