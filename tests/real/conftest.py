@@ -100,6 +100,16 @@ def bench() -> Iterator[DeviceSimulator]:
 
 
 @pytest.fixture
+def robot_beside() -> Iterator[DeviceSimulator]:
+    """A robot that runs beside the program and not under it; people of a game are there."""
+    people = {f"user{number}": f"User {number}" for number in range(1, 5)}
+    robot = DeviceSimulator(seed=3, people=people, stepped=False, activity="bingo", robot="tangy")
+    robot.do("begin")
+    yield robot
+    robot.close()
+
+
+@pytest.fixture
 def link(bench: DeviceSimulator) -> Iterator[RobotLink]:
     link = RobotLink(setup_on(bench))
     link.start()

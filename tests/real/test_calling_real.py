@@ -11,11 +11,9 @@ import pytest
 
 from tangy_sim.device_simulator.tablet import Tablet
 from tangy_tui.app.device_simulator import DeviceSimulator
-from tests.real.test_live_robot_file import begin, bench, program, robot_file
+from tests.real.robot_beside import begin, program
 from tests.support.terminal import TANGY, Terminal
 from tests.support.waiting import wait_until
-
-__all__ = ["bench"]  # the robot beside the program
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
@@ -45,30 +43,19 @@ command = [{command}]
 """
 
 
-def halted(terminal: Terminal, bench: DeviceSimulator) -> None:
+def halted(terminal: Terminal, robot_beside: DeviceSimulator) -> None:
     """Press the button for emergencies, and wait until the dialog takes keys."""
-    bench.do("inject", kind="emergency-stop")
+    robot_beside.do("inject", kind="emergency-stop")
     terminal.until("Tangy stands still")
     terminal.settle()
 
 
-def cleared(terminal: Terminal, bench: DeviceSimulator) -> None:
+def cleared(terminal: Terminal, robot_beside: DeviceSimulator) -> None:
     """Pull the button out, and clear the fault."""
-    bench.do("lift", kind="emergency-stop")
+    robot_beside.do("lift", kind="emergency-stop")
     terminal.until("It is gone now")
     terminal.type("r")
     terminal.until(lambda text: "Tangy stands still" not in text)
-
-
-def names(monkeypatch: pytest.MonkeyPatch, contacts: str) -> None:
-    """Let the robot's file name contacts."""
-
-    def with_contacts(bench: DeviceSimulator, folder: Path) -> Path:
-        file = robot_file(bench, folder)
-        file.write_text(file.read_text() + contacts)
-        return file
-
-    monkeypatch.setattr("tests.real.test_live_robot_file.robot_file", with_contacts)
 
 
 def log(folder: Path, *options: str) -> str:
@@ -78,17 +65,17 @@ def log(folder: Path, *options: str) -> str:
 
 
 def test_the_dialog_and_the_log_say_what_came_of_each_call(
-    folder: Path, bench: DeviceSimulator, monkeypatch: pytest.MonkeyPatch
+    folder: Path, robot_beside: DeviceSimulator
 ) -> None:
     command = folder / "ring"
     command.write_text(COMMAND)
     command.chmod(0o755)
-    names(monkeypatch, CALLED.format(command=json.dumps(str(command))))
-    terminal = program(bench, folder)
+    called = CALLED.format(command=json.dumps(str(command)))
+    terminal = program(robot_beside, folder, called)
     try:
         begin(terminal)
 
-        halted(terminal, bench)
+        halted(terminal, robot_beside)
         terminal.type("e")
         terminal.until("Tangy cannot reach Anna Berg (it ended with status 3: no line to the")
         terminal.type("e")
@@ -96,12 +83,12 @@ def test_the_dialog_and_the_log_say_what_came_of_each_call(
         assert "call Anna Berg: 030 901820" in " ".join(terminal.text.replace("┃", "").split())
         (folder / "picked-up").touch()
         terminal.until("Anna Berg was reached, and answered: I am on my way.")
-        cleared(terminal, bench)
+        cleared(terminal, robot_beside)
 
-        halted(terminal, bench)
+        halted(terminal, robot_beside)
         terminal.type("e")
         terminal.until("Anna Berg was reached, and answered: I see it.")
-        cleared(terminal, bench)
+        cleared(terminal, robot_beside)
     finally:
         terminal.end()
 
@@ -119,10 +106,9 @@ def test_the_dialog_and_the_log_say_what_came_of_each_call(
 
 
 def test_who_presses_the_button_on_the_chest_screen_was_reached(
-    folder: Path, bench: DeviceSimulator, monkeypatch: pytest.MonkeyPatch
+    folder: Path, robot_beside: DeviceSimulator
 ) -> None:
-    names(monkeypatch, SENT)
-    terminal, tablet = program(bench, folder), None
+    terminal, tablet = program(robot_beside, folder, SENT), None
     where = re.compile(r"chest screen (http://[\d.:]+/) code (\d{4}-\d{4})")
     try:
         begin(terminal)
@@ -131,7 +117,7 @@ def test_who_presses_the_button_on_the_chest_screen_was_reached(
         tablet = Tablet(found[1], found[2])
         wait_until(lambda: bool(tablet.picture), "the tablet is paired")
 
-        halted(terminal, bench)
+        halted(terminal, robot_beside)
         terminal.until("Tangy has sent a message to Station 2. Nobody has answered yet")
         terminal.type("e")
         terminal.until("Tangy has sent a message to Anna Berg. Nobody has answered yet")
@@ -145,7 +131,7 @@ def test_who_presses_the_button_on_the_chest_screen_was_reached(
         terminal.until("! Station 2 was reached: they answered on the chest screen.")
         wait_until(lambda: not tablet.calls, "the buttons are gone")
         assert not tablet.press(staff)
-        cleared(terminal, bench)
+        cleared(terminal, robot_beside)
     finally:
         if tablet is not None:
             tablet.close()

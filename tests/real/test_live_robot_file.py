@@ -8,88 +8,37 @@ from __future__ import annotations
 import re
 import signal
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tangy_sim.device_simulator.tablet import Tablet
 from tangy_tui.app.device_simulator import DeviceSimulator
+from tests.real.robot_beside import begin, program
 from tests.real.test_robot_process import STOPS, seconds_to_stop, speed
-from tests.support.terminal import TANGY, Terminal
 from tests.support.waiting import wait_until
-
-ROOT = Path(__file__).parents[2]
-PROFILE = ROOT / "profiles/tangy_profiles/robots/tangy.toml"
-PEOPLE = {f"user{number}": f"User {number}" for number in range(1, 5)}
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
 
-@pytest.fixture
-def bench() -> Iterator[DeviceSimulator]:
-    bench = DeviceSimulator(seed=3, people=PEOPLE, stepped=False, activity="bingo", robot="tangy")
-    bench.do("begin")
-    yield bench
-    bench.close()
-
-
-def robot_file(bench: DeviceSimulator, folder: Path) -> Path:
-    """Write the file of the robot that the bench is, as docs/robots.md tells."""
-    at = bench.wires.rosbridge
-    drivers = [
-        "[drivers]",
-        *(f'{name} = {{ kind = "rosbridge", at = "{at}" }}' for name in ROSBRIDGE),
-        f'laser = {{ kind = "scip", at = "{bench.wires.scip}" }}',
-        'screen = { kind = "page", port = 0 }',
-    ]
-    text = PROFILE.read_text().replace('# source = "/dev/video0"', f'source = "{bench.wires.head}"')
-    file = folder / "robot.toml"
-    file.write_text(f"{text}\n" + "\n".join(drivers) + "\n")
-    return file
-
-
-ROSBRIDGE = ("base", "stop_button", "arms", "voice")
-
-
-def program(bench: DeviceSimulator, folder: Path) -> Terminal:
-    corners = ",".join(f"{x:g},{y:g}" for x, y in bench.wires.corners)
-    command = [
-        *(TANGY, "live", "--robot", str(robot_file(bench, folder)), "--begin", "--pace", "3"),
-        *("--requests", f"signs:{bench.wires.infrared}", "--table", corners),
-        *("--data", str(folder)),
-    ]
-    return Terminal(command)
-
-
-def begin(terminal: Terminal) -> None:
-    """Let the game begin: faults of the start are over when they are asked about."""
-    if "Is all well now?" in terminal.until(
-        lambda text: "greet everyone" in text or "well" in text
-    ):
-        terminal.settle()
-        terminal.type("y")
-    terminal.until("Now")
-
-
 @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGSTOP, signal.SIGHUP])
 def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
-    folder: Path, bench: DeviceSimulator, ending: signal.Signals
+    folder: Path, robot_beside: DeviceSimulator, ending: signal.Signals
 ) -> None:
-    terminal = program(bench, folder)
+    terminal = program(robot_beside, folder)
     try:
         begin(terminal)
         terminal.type("u")  # the steps in place of what staff see
         terminal.until("call number")
-        bench.do("ask", person="user2")
+        robot_beside.do("ask", person="user2")
         terminal.until("coming to you")
-        wait_until(lambda: speed(bench) > 0.25, "the robot drives")
+        wait_until(lambda: speed(robot_beside) > 0.25, "the robot drives")
 
         terminal.process.send_signal(ending)
-        assert seconds_to_stop(bench) <= STOPS
-        stood = bench.do("truth")["truth"]["pose"]
+        assert seconds_to_stop(robot_beside) <= STOPS
+        stood = robot_beside.do("truth")["truth"]["pose"]
         time.sleep(0.5)
-        assert bench.do("truth")["truth"]["pose"] == pytest.approx(stood, abs=1e-3)
+        assert robot_beside.do("truth")["truth"]["pose"] == pytest.approx(stood, abs=1e-3)
     finally:
         terminal.process.send_signal(signal.SIGCONT)
         terminal.end()
@@ -99,9 +48,9 @@ UP, DOWN = "\x1b[A", "\x1b[B"
 
 
 def test_a_tablet_is_paired_by_what_the_live_screen_tells(
-    folder: Path, bench: DeviceSimulator
+    folder: Path, robot_beside: DeviceSimulator
 ) -> None:
-    terminal = program(bench, folder)
+    terminal = program(robot_beside, folder)
     told = re.compile(r"(http://[\d.:]+/), code[^\d]+(\d{4}-\d{4})")
     tablet = None
     try:
