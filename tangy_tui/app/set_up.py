@@ -76,7 +76,9 @@ class SetUp:
     @classmethod
     def of(cls, workspace: Workspace, pace: float = USUAL_PACE) -> SetUp:
         """Start with everybody present, in their last seats; `pace` is in s from call to call."""
-        return cls(workspace, seats_as_before(workspace), pace=pace)
+        set_up = cls(workspace, pace=pace)
+        set_up._seat_as_before()
+        return set_up
 
     # ----------------------------------------------------------------------------- the choices
 
@@ -159,8 +161,14 @@ class SetUp:
             workspace.change_activity(before)
             raise
         self.patterns, self.strength = [], ""
-        self.seats = seats_as_before(workspace)
+        self._seat_as_before()
         self.away &= set(self.seats)
+
+    def _seat_as_before(self) -> None:
+        """Seat people as in the last game with people or on the bench."""
+        self.seats = seats_before(self.workspace)
+        if self.seats != [person.id for person in self.workspace.people]:
+            self.workspace.seat(self.seats)
 
     def rooms(self) -> list[KnownRoom]:
         """Return the rooms to choose from, the present one first."""
@@ -333,19 +341,16 @@ class SetUp:
         return True
 
 
-def seats_as_before(workspace: Workspace) -> list[str]:
-    """Seat people as in the last game with people or on the bench; return their ids.
+def seats_before(workspace: Workspace) -> list[str]:
+    """Return the ids of the people in the order of the last game with people or on the bench.
 
     People who were not in it come after the others.
     """
-    there = [person.id for person in workspace.people]
     games = [event.record for event in workspace.store.events(GameBeginning)]
     last = next((game.people for game in reversed(games) if game.world in (BENCH, LIVE)), ())
     before = {person: place for place, person in enumerate(last)}
-    seats = sorted(there, key=lambda person: before.get(person, len(before)))
-    if seats != there:
-        workspace.seat(seats)
-    return seats
+    there = [person.id for person in workspace.people]
+    return sorted(there, key=lambda person: before.get(person, len(before)))
 
 
 def battery_of(world: World | None) -> float | None:

@@ -1,4 +1,8 @@
-"""Situations of a declared activity in words: those of its file, or made from its names."""
+"""Situations of a declared activity in words: those of its file, or made from its names.
+
+They are beside the reader of the file, and not in `tangy_tui/text`, because every `Activity` has to
+name its situations (`in_words`) for layers below the text: questions, coverage, conflicts.
+"""
 
 from __future__ import annotations
 
