@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from random import Random
 
 GRID = 400
 """Intervals of the midpoint rule on [0, 1] that integrates P(best)."""
@@ -63,10 +62,6 @@ class Beta:
     def interval(self, sure: float = SURE) -> tuple[float, float]:
         """Return the equal-tailed credible interval with probability `sure`."""
         return self.quantile((1 - sure) / 2), self.quantile((1 + sure) / 2)
-
-    def sample(self, rng: Random) -> float:
-        """Sample a probability from the belief."""
-        return rng.betavariate(self.alpha, self.beta)
 
     def density(self, points: int) -> list[float]:
         """Return the probability density of Eq. 1 at the midpoints of `points` parts of [0, 1]."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from math import cos, hypot, pi, radians, sin
+from math import cos, hypot, radians, sin
 from types import MappingProxyType
 
 from tangy_profiles.reading import Table
@@ -121,14 +121,6 @@ def _left_of(a: Point, b: Point, c: Point) -> int:
     """Return whether c is to the left (1) or right (-1) of the line from a to b, or on it (0)."""
     across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     return (across > 1e-9) - (across < -1e-9)
-
-
-def outline(body: BodyProfile, count: int = 24) -> tuple[Point, ...]:
-    """Return the footprint (x, y) in m: the corners, or `count` points on the circle."""
-    if body.corners:
-        return body.corners
-    angles = [2 * pi * number / count for number in range(count)]
-    return tuple((body.radius * cos(angle), body.radius * sin(angle)) for angle in angles)
 
 
 def looks(mount: Mount, metres: float) -> Point:

@@ -72,14 +72,6 @@ class CardLayout:
         longest = max(len(str(number)) for number in self.deck.numbers)
         return 0.729 * min(0.6 * self.cell, 0.84 * self.cell / (0.696 * longest))
 
-    def crossings(self) -> list[tuple[float, float]]:
-        """Return the crossings of the lines, in mm, row by row."""
-        return [
-            (self.grid.left + column * self.cell, self.grid.top + row * self.cell)
-            for row in range(self.deck.rows + 1)
-            for column in range(len(self.deck.columns) + 1)
-        ]
-
     def middle(self, cell: int) -> tuple[float, float]:
         """Return the middle of a cell; cells are counted row by row."""
         row, column = divmod(cell, len(self.deck.columns))

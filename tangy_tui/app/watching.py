@@ -59,11 +59,6 @@ class Guest:
         self.stops = self.answers = 0
         """The number of stops of the robot from here, and of answers to stop requests."""
 
-    @property
-    def there(self) -> bool:
-        """Whether it is connected to a program that runs games."""
-        return self._socket is not None
-
     def look(self) -> bool:
         """Read new snapshots, connecting first if needed; return whether it is connected."""
         if self._socket is None and not self._enter():

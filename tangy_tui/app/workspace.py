@@ -244,20 +244,6 @@ class Workspace(Participants):
             supervision.call_by(calls)
         return supervision
 
-    def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:
-        """Create a run of simulated games with a policy and the stored posteriors.
-
-        Args:
-            policy: the policy to play by.
-            seed: seeds the random generators.
-            asks: staff are there to answer if Tangy is unsure.
-        """
-        from tangy_tui.app.simulated_worlds import game_world
-
-        seed = self.game_seed(seed)
-        world = game_world(self.activity, list(self.names), seed, None)
-        return self._facilitation(world, policy, seed, asks)
-
     def game_seed(self, seed: int | None) -> int:
         """Return a seed: the given one, or one that no game has used."""
         if seed is not None:

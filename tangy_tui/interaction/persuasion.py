@@ -77,10 +77,6 @@ class Persuasion:
             self._known[person] = start = unknown(strategies, method)
             self.beliefs[person] = counted(start.prior, person, counts or {})
 
-    def known(self, person: str) -> PersonModel:
-        """Return a person's model as it was last read."""
-        return self._known[person]
-
     def recall(self, person: str, counts: Responses | None = None) -> Beliefs:
         """Read a person's model again, after a void, a late response or a switch."""
         if self._memory is not None:

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.phones import LONGEST, read_name_phones, read_phones
+from tangy_profiles.phones import LONGEST, read_name_phones
 from tangy_tui.language import espeak_phones, spelling
 from tangy_tui.language.words import clean, spoken, words_of
 
@@ -65,15 +65,6 @@ def suggest_name(name: str, which: Callable[[str], str | None] = shutil.which) -
 def unknown_words(name: str) -> tuple[str, ...]:
     """Return the words of a name that the dictionary does not have."""
     return tuple(w for w in spoken(words_of(clean(name))).split() if not pronounce(w))
-
-
-def check(text: str) -> str:
-    """Return the phones of a word in capitals, with single spaces and without stress.
-
-    Raises:
-        ProfileError: a phone is invalid; the message suggests the nearest one.
-    """
-    return read_phones(text)
 
 
 def check_name(text: str, name: str) -> str:

@@ -38,13 +38,6 @@ def compare(activity: Activity, a: Policy, b: Policy) -> list[SituationCompariso
     return [SituationComparison(s, a.decide(s), b.decide(s)) for s in activity.situations]
 
 
-def choices(store: Store, activity: Activity) -> list[str]:
-    """Return the names that can be compared: policies, newest first, then teachers."""
-    names = [kept.name for kept in reversed(stored_policies(store, activity.name))]
-    teachers = _teachers(read_library(store, activity.name).finished)
-    return list(dict.fromkeys([*names, *teachers]))
-
-
 def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, list[PolicyNotice]]:
     """Find the policy that a word refers to, and return it with notices about it.
 

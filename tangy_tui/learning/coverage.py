@@ -28,11 +28,6 @@ class Coverage:
         """The situations that were never shown."""
         return [situation for situation, times in self.times.items() if not times]
 
-    @property
-    def complete(self) -> bool:
-        """Whether every situation was shown, so that the policy is exact."""
-        return not self.missing
-
 
 def coverage(activity: Activity, demonstrations: Iterable[Demonstration]) -> Coverage:
     """Count the demonstrated steps in each situation that can occur."""

@@ -138,11 +138,6 @@ class TeachingSession:
         return self._verifier.question
 
     @property
-    def undone(self) -> int:
-        """How many steps can be redone."""
-        return len(self._undone)
-
-    @property
     def sayable(self) -> tuple[str, ...]:
         """The commands that can be carried out now, most often demonstrated first."""
         if self.demonstration.finished:

@@ -14,7 +14,6 @@ from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import EVERYBODY, FRONT, ActivityState
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
-from tangy_tui.language.stop_sentence import stops
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -208,10 +207,6 @@ class Verifier:
 
     def _attends(self, behaviour: str) -> bool:
         return self._activity.behaviour(behaviour).attends
-
-    def stops(self, text: str) -> bool:
-        """Return whether typed text stops the robot, instead of naming a behaviour."""
-        return stops(text, self._phrasebook.game)
 
     def reply(self, reply: Reply) -> Verification:
         """Apply the answer to the open question."""

@@ -33,11 +33,6 @@ class RobotLog:
     named: frozenset[str]
     activities: Mapping[str, Activity]
 
-    @property
-    def games(self) -> tuple[Game, ...]:
-        """Its games, newest last."""
-        return tuple(replay.game for replay in self.replays)
-
     def name(self, person: str) -> str:
         """Return a person's name."""
         return self.names.get(person, person)

@@ -43,7 +43,6 @@ FAULTS = "What went wrong, and how often"
 FAULT_COLUMNS = ("fault", "times", "critical", "last")
 ROBOTS = "Robots"
 ROBOT_COLUMNS = ("robot", "games", "time", "faults")
-NOTHING = "The log has no games of this kind."
 NOT_THERE = "Not in this log"
 SAME_NAME = "People with the same name in the logs of several robots count as one person."
 EACH_WORLD = "This report covers only these games. For others, add --world {others}."

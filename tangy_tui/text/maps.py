@@ -33,7 +33,6 @@ DRIVE_HELP = (
 DRIVE_NEEDS_YAML = "--drive: say where the map goes, as in --yaml room.yaml."
 DRIVE_NEEDS_SCREEN = "--drive: you drive with the arrow keys, so this needs a terminal."
 DRIVE_ALONE = "--drive records a new log: leave LOG, --room and --match out."
-NOTHING_RECORDED = "Nothing was recorded, so there is no map."
 
 
 def drive_is_there(record: str, yaml: str) -> str:

@@ -16,8 +16,6 @@ THEMES = {
 }
 """The names and descriptions of the themes."""
 COMPARE_POLICIES = ("Compare policies", "Teacher against teacher, before against after")
-VOICE = ("Voice on or off", "Tangy speaks what it says")
-"""Commands of the palette, with descriptions."""
 NOT_POSSIBLE, NOT_YET = "Not possible", "Not yet"
 """Titles of dialogs that tell why something cannot be done."""
 

@@ -13,7 +13,6 @@ from tangy_tui.text.rooms import room_words
 TITLE = "Set up"
 PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
 HERE, AWAY, AWAY_SHORT = "here", "not here yet", "away"
-LATER = "You can change all of this during the game, except the seats."
 SOUND = "Hello. Can everybody hear me?"
 CARD_HOW = "Hold a card in front of Tangy, then press Enter."
 NO_CARD = "Tangy saw no card. Hold one closer, flat, and in good light."
@@ -151,11 +150,6 @@ def summary_words(checks: Sequence[Check]) -> str:
     if wrong:
         return f"not ready: {', '.join(wrong)}".lower()
     return f"ready; not tried: {', '.join(untried)}".lower() if untried else "all is ready"
-
-
-def table_words(number: int) -> str:
-    """Name one of several tables."""
-    return f"Table {number}"
 
 
 def card_seen_words(card: str, name: str) -> str:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.audio.number_reader import SpokenPiece, as_called, calls, in_words, marked_up
+from tangy_hw.audio.number_reader import SpokenPiece, as_called, in_words, marked_up
 from tangy_profiles.activity import Activity, load_activity
 
 DECK = load_activity("bingo").deck
@@ -80,20 +80,3 @@ def test_any_text_is_well_formed_and_said_whole(text: str) -> None:
         said = "".join(ElementTree.fromstring(written).itertext())  # noqa: S314
         assert "[[" not in said, "it would be read as sounds"
         assert said.replace("[ [", "[[") == in_words(as_called(text, None)) or "," in said
-
-
-def test_all_calls_are_known_beforehand_and_nobody_is_named(activity: Activity) -> None:
-    texts = calls(activity)
-    assert len(set(texts)) == len(texts)
-    assert not any("{" in text for text in texts)
-    for number in activity.deck.numbers:
-        label = activity.deck.label(number)
-        found = [text for text in texts if f"{label}." in text]
-        assert len(found) == len(activity.strategies), label
-    first = texts[: len(texts) // len(activity.strategies)]
-    plain = {b.speech[activity.plain_strategy] for b in activity.behaviours.values()}
-    assert all(any(t.partition("{")[0] in text for t in plain) for text in first)
-
-
-def test_a_made_up_activity_has_calls_as_well(lanterns: Activity) -> None:
-    assert calls(lanterns)

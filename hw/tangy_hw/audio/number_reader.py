@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from xml.sax.saxutils import escape
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.cards import Deck
 
 SLOWER = 75  # % of the normal rate; the synthesiser goes no slower than 80 words a minute
@@ -67,25 +66,6 @@ def marked_up(pieces: tuple[SpokenPiece, ...]) -> str:
             )
         written.append(said)
     return f"<speak>{' '.join(written)}</speak>" if written else ""
-
-
-def calls(activity: Activity) -> tuple[str, ...]:
-    """Return every text that is known before a game: those without a person's name.
-
-    Those of the plain strategy come first, because a game begins with them.
-    """
-    plain_first = sorted(activity.strategies, key=lambda s: s != activity.plain_strategy)
-    texts: list[str] = []
-    for strategy in plain_first:
-        for behaviour in activity.behaviours.values():
-            template = behaviour.speech[strategy]
-            if "{name}" in template or "{numbers}" in template:
-                continue
-            if "{call}" in template:
-                texts += [activity.fill(template, "", (n,)) for n in activity.deck.numbers]
-            else:
-                texts.append(activity.fill(template, "", ()))
-    return tuple(dict.fromkeys(texts))
 
 
 def _pause(milliseconds: int) -> str:

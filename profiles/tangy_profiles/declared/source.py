@@ -69,11 +69,6 @@ class SourceText:
             cause = next((plain(told) for told in found if told in self._causes), "")
             raise MistakesError([plain(told) for told in found[:MOST_MISTAKES]], cause)
 
-    @property
-    def sound(self) -> bool:
-        """Whether no mistake was recorded so far."""
-        return not self._found
-
     def _offset(self, path: Path, quoted: str) -> int:
         """Return the offset of a key, or the nearest one before it."""
         text, rest = self._text, list(path)
