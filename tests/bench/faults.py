@@ -30,10 +30,10 @@ from tangy_sim.worlds.injection import (
     MOVING_ON,
     WAITING,
 )
-from tangy_tui.experiments import monitoring
 from tangy_tui.experiments.classroom import activity_of
 from tangy_tui.experiments.induced import kinds_by_recovery
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
+from tests.bench import fault_games
 
 SETTINGS: dict[str, Any] = {"activity": "bingo", "users": 4}
 LESSONS = (0, 1, 2, 3, 4)
@@ -70,7 +70,9 @@ def swept(
 def matrix(seeds: int, jobs: int, **more: Any) -> list[dict[str, Any]]:
     """Return a row for each kind with each behaviour."""
     cases = [(kind, 0, seeds) for kind in KINDS]
-    return [row for rows in swept("matrix", monitoring.matrix, cases, jobs, **more) for row in rows]
+    return [
+        row for rows in swept("matrix", fault_games.matrix, cases, jobs, **more) for row in rows
+    ]
 
 
 def print_matrix(rows: Sequence[Mapping[str, Any]], behaviours: Sequence[Behaviour]) -> None:
@@ -98,14 +100,14 @@ def print_matrix(rows: Sequence[Mapping[str, Any]], behaviours: Sequence[Behavio
             wrong = row.get("class", 0) < came or row.get("cause", 0) < came
             cells.append(f"{row.get('detected', 0)}/{came}{'!' if wrong else ''}")
         every = list(mine.values())
-        came = monitoring.added(every, "came")
+        came = fault_games.added(every, "came")
         table.add_row(
             kind, *cells,
-            *(f"{monitoring.added(every, what)}/{came}" for what in ("class", "cause")),
-            str(monitoring.added(every, "false")),
+            *(f"{fault_games.added(every, what)}/{came}" for what in ("class", "cause")),
+            str(fault_games.added(every, "false")),
         )  # fmt: skip
     console.print(table)
-    sums = {n: monitoring.added(rows, n) for n in ("came", "detected", "class", "cause", "false")}
+    sums = {n: fault_games.added(rows, n) for n in ("came", "detected", "class", "cause", "false")}
     came = sums["came"]
     console.print(
         f"{came} faults: detected within their behaviour {sums['detected'] / came:.4f}, right "
@@ -141,7 +143,7 @@ def print_alarms(games: int, jobs: int) -> None:
         cases = [(lesson, 1_000 * lesson + 7, each) for lesson in LESSONS]
         every: Counter[str] = Counter()
         for lesson, one in zip(
-            LESSONS, swept("alarms", monitoring.alarms, cases, jobs, **more), strict=True
+            LESSONS, swept("alarms", fault_games.alarms, cases, jobs, **more), strict=True
         ):
             every.update(one["codes"])
             false = sum(
@@ -161,7 +163,7 @@ def print_pairs(seeds: int, jobs: int) -> None:
     classes = kinds_by_recovery(load_faults(load_robot()))
     others = [kind for name, kinds in classes.items() if name != "expert" for kind in kinds]
     cases = [(a, b, 0, seeds) for a, b in product(classes["expert"], others)]
-    rows = swept("pairs", monitoring.pairs, cases, jobs)
+    rows = swept("pairs", fault_games.pairs, cases, jobs)
     table = shown("Two faults at once: came / both told / the critical one first / both ended",
                   "other", *classes["expert"])  # fmt: skip
     for other in others:
@@ -173,7 +175,7 @@ def print_pairs(seeds: int, jobs: int) -> None:
             cells.append("/".join(map(str, counts)) + ("" if alike else " !") if counts[0] else "-")
         table.add_row(other, *cells)
     console.print(table)
-    sums = [monitoring.added(rows, name) for name in ("came", "diagnosed", "first", "ended")]
+    sums = [fault_games.added(rows, name) for name in ("came", "diagnosed", "first", "ended")]
     console.print(
         f"{sums[0]} pairs came, {sums[1]} with both told, {sums[2]} with the critical one first, "
         f"{sums[3]} with both ended. -: they cannot show with the same behaviour."
@@ -187,7 +189,7 @@ def print_crowds() -> None:
         "", "faults came", "diagnosed", "critical", "left open", "longest game", "ended",
     )  # fmt: skip
     for chance in (0.004, 0.01, 0.03):
-        played = monitoring.crowd(SETTINGS, (1, 20, chance))
+        played = fault_games.crowd(SETTINGS, (1, 20, chance))
         table.add_row(
             f"P = {chance} a step",
             *(str(sum(game[name] for game in played))

@@ -12,9 +12,9 @@ from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
-from tangy_tui.experiments import monitoring
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.monitoring.diagnosis import diagnose
+from tests.bench import fault_games
 from tests.monitoring.conftest import Supervise
 from tests.support.games import world_of
 
@@ -118,21 +118,21 @@ SETTINGS = {"activity": "bingo", "users": 4}
 
 @pytest.mark.slow
 def test_each_kind_is_told_with_whatever_behaviour_it_comes() -> None:
-    rows = [row for kind in KINDS for row in monitoring.matrix(SETTINGS, (kind, 3, 1))]
-    came = monitoring.added(rows, "came")
+    rows = [row for kind in KINDS for row in fault_games.matrix(SETTINGS, (kind, 3, 1))]
+    came = fault_games.added(rows, "came")
     assert came > 120, "fewer than half of the kinds and behaviours: the test would mean little"
-    assert monitoring.added(rows, "detected") >= 0.99 * came
-    assert monitoring.added(rows, "class") == came
-    assert monitoring.added(rows, "cause") >= 0.95 * came
-    assert monitoring.added(rows, "false") == 0
+    assert fault_games.added(rows, "detected") >= 0.99 * came
+    assert fault_games.added(rows, "class") == came
+    assert fault_games.added(rows, "cause") >= 0.95 * came
+    assert fault_games.added(rows, "false") == 0
     assert {row["kind"] for row in rows if row.get("came")} == set(KINDS)
 
 
 @pytest.mark.slow
 def test_who_complies_seldom_changes_nothing_of_it() -> None:
     for kind in ("card-out-of-sight", "never-complies", "no-effect"):
-        usual = monitoring.matrix(SETTINGS, (kind, 5, 2))
-        assert monitoring.matrix({**SETTINGS, "complies": 0.6}, (kind, 5, 2)) == usual
+        usual = fault_games.matrix(SETTINGS, (kind, 5, 2))
+        assert fault_games.matrix({**SETTINGS, "complies": 0.6}, (kind, 5, 2)) == usual
 
 
 @pytest.mark.parametrize(
@@ -140,14 +140,14 @@ def test_who_complies_seldom_changes_nothing_of_it() -> None:
     [(0, 60), (3, 60), *(pytest.param(n, 240, marks=pytest.mark.slow) for n in (0, 3))],
 )
 def test_games_in_which_nothing_is_wrong_have_no_alarm(lesson: int, games: int) -> None:
-    told = monitoring.alarms({**SETTINGS, "complies": 0.6}, (lesson, 40, games))
+    told = fault_games.alarms({**SETTINGS, "complies": 0.6}, (lesson, 40, games))
     assert told["steps"] > 33 * games
     assert sum(told["codes"].values()) <= 0.01 * told["games"]
 
 
 @pytest.mark.slow
 def test_who_follows_seldom_is_told_of_and_nothing_else_is() -> None:
-    told = monitoring.alarms({**SETTINGS, "follows": 0.6}, (1, 9, 60))
+    told = fault_games.alarms({**SETTINGS, "follows": 0.6}, (1, 9, 60))
     assert set(told["codes"]) == {"never-complies"}
 
 
@@ -163,13 +163,13 @@ def test_who_follows_seldom_is_told_of_and_nothing_else_is() -> None:
     ],
 )
 def test_of_two_faults_the_critical_one_comes_first_and_both_end(critical: str, other: str) -> None:
-    row = monitoring.pairs(SETTINGS, (critical, other, 1, 3))
+    row = fault_games.pairs(SETTINGS, (critical, other, 1, 3))
     assert row["came"] > 0
     assert row["came"] == row["diagnosed"] == row["first"] == row["ended"]
 
 
 @pytest.mark.slow
 def test_games_full_of_faults_come_to_an_end() -> None:
-    played = monitoring.crowd(SETTINGS, (4, 20, 0.004))
+    played = fault_games.crowd(SETTINGS, (4, 20, 0.004))
     assert sum(game["came"] for game in played) >= 60
     assert all(game["ended"] == "to its end" or "halted" in game["ended"] for game in played)

@@ -1,6 +1,6 @@
 """How well faults are detected: each kind with each behaviour, false alarms, and pairs of faults.
 
-Each function plays games and counts; `tests/bench/faults.py` runs many, the tests few.
+Each function plays games and counts; `faults.py` runs many, `tests/monitoring` a few.
 """
 
 from __future__ import annotations
@@ -27,8 +27,6 @@ from tangy_tui.text.comparison import TO_ITS_END
 
 REQUESTS = 20
 """The most behaviours until a person who never follows must have been diagnosed."""
-
-"""The effects of behaviours for which the robot drives."""
 
 TURNS = ("asked", "remedied", "teacher asked", "halted")
 """The recovery moves that count as treating a fault."""
