@@ -116,7 +116,7 @@ class Participants:
                 )
         if wanted in taken:
             raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))
-        from tangy_tui.speech.name_conflicts import check_new_name
+        from tangy_tui.language.name_conflicts import check_new_name
 
         check_new_name(self.activity, self.people, replace(person, name=name.strip()))
         old = self.name(person.id)
@@ -143,8 +143,8 @@ class Participants:
         Raises:
             TangyError: as for `pronounce`.
         """
+        from tangy_tui.language.name_conflicts import check_said
         from tangy_tui.language.pronunciation import check_name
-        from tangy_tui.speech.name_conflicts import check_said
 
         checked = check_name(phones, person.name)
         check_said(self.activity, self.people, person, checked)

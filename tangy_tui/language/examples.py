@@ -105,10 +105,11 @@ def _talk(activity: Activity) -> Iterator[str]:
         phrases = tuple(map(_without_asking, own_phrases(behaviour)))
         things = _things(behaviour, ARTICLES)
         for place, form in enumerate(talk["about"]):
-            if "{do}" in form:
+            if "{do" in form or "{did}" in form:
                 some = phrases[place % EVERY :: EVERY] or phrases[:1]
                 some += behaviour.wordings[place % WORDED :: WORDED]
-                yield from (form.replace("{do}", phrase) for phrase in some)
+                for phrase in some:
+                    yield _fill(form, do=phrase, doing=_doing(phrase), did=_did(phrase))
             elif "{thing}" in form:
                 yield from (form.replace("{thing}", thing) for thing in things)
             elif "{who}" in form:
@@ -156,6 +157,13 @@ def _doing(phrase: str) -> str:
     if verb.endswith("e") and not verb.endswith("ee"):
         verb = verb[:-1]
     return f"{verb}ing {rest}".strip()
+
+
+def _did(phrase: str) -> str:
+    """Return the past tense of a phrase: "told a joke"."""
+    verb, _, rest = phrase.partition(" ")
+    told = templates()["past"].get(verb, verb + ("d" if verb.endswith("e") else "ed"))
+    return f"{told} {rest}".strip()
 
 
 def _fill(form: str, **parts: str) -> str:

@@ -17,7 +17,7 @@ from tangy_profiles.activity import Activity
 from tangy_tui.language.examples import examples_of, templates
 from tangy_tui.language.intent_model import IntentModel, UnreadableModel, read_model
 
-VERSION = 3
+VERSION = 4
 """Incremented when examples, features or the fit change, to invalidate stored models."""
 SHIPPED = Path(__file__).parent / "learnt"
 MOST = 32

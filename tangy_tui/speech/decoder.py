@@ -75,7 +75,41 @@ def make_decoder(wanted: Wanted) -> Decoder:
     return PaperDecoder(wanted) if wanted.settings.mode == "paper" else TwoDecoders(wanted)
 
 
-class TwoDecoders:
+class _Streaming:
+    """Partial decoding of an utterance that arrives in chunks, by one of its searches."""
+
+    _search: Any
+    _said: Mapping[str, frozenset[str]]
+    """The phrases of each search."""
+    _open = False
+
+    def begin(self, expecting: Expecting) -> None:
+        """Begin an utterance that arrives in chunks."""
+        self._end()
+        self._open = bool(self._said[expecting])
+        if self._open:
+            self._search.activate_search(expecting)
+            self._search.start_utt()
+
+    def partial(self, pcm: bytes) -> str:
+        """Process the next chunk and return the words so far."""
+        if not self._open:
+            return ""
+        if pcm:
+            self._search.process_raw(pcm)
+        best = self._search.hyp()
+        return str(best.hypstr) if best is not None else ""
+
+    def close(self) -> None:
+        """End the child processes, if any."""
+
+    def _end(self) -> None:
+        if self._open:
+            self._search.end_utt()
+            self._open = False
+
+
+class TwoDecoders(_Streaming):
     """The usual mode: words by an open n-gram model, and a grammar with a garbage branch."""
 
     def __init__(self, wanted: Wanted) -> None:
@@ -91,18 +125,17 @@ class TwoDecoders:
         own = {w: known[w] for w in (*words_of(phrases), *words_of(answers))}
         open_words = {word: p for word, p in everyday.items() if word in known}
         share = weight / (1 + weight)
-        self._words = make_search(
+        self._search = make_search(
             dictionary({**{w: known[w] for w in open_words}, **own}), bestpath=True, active=1500
         )
         self._grammar = make_search(dictionary(own, phones=True), bestpath=False, active=1000)
         for name, said in (("commands", phrases), ("answers", answers)):
             if said:
-                add_model(self._words, name, open_model(said, open_words, share))
+                add_model(self._search, name, open_model(said, open_words, share))
                 self._grammar.add_jsgf_string(name, grammar(said, weight))
         self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
         few = dict(list(open_words.items())[:AMONG_STOPS])
         self._stops = StopDecoder(wanted.stops, wanted.no_stops, few, known, wanted.game)
-        self._open = False
         self._beside = ForkedWorker(self._by_words)
         self._beside_stops = ForkedWorker(self._stops.hear)
 
@@ -126,33 +159,16 @@ class TwoDecoders:
         return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop)
 
     def _by_words(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
-        words, score, _ = best_path(self._words, *asked)
+        words, score, _ = best_path(self._search, *asked)
         return words, score
-
-    def begin(self, expecting: Expecting) -> None:
-        """Begin an utterance that arrives in chunks."""
-        self._end()
-        self._open = bool(self._said[expecting])
-        if self._open:
-            self._words.activate_search(expecting)
-            self._words.start_utt()
-
-    def partial(self, pcm: bytes) -> str:
-        """Process the next chunk and return the words so far."""
-        return _so_far(self._words, pcm) if self._open else ""
 
     def close(self) -> None:
         """End the child processes."""
         self._beside.close()
         self._beside_stops.close()
 
-    def _end(self) -> None:
-        if self._open:
-            self._words.end_utt()
-            self._open = False
 
-
-class PaperDecoder:
+class PaperDecoder(_Streaming):
     """The paper's mode: the sequence of words by an n-gram model of the phrases alone."""
 
     def __init__(self, wanted: Wanted) -> None:
@@ -161,45 +177,24 @@ class PaperDecoder:
         )
         self.left_out, phrases = _heard(wanted.phrases, known)
         _, answers = _heard(wanted.answers, known)
-        self._decoder = make_search(dictionary(known), bestpath=True)
+        self._search = make_search(dictionary(known), bestpath=True)
         for name, said in (("commands", phrases), ("answers", answers)):
             if said:
-                add_model(self._decoder, name, phrase_model(said))
-        self._searches = {"commands": bool(phrases), "answers": bool(answers)}
-        self._open = False
+                add_model(self._search, name, phrase_model(said))
+        self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
 
     def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         """Decode a whole utterance."""
         self._end()
         seconds = len(pcm) / 2 / RATE
-        if seconds < SHORTEST or not self._searches[expecting]:
+        if seconds < SHORTEST or not self._said[expecting]:
             return AcousticEvidence(seconds=seconds)
-        text, score, words = best_path(self._decoder, pcm, expecting)
+        text, score, words = best_path(self._search, pcm, expecting)
         sure = (
             OFFSET + SCORE_WEIGHT * (score - SCORE_MIDDLE) + WORDS_WEIGHT * (words - WORDS_MIDDLE)
         )
         confidence = 1 / (1 + math.exp(-max(-50.0, min(50.0, sure)))) if text else 0.0
         return AcousticEvidence(text, "", 0.0, confidence, seconds)
-
-    def begin(self, expecting: Expecting) -> None:
-        """Begin an utterance that arrives in chunks."""
-        self._end()
-        self._open = self._searches[expecting]
-        if self._open:
-            self._decoder.activate_search(expecting)
-            self._decoder.start_utt()
-
-    def partial(self, pcm: bytes) -> str:
-        """Process the next chunk and return the words so far."""
-        return _so_far(self._decoder, pcm) if self._open else ""
-
-    def close(self) -> None:
-        """Do nothing: there are no child processes."""
-
-    def _end(self) -> None:
-        if self._open:
-            self._decoder.end_utt()
-            self._open = False
 
 
 def everyday_words(count: int) -> dict[str, float]:
@@ -250,10 +245,3 @@ def _heard(
     if phrases and not heard:
         raise Unspeakable("None of the phrases can be pronounced with the English dictionary.")
     return tuple(sorted(unknown)), heard
-
-
-def _so_far(decoder: Any, pcm: bytes) -> str:
-    if pcm:
-        decoder.process_raw(pcm)
-    best = decoder.hyp()
-    return str(best.hypstr) if best is not None else ""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from tangy_tui.language.lexicon import Lexicon
+
 HearingKind: TypeAlias = Literal[
     "getting ready",
     "still thinking",
@@ -41,3 +43,17 @@ class HearingNote:
     about: str = ""
     other: str = ""
     seconds: int = 0
+
+
+def not_heard(lexicon: Lexicon) -> tuple[HearingNote, ...]:
+    """Return a note for each word and phrase of a lexicon that cannot be recognised."""
+    words = (
+        HearingNote("name not heard", said.word, lexicon.whose[said.word])
+        if said.word in lexicon.whose
+        else HearingNote("word not heard", said.word)
+        for said in lexicon.unknown
+    )
+    phrases = (
+        HearingNote("phrase not heard", one.phrase.said, one.other.said) for one in lexicon.alike
+    )
+    return (*words, *phrases)

@@ -12,12 +12,12 @@ from tangy_hw.audio.meter import Meter, SoundTrouble
 from tangy_hw.audio.source import SpokenRecording
 from tangy_hw.audio.sources import open_source
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.lexicon import Lexicon
 from tangy_tui.language.steering import Steering
 from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, AcousticEvidence, EvidenceSettings
-from tangy_tui.speech.hearing_notes import HearingKind, HearingNote
-from tangy_tui.speech.lexicon import Lexicon
+from tangy_tui.speech.hearing_notes import HearingKind, HearingNote, not_heard
 from tangy_tui.speech.recogniser import Recogniser, SpeechUnavailable
 from tangy_tui.speech.recordings import Recorder
 from tangy_tui.speech.understanding import commanded, replied, sounds_of, understand, wanted
@@ -253,7 +253,7 @@ class SpeechInput:
         if self._closed:
             return
         await recogniser.start(wanted(phrasebook, self._settings, lexicon.heard()))
-        for note in (one for one in lexicon.notices() if one not in self._noticed):
+        for note in (one for one in not_heard(lexicon) if one not in self._noticed):
             self._noticed.add(note)
             self.tell(note)
 

@@ -12,9 +12,9 @@ from tangy_hw.audio.wav import HEADER, read_header, read_wav
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.language.commands import Command, Phrasebook
+from tangy_tui.language.lexicon import Lexicon
 from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, EvidenceSettings
-from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.recogniser import Recogniser
 from tangy_tui.speech.understanding import clearly_heard, understand, wanted
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, assert_never
 
 if TYPE_CHECKING:
-    from tangy_tui.speech.name_conflicts import NameConflict
-    from tangy_tui.speech.name_pronunciation import HowSaid
+    from tangy_tui.language.name_conflicts import NameConflict
+    from tangy_tui.language.name_pronunciation import HowSaid
 
 
 def renamed(person: str, name: str) -> str:

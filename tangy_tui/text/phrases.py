@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from tangy_tui.text.names import said_words
 
 if TYPE_CHECKING:
-    from tangy_tui.speech.lexicon import WordSource
-    from tangy_tui.speech.phrase_list import PhraseList
+    from tangy_tui.language.lexicon import WordSource
+    from tangy_tui.language.phrase_list import PhraseList
 
 LIST_TITLE = "What you can say or type"
 LIST_HELP = (

@@ -12,9 +12,9 @@ from rich.text import Text
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.reading import plain
+from tangy_tui.language.activity_check import CheckedFile
+from tangy_tui.language.phrase_list import PhraseList
 from tangy_tui.monitoring.rules import Rules, looks_at
-from tangy_tui.speech.activity_check import CheckedFile
-from tangy_tui.speech.phrase_list import PhraseList
 from tangy_tui.text.faults import recovery_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.phrases import items

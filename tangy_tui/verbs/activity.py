@@ -21,7 +21,7 @@ from tangy_tui.verbs.opening import open_workspace
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.robot import Robot
-    from tangy_tui.speech.activity_check import CheckedFile
+    from tangy_tui.language.activity_check import CheckedFile
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -189,8 +189,8 @@ def activity_phrases(
     as_json: Json = False,
 ) -> None:
     """Show what you can say, and how it is pronounced."""
+    from tangy_tui.language.phrase_list import list_phrases
     from tangy_tui.learning.own_phrases import forget_phrase, own_phrases, personal_activity
-    from tangy_tui.speech.phrase_list import list_phrases
 
     with open_workspace(data, activity, users, write=forget is not None) as workspace:
         whose = (workspace.store, workspace.activity.name, workspace.teacher)
@@ -224,8 +224,8 @@ def activity_hear(
     import asyncio
 
     from tangy_profiles.activity import load_activity
+    from tangy_tui.language.lexicon import phones_of
     from tangy_tui.speech.aloud import hear
-    from tangy_tui.speech.lexicon import phones_of
 
     phones = phones_of(text, load_activity(activity))
     if not as_json:
@@ -254,7 +254,7 @@ def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
     from tangy_profiles.declared.source import MistakesError
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
-    from tangy_tui.speech.activity_check import CheckedFile, check_activity
+    from tangy_tui.language.activity_check import CheckedFile, check_activity
     from tangy_tui.text.activities import without_words
     from tangy_tui.text.activity_search import dead_end_lines, finding_words, search_lines
 

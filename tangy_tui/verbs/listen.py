@@ -151,8 +151,8 @@ def _cut_off(file: Path) -> str:
 
 
 def _bench(folder: Path, phrasebook: Phrasebook, settings: EvidenceSettings, as_json: bool) -> None:
+    from tangy_tui.language.lexicon import Lexicon
     from tangy_tui.speech.labels import Labels
-    from tangy_tui.speech.lexicon import Lexicon
     from tangy_tui.speech.practice import Practice, practise
     from tangy_tui.speech.recogniser import Recogniser
     from tangy_tui.text.practice import practice_lines

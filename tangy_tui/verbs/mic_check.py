@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from tangy_hw.audio.source import Source
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.language.lexicon import Lexicon
     from tangy_tui.speech.calibration import CalibrationPrompt
-    from tangy_tui.speech.lexicon import Lexicon
     from tangy_tui.speech.microphone_check import CheckNews, CheckResult
 
 ALONE = 3.0  # s without sound, after which an unattended check is given up
@@ -98,7 +98,7 @@ def _list(workspace: Workspace, as_json: bool) -> None:
 
 def _asked(workspace: Workspace) -> tuple[Phrasebook, Lexicon, list[CalibrationPrompt]]:
     """Return the phrasebook, its lexicon, and the sentences to say."""
-    from tangy_tui.speech.lexicon import Lexicon
+    from tangy_tui.language.lexicon import Lexicon
     from tangy_tui.speech.microphone_check import to_say
 
     phrasebook = workspace.phrasebook()

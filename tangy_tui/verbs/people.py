@@ -274,8 +274,8 @@ def people_rename(
     as_json: Json = False,
 ) -> None:
     """Rename a person; Tangy keeps what it has learnt."""
-    from tangy_tui.speech.name_conflicts import find_clash
-    from tangy_tui.speech.name_pronunciation import how_said
+    from tangy_tui.language.name_conflicts import find_clash
+    from tangy_tui.language.name_pronunciation import how_said
 
     with open_workspace(data, DEFAULT_ACTIVITY, users) as workspace:
         found = workspace.find_person(person)

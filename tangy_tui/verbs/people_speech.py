@@ -44,8 +44,8 @@ def people_pronounce(
 
     Tangy then recognises it when you say it.
     """
-    from tangy_tui.speech.name_conflicts import find_clash
-    from tangy_tui.speech.name_pronunciation import accept_suggested, how_said
+    from tangy_tui.language.name_conflicts import find_clash
+    from tangy_tui.language.name_pronunciation import accept_suggested, how_said
 
     changes = phones is not None or accept or forget
     if (phones is not None) + accept + forget > 1:

@@ -1,17 +1,21 @@
 """What is understood of ways to ask that no phrasebook has, typed and as if they had been heard.
 
 Run by hand: `python -m tests.bench.paraphrases`. The sentences of `sentences.py` at even places set
-the limits of `paraphrases` and `understanding`, the others are quoted; `--staff` counts the set of
-`staff_requests.toml`, which chose nothing, and `--seen` that of `staff_sayings.toml`, which showed
-which wordings were missing. `--phrases` counts phrases and keywords alone, and
-`--show` lists what went wrong (of the sentences that set limits only).
+the limits of `paraphrases` and `understanding`, the others are quoted; `--set` counts another one:
+that of `requests_second.toml` chose nothing, those of `staff_sayings.toml` and
+`staff_requests.toml` became wordings of Bingo. `--noise` lets voices say the sentences, each one of
+them, clean or with white noise so many dB below, and decodes them. `--phrases` counts phrases and
+keywords alone, and `--show` lists what went wrong (of the sentences that set limits only).
 """
 
 from __future__ import annotations
 
 import argparse
+import os
+import tempfile
 import tomllib
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,12 +26,17 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.intents import Intents
 from tangy_tui.language.paraphrases import SURE
 from tangy_tui.learning.verification import Say, StopCommand
-from tangy_tui.speech.evidence import USUAL
-from tangy_tui.speech.understanding import clearly_heard, understand
+from tangy_tui.speech.decoder import make_decoder
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence
+from tangy_tui.speech.understanding import clearly_heard, understand, wanted
 from tests.bench.sentences import FAR, NEAR, WORDINGS
+from tests.bench.spoken_stops import VOICES, Said, Voices
 
-STAFF = Path(__file__).parent / "staff_requests.toml"
-SEEN = Path(__file__).parent / "staff_sayings.toml"
+SETS = {
+    "second": "requests_second.toml",
+    "staff": "staff_requests.toml",
+    "sayings": "staff_sayings.toml",
+}
 OUTCOMES = ("right", "offered", "wrong", "misled", "nothing")
 
 
@@ -66,7 +75,12 @@ def staff_sentences(file: Path) -> list[Sentence]:
 
 def spoken(sentence: Sentence, book: Phrasebook) -> str:
     """Judge what the spoken door makes of a sentence that was heard clearly."""
-    said = understand(clearly_heard(sentence.text), book, USUAL)
+    return understood(sentence, clearly_heard(sentence.text), book)
+
+
+def understood(sentence: Sentence, evidence: AcousticEvidence, book: Phrasebook) -> str:
+    """Judge what the spoken door makes of a sentence as it was heard."""
+    said = understand(evidence, book, USUAL)
     if isinstance(said, StopCommand):
         return "wrong"
     commands = said.commands or ()
@@ -99,33 +113,70 @@ def _judged(meant: list[bool], *, sure: bool) -> str:
 
 def table(sentences: list[Sentence], book: Phrasebook, *, show: bool = False) -> None:
     """Print how many of each kind are right, offered, wrong and so on."""
-    for door in (spoken, typed):
-        counts: dict[str, Counter[str]] = {}
-        for one in sentences:
-            outcome = door(one, book)
-            counts.setdefault(one.kind, Counter())[outcome] += 1
-            if show and outcome != ("right" if one.behaviour else "nothing"):
-                said = understand(clearly_heard(one.text), book, USUAL)
-                meant = [c.behaviour for c in said.commands or ()] if isinstance(said, Say) else []
-                print(f"  {door.__name__} {outcome}: {one.text} ({one.behaviour}): {meant}")
-        for kind, count in counts.items():
-            told = "  ".join(f"{name} {count[name]:3}" for name in OUTCOMES)
-            print(f"{door.__name__:8}{kind:12} n {count.total():3}  {told}")
+    print_outcomes(sentences, book, spoken, show=show)
+    print_outcomes(sentences, book, typed, show=show)
+
+
+def print_outcomes(
+    sentences: list[Sentence],
+    book: Phrasebook,
+    door: Callable[[Sentence, Phrasebook], str],
+    *,
+    show: bool = False,
+) -> None:
+    """Print how many sentences of each kind have each outcome at a door."""
+    counts: dict[str, Counter[str]] = {}
+    for one in sentences:
+        outcome = door(one, book)
+        counts.setdefault(one.kind, Counter())[outcome] += 1
+        if show and outcome != ("right" if one.behaviour else "nothing"):
+            said = understand(clearly_heard(one.text), book, USUAL)
+            meant = [c.behaviour for c in said.commands or ()] if isinstance(said, Say) else []
+            print(f"  {door.__name__} {outcome}: {one.text} ({one.behaviour}): {meant}")
+    for kind, count in counts.items():
+        told = "  ".join(f"{name} {count[name]:3}" for name in OUTCOMES)
+        print(f"{door.__name__:8}{kind:12} n {count.total():3}  {told}")
+
+
+def by_sound(sentences: list[Sentence], book: Phrasebook, noise: str) -> None:
+    """Let voices say the sentences, decode them, and print how many are right and so on."""
+    decoder = make_decoder(wanted(book, USUAL))
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
+    said = {
+        one: Said("", one.text, VOICES[place % len(VOICES)]) for place, one in enumerate(sentences)
+    }
+
+    with tempfile.TemporaryDirectory() as folder:
+        voices = Voices(Path(folder))
+        voices.say(list(said.values()))
+
+        def heard(one: Sentence, book: Phrasebook) -> str:
+            pcm = voices.heard(said[one], noise, ())
+            return understood(one, decoder.decode(pcm, "commands"), book)
+
+        for family in (True, False):
+            some = [one for one in sentences if ("-" in said[one].voice) == family]
+            print("espeak" if family else "flite, festival", noise)
+            print_outcomes(some, book, heard)
+    decoder.close()
 
 
 def main() -> None:
     """Print the tables."""
     options = argparse.ArgumentParser(description="Measure what is understood of paraphrases.")
-    options.add_argument("--staff", action="store_true")
-    options.add_argument("--seen", action="store_true")
+    options.add_argument("--set", choices=SETS)
+    options.add_argument("--noise", help="clean, or dB")
     options.add_argument("--phrases", action="store_true")
     options.add_argument("--show", action="store_true")
     chosen = options.parse_args()
     learnt = None if chosen.phrases else Intents().model
     book = Phrasebook(load_activity("bingo"), load_room().placed(load_people(4)), learnt)
-    if chosen.staff or chosen.seen:
-        file = STAFF if chosen.staff else SEEN
-        table(staff_sentences(file), book, show=chosen.show and chosen.seen)
+    if chosen.set:
+        sentences = staff_sentences(Path(__file__).parent / SETS[chosen.set])
+        if chosen.noise:
+            by_sound(sentences, book, chosen.noise)
+        else:
+            table(sentences, book, show=chosen.show and chosen.set != "second")
         return
     for name, half in (("set the limits", 0), ("quoted", 1)):
         print(name)

@@ -19,6 +19,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.lexicon import Lexicon
 from tangy_tui.speech import microphone_check
 from tangy_tui.speech.calibration import (
     SHIFTS,
@@ -36,7 +37,6 @@ from tangy_tui.speech.calibration import (
 )
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings, Expecting, Wanted
 from tangy_tui.speech.labels import UtteranceLabel
-from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.microphone_check import (
     CheckNews,
     CheckResult,

@@ -12,8 +12,8 @@ from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.room import Room, load_room
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.phrase_list import list_phrases
 from tangy_tui.language.words import clean, words_of
-from tangy_tui.speech.phrase_list import list_phrases
 from tangy_tui.text.phrases import items
 
 BINGO = load_activity("bingo")

@@ -17,6 +17,8 @@ from tangy_profiles.phones import PHONES, read_name_phones, read_phones
 from tangy_tui.language import espeak_phones, spelling
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.espeak_phones import FROM_IPA, TO_ESPEAK, from_ipa
+from tangy_tui.language.lexicon import Lexicon, phones_of
+from tangy_tui.language.name_pronunciation import how_said
 from tangy_tui.language.pronunciation import (
     check_name,
     pronounce,
@@ -25,9 +27,7 @@ from tangy_tui.language.pronunciation import (
     to_espeak,
     unknown_words,
 )
-from tangy_tui.speech.hearing_notes import HearingNote
-from tangy_tui.speech.lexicon import Lexicon, phones_of
-from tangy_tui.speech.name_pronunciation import how_said
+from tangy_tui.speech.hearing_notes import HearingNote, not_heard
 
 phones = st.lists(st.sampled_from(sorted(PHONES)), min_size=1, max_size=12)
 
@@ -209,7 +209,7 @@ class TestInThePhrasebook:
         assert lexicon.words["xanthippus"].source == source
         assert lexicon.words["xanthippus"].heard is heard
         out = lexicon.left_out()
-        (notice,) = lexicon.notices()
+        (notice,) = not_heard(lexicon)
         assert notice == HearingNote("name not heard", "xanthippus", "user1")
         assert "go to xanthippus" in out
         assert "go to xanthippus" not in lexicon.heard()
@@ -227,6 +227,6 @@ class TestInThePhrasebook:
         lexicon = Lexicon(Phrasebook(activity, people))
         assert "go to catherine" in lexicon.heard()
         assert lexicon.left_out()["go to katherine"] == "sounds like 'go to catherine'"
-        assert len(lexicon.notices()) == len(lexicon.alike)
-        assert {note.kind for note in lexicon.notices()} == {"phrase not heard"}
-        assert all(note.about.endswith("katherine") for note in lexicon.notices())
+        assert len(not_heard(lexicon)) == len(lexicon.alike)
+        assert {note.kind for note in not_heard(lexicon)} == {"phrase not heard"}
+        assert all(note.about.endswith("katherine") for note in not_heard(lexicon))

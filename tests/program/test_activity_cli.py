@@ -16,10 +16,10 @@ from tangy_profiles.person import load_people
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_sim.worlds.injection import KINDS
+from tangy_tui.language.activity_check import CheckedFile, check_activity
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.lexicon import Lexicon
 from tangy_tui.monitoring.rules import check_rules
-from tangy_tui.speech.activity_check import CheckedFile, check_activity
-from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.text.rules import together_words
 
 Tangy = Callable[..., CompletedProcess[str]]

@@ -16,8 +16,8 @@ from textual.widgets import Input, Static
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_tui.app.keymap import is_letter
+from tangy_tui.language.name_pronunciation import how_said
 from tangy_tui.language.pronunciation import check_name
-from tangy_tui.speech.name_pronunciation import how_said
 from tangy_tui.text.names import said_words
 from tangy_tui.text.voice import SOUNDS_HELP, said_title
 from tangy_tui.ui.base import Dialog

@@ -9,8 +9,8 @@ from typing import Any
 from tangy_profiles.activity import Activity
 from tangy_profiles.person import Person
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.speech.lexicon import Lexicon, Said
-from tangy_tui.speech.name_pronunciation import HowSaid, how_said
+from tangy_tui.language.lexicon import Lexicon, Said
+from tangy_tui.language.name_pronunciation import HowSaid, how_said
 
 
 @dataclass(frozen=True, slots=True)

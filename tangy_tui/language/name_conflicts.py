@@ -12,12 +12,12 @@ from tangy_profiles.person import Person
 from tangy_profiles.reading import plain
 from tangy_tui.language.answers import PLAIN
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.lexicon import MOST_WAYS, Lexicon
+from tangy_tui.language.name_pronunciation import how_said
 from tangy_tui.language.phrasebook import name_phones
 from tangy_tui.language.pronunciation import pronounce
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.language.words import Words, bare, clean, spoken, words_of
-from tangy_tui.speech.lexicon import MOST_WAYS, Lexicon
-from tangy_tui.speech.name_pronunciation import how_said
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,6 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.phrasebook import Phrase
 from tangy_tui.language.pronunciation import pronounce, suggest
 from tangy_tui.language.words import Words, clean, spoken, words_of
-from tangy_tui.speech.hearing_notes import HearingNote
 
 MOST_WAYS = 64  # pronunciations of one phrase; the first ones of most words come first
 
@@ -62,6 +61,8 @@ class Lexicon:
     """Phrases that sound like earlier ones and are not recognised; the earlier ones are."""
     phrases: tuple[Phrase, ...]
     """The phrases to recognise, if possible."""
+    whose: Mapping[str, str]
+    """The person of each word of a name."""
 
     def __init__(
         self,
@@ -74,6 +75,7 @@ class Lexicon:
         self.phrases = tuple(p for p in phrasebook.table.all() if p.heard)
         self._pronounce, self._suggest = pronounce, suggest
         self._table = phrasebook.table
+        self.whose = {word: id for words, id in self._table.names.items() for word in words}
         spoken = (word for p in phrasebook.table.all() for word in p.said.split())
         self.words = {word: self._look_up(word) for word in dict.fromkeys(spoken)}
         self.alike = tuple(self._find_alike())
@@ -118,20 +120,6 @@ class Lexicon:
             if lacks:
                 reasons[phrase.said] = f"no pronunciation of {', '.join(map(repr, lacks))}"
         return reasons
-
-    def notices(self) -> tuple[HearingNote, ...]:
-        """Return a note for each word and phrase that cannot be recognised."""
-        whose = {word: id for words, id in self._table.names.items() for word in words}
-        notes = [
-            HearingNote("name not heard", said.word, whose[said.word])
-            if said.word in whose
-            else HearingNote("word not heard", said.word)
-            for said in self.unknown
-        ]
-        notes += [
-            HearingNote("phrase not heard", one.phrase.said, one.other.said) for one in self.alike
-        ]
-        return tuple(notes)
 
     def _look_up(self, word: str) -> Said:
         if word in self._table.pronunciations:

@@ -15,11 +15,11 @@ from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
 from tangy_tui.language.answers import PLAIN
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.lexicon import Alike, Lexicon, distinct_word
 from tangy_tui.language.phrasebook import Phrase
 from tangy_tui.language.pronunciation import can_look_up
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.language.words import words_of
-from tangy_tui.speech.lexicon import Alike, Lexicon, distinct_word
 
 
 @dataclass(frozen=True, slots=True)
