@@ -23,7 +23,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -147,7 +147,7 @@ def main() -> None:
     options.add_argument("--show", action="store_true", help="list what went wrong")
     chosen = options.parse_args()
     if chosen.set in QUOTED:
-        read = tomllib.loads((HERE / QUOTED[chosen.set]).read_text("utf-8"))
+        read: Mapping[str, Any] = tomllib.loads((HERE / QUOTED[chosen.set]).read_text("utf-8"))
     else:
         read = stop_sets()[chosen.set]
         use_model(train(stop_examples(chosen.set)))
