@@ -80,12 +80,9 @@ def throats(variants: list[str]) -> str:
     return f"\nAdd one of these to change a voice, as in en-gb+f3: {', '.join(variants)}."
 
 
-def options_after(group: str, command: str) -> str:
-    """Tell that options stand before a command of a group instead of after it."""
-    return (
-        f"Options go after the command: write `tangy {group} {command}` first, "
-        "then --data and the others."
-    )
+def no_option(command: str, option: str) -> str:
+    """Tell that a command does not have an option that was given before it."""
+    return f"`{command}` has no option {option}: `{command} --help` lists its options."
 
 
 def no_command(name: str, known: Iterable[str]) -> str:

@@ -13,9 +13,17 @@ from tangy_profiles.asking_limits import GAME, VISIT
 from tangy_profiles.defaults import DEFAULT_ACTIVITY, TO_BEGIN_WITH
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.command_line import options_after
 from tangy_tui.text.remarks import no_own_phrase
-from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, Users, print_json
+from tangy_tui.verbs.common import (
+    REGISTERED,
+    ActivityName,
+    Data,
+    Json,
+    Seed,
+    Users,
+    hand_on_options,
+    print_json,
+)
 from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
@@ -36,9 +44,8 @@ def activities(context: typer.Context, as_json: Json = False) -> None:
     """List the activities, where no verb is given."""
     if context.invoked_subcommand is None:
         activity_list(as_json)
-    elif as_json:
-        verb = context.invoked_subcommand
-        raise TangyError(options_after("activity", verb))
+    else:
+        hand_on_options(context)
 
 
 @app.command("list")

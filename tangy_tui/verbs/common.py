@@ -13,6 +13,8 @@ from typing import Annotated, Any
 import typer
 
 from tangy_profiles.defaults import REGISTERED as REGISTERED
+from tangy_profiles.errors import TangyError
+from tangy_tui.text.command_line import no_option
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, nothing else.")]
 Seed = Annotated[int | None, typer.Option(help="Repeat the same simulated games.")]
@@ -35,6 +37,27 @@ RoomName = Annotated[
 ]
 Ascii = Annotated[bool, typer.Option("--ascii", help="Draw with plain ASCII characters only.")]
 Games = Annotated[int, typer.Option(min=1, help="How many games.")]
+
+
+def hand_on_options(context: typer.Context) -> None:
+    """Make the options that stand before a verb of a group the defaults of that verb.
+
+    Raises:
+        TangyError: the verb does not have one of these options.
+    """
+    group: Any = context.command
+    verb = str(context.invoked_subcommand)
+    known = {option.name for option in group.get_command(context, verb).params}
+    given: dict[str, Any] = {}
+    for option in group.params:
+        source = context.get_parameter_source(option.name)
+        if source is None or source.name != "COMMANDLINE":
+            continue
+        if option.name not in known:
+            raise TangyError(no_option(f"{context.command_path} {verb}", option.opts[0]))
+        given[option.name] = context.params[option.name]
+    defaults = context.default_map or {}
+    context.default_map = {verb: {**defaults.get(verb, {}), **given}}
 
 
 def as_given(data: Path | None, users: int = REGISTERED) -> str:

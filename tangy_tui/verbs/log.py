@@ -11,8 +11,8 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.command_line import counts_as, options_after
-from tangy_tui.verbs.common import Data, Json, print_json, print_line
+from tangy_tui.text.command_line import counts_as
+from tangy_tui.verbs.common import Data, Json, hand_on_options, print_json, print_line
 from tangy_tui.verbs.opening import say_aside, say_notices
 
 if TYPE_CHECKING:
@@ -44,9 +44,8 @@ def log(context: typer.Context, data: Data = None, as_json: Json = False) -> Non
     """List the games, where no verb is given."""
     if context.invoked_subcommand is None:
         log_list(data, as_json)
-    elif (data, as_json) != (None, False):
-        verb = context.invoked_subcommand
-        raise TangyError(options_after("log", verb))
+    else:
+        hand_on_options(context)
 
 
 @app.command("list")

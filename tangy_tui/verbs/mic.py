@@ -13,10 +13,9 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.command_line import options_after
 from tangy_tui.text.mic_check import LOUD_ENOUGH
 from tangy_tui.text.microphone import trouble_words
-from tangy_tui.verbs.common import Data, as_given
+from tangy_tui.verbs.common import Data, as_given, hand_on_options
 
 if TYPE_CHECKING:
     from tangy_hw.audio.forwarding import Forwarder
@@ -61,9 +60,8 @@ def mic(
     """Hand standard input on, where no verb is given."""
     if context.invoked_subcommand is None:
         forward(data, socket)
-    elif (data, socket) != (None, None):
-        verb = context.invoked_subcommand
-        raise TangyError(options_after("mic", verb))
+    else:
+        hand_on_options(context)
 
 
 def forward(data: Path | None, socket: Path | None) -> None:

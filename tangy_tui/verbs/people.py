@@ -13,7 +13,6 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GameWorld, read_game_world
 from tangy_profiles.reading import nearest, plain
-from tangy_tui.text.command_line import options_after
 from tangy_tui.text.names import (
     conflict_words,
     known_now,
@@ -29,6 +28,7 @@ from tangy_tui.verbs.common import (
     Seed,
     Users,
     as_given,
+    hand_on_options,
     print_json,
 )
 from tangy_tui.verbs.opening import open_workspace
@@ -68,9 +68,8 @@ def people(
     """List the people, where no verb is given."""
     if context.invoked_subcommand is None:
         people_list(activity, seed, data, users, as_json=as_json)
-    elif (activity, seed, data, users, as_json) != ("", None, None, REGISTERED, False):
-        verb = context.invoked_subcommand
-        raise TangyError(options_after("people", verb))
+    else:
+        hand_on_options(context)
 
 
 @app.command("list")

@@ -12,7 +12,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import report_in
-from tangy_tui.verbs.common import Data, Json, print_json, print_line
+from tangy_tui.verbs.common import Data, Json, hand_on_options, print_json, print_line
 from tangy_tui.verbs.log import Of, known_activities_of, open_log
 
 if TYPE_CHECKING:
@@ -53,6 +53,8 @@ def report(context: typer.Context, data: Data = None, as_json: Json = False) -> 
     """Report on the last session, without a verb."""
     if context.invoked_subcommand is None:
         report_session(data=data, as_json=as_json)
+    else:
+        hand_on_options(context)
 
 
 @app.command("session")

@@ -125,6 +125,24 @@ def test_nothing_is_written_by_looking(tangy: Tangy, tmp_path: Path) -> None:
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.parametrize(
+    "words", [("--data", "DATA", "people", "list"), ("people", "--data", "DATA", "list")]
+)
+def test_options_before_a_verb_are_the_verbs(
+    tangy: Tangy, data: Path, words: tuple[str, ...]
+) -> None:
+    after = tangy("people", "list", "--data", data)
+    before = tangy(*(data if word == "DATA" else word for word in words))
+    assert before.stdout == after.stdout and "Rosa" in after.stdout
+
+
+def test_an_option_after_a_verb_counts_more_than_one_before_it(
+    tangy: Tangy, data: Path, tmp_path: Path
+) -> None:
+    after = tangy("people", "--data", tmp_path / "none", "list", "--data", data)
+    assert "Rosa" in after.stdout
+
+
 # --------------------------------------------------------------------------- what is changed
 
 
@@ -228,7 +246,7 @@ def test_what_is_not_said_of_a_method_stays_as_it_is(people: Tangy) -> None:
     [
         (("show", "Rosie"), "There is nobody called 'Rosie': user1 is Rosa, user2 is User 2, "),
         (("show", "User 1"), "There is nobody called 'User 1': user1 is Rosa, user2 is User 2, "),
-        (("--users", 3, "list"), "write `tangy people list` first"),
+        (("--users", 3, "archive", "Rosa"), "`tangy people archive` has no option --users"),
         (("switch", "Rosa", "prays", "off"), "no strategy 'prays': did you mean 'praise'?"),
         (("switch", "Rosa", "praise", "of"), "There is no state 'of': did you mean 'off'?"),
         (("switch", "Rosa", "praise", "on"), "praise is switched on already."),
