@@ -25,7 +25,7 @@ from tangy_tui.text import session_page as say
 from tangy_tui.text.activities import stage_words
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.report import WORLD_WORDS, care_lines
+from tangy_tui.text.report import WORLD_WORDS, care_lines, quiet_words
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
@@ -255,7 +255,7 @@ def _people(session: Session) -> Iterator[str]:
     yield "</div>"
     quiet = [person.name for person in session.people if not person.interactions]
     if quiet:
-        yield paragraph(say.quiet_words(quiet))
+        yield paragraph(quiet_words(quiet))
     yield table(COLUMNS, _people_rows(asked))
 
 

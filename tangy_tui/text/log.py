@@ -17,7 +17,7 @@ from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.player_facts import HEADING, player_lines
-from tangy_tui.text.report import attention_lines, care_lines, changes_lines
+from tangy_tui.text.report import attention_lines, care_lines, changes_lines, quiet_words
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.staff_actions import action_line
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
@@ -154,8 +154,9 @@ def session_lines(session: Session) -> Iterator[str]:
                 f"{row['success']:.0%} of {row['instances']} recovered by that"
             )
     yield ""
-    for person in session.people:
-        yield _person_line(person)
+    yield from (_person_line(person) for person in session.people if person.interactions)
+    if quiet := [person.name for person in session.people if not person.interactions]:
+        yield quiet_words(quiet)
     yield from limits_lines(session.games)
     if session.look_after:
         yield ""
@@ -217,8 +218,6 @@ def _sums(games: Sequence[Game]) -> str:
 
 
 def _person_line(person: Progress) -> str:
-    if not person.interactions:
-        return f"{person.name}: was not asked for anything"
     parts = []
     for strategy, one in person.strategies.items():
         if one.used:

@@ -120,6 +120,11 @@ def care_lines(found: Iterable[Attention], name: Name, *, visits: bool = True) -
     return lines
 
 
+def quiet_words(names: Sequence[str]) -> str:
+    """Name the people who were not asked for anything."""
+    return f"Not asked for anything: {', '.join(names)}."
+
+
 def attention_lines(found: Iterable[Attention], name: Name) -> list[str]:
     """Tell who won, and how long those who asked for help waited and had Tangy with them."""
     people = list(found)

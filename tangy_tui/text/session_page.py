@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tangy_tui.text.faults import RECOVERY_WORDS
@@ -48,11 +47,6 @@ def game_caption(number: int, *, timed: bool) -> str:
 def person_words(person: Progress) -> str:
     """Tell how often a person was asked, and their responses."""
     return f"Asked {counted(person.interactions, 'time')}: {person.in_words}."
-
-
-def quiet_words(names: Sequence[str]) -> str:
-    """Name the people who were not asked for anything."""
-    return f"Not asked for anything: {', '.join(names)}."
 
 
 def fault_facts(fault: Fault, game: int | None) -> str:
