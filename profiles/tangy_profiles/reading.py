@@ -38,10 +38,12 @@ def nearest(word: str, words: Iterable[str], given: Container[str] = ()) -> str:
     """
     known = sorted(words)
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.5)
-    if close:  # among equals, prefer words not given yet, then transposed letters
+    if close:  # prefer words not given yet, then transposed letters, which difflib rates low
         ratios = [difflib.SequenceMatcher(None, one, word).ratio() for one in close]
         equal = [one for one, ratio in zip(close, ratios, strict=True) if ratio == ratios[0]]
-        ranks = [(one not in given, sorted(one) == sorted(word)) for one in equal]
+        letters = sorted(word)
+        equal += [one for one in known if sorted(one) == letters and one not in equal]
+        ranks = [(one not in given, sorted(one) == letters) for one in equal]
         meant = [one for one, rank in zip(equal, ranks, strict=True) if rank == max(ranks)]
         return f"did you mean {' or '.join(map(repr, sorted(meant)))}?"
     if not known:

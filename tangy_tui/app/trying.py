@@ -50,7 +50,8 @@ def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]
     for number in range(1, MOST_STEPS + 1):
         state = world.observe()
         expected = activity.expected.get(state.situation)
-        situation = activity.in_words(state.situation)
+        about = names.get(state.attended or "", "")
+        situation = activity.told_of(state.situation, about)
         if expected is None:
             raise TangyError(f"{activity.source}: nothing is expected here: {situation}.")
         behaviour = activity.behaviours[expected]

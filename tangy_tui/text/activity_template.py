@@ -18,6 +18,9 @@ HINT = "It is not {}."
 """The hint for a question without one; it names a wrong option."""
 
 
+ARTICLES = ("a", "an", "the", "one", "some")
+
+
 @dataclass(frozen=True, slots=True)
 class NewActivity:
     """The author's answers: the title, what a round brings, whether people take turns."""
@@ -33,6 +36,12 @@ class NewActivity:
         return "-".join(kept.split())
 
 
+def without_article(item: str) -> str:
+    """Return a noun without its article: "poem" for "a poem"."""
+    first, _, rest = item.partition(" ")
+    return rest if rest and first.lower() in ARTICLES else item
+
+
 def items_table(new: NewActivity) -> str:
     """Return the CSV file of the items, with two sample rows to replace."""
     return f"text,more\nThe first {new.item},Something to add to it\nThe second {new.item},More\n"
@@ -42,7 +51,6 @@ def activity_file(new: NewActivity) -> str:
     """Return the activity's file, which can be played as it is and tells what to change."""
     item = bool(new.item)
     whose = 'to = "whose turn"\n' if new.turns else ""
-    name = "{name}, " if new.turns else ""
     about = ', about = "whose turn"' if new.turns else ""
     turn = ', "next turn"' if new.turns else ""
     per = 'per = "player", ' if new.turns else ""
@@ -51,19 +59,21 @@ def activity_file(new: NewActivity) -> str:
     seen = 'sees = ["clock", "helped"]'
     silent = "no answer from {name} yet" if new.turns else "no answer yet"
     over = '["items is over"]' if item else '["round >= 3"]'
-    count = "" if item else 'round = { kind = "count" }          # how often something was put\n'
+    count = "" if item else 'round = { kind = "count" }          # the rounds so far\n'
     nxt = '"next item"' if item else '"add round"'
     said = "{text}" if item else "What comes to your mind today?"
+    if new.turns:
+        said = "{name}: {text}" if item else "{name}, what comes to your mind today?"
     more = "{more}" if item else "Take a moment, and think of something nice."
     table = f'items = {{ file = "{new.name}.csv" }}  # one row a round\n'
     return f"""# {new.title}. Try it with: tangy activity try {new.name}.toml
 name = "{new.name}"
 title = "{new.title}"
 summary = "1 to 12 people, 15 minutes; you need nothing else"  # read where activities are chosen
-{table if item else ""}flags = ["opened", "waiting", "helped"]  # what is so or not, at first not
+{table if item else ""}flags = ["opened", "waiting", "helped"]  # each is yes or no: no at first
 
-# The first stage whose conditions hold is the present one. `sees` names the facts that Tangy
-# goes by there: it learns one answer for each of their values. People read `words`.
+# The current stage is the first one whose conditions hold. `sees` names the facts that Tangy
+# decides by: it learns one answer for each of their values. People read `words`.
 stages = [
   {{ name = "start", words = "nobody has been welcomed yet", when = ["opened is no"] }},
   {{ name = "reply", words = "{told}", when = ["waiting is yes", "answer is given"]{about} }},
@@ -72,8 +82,8 @@ stages = [
   {{ name = "next", words = "no round is under way" }},
 ]
 
-# What a good host does, for `tangy activity try` and the scripted teacher; Tangy never learns
-# from it, it learns from what you show.
+# What a good host does, for `tangy activity try` and the scripted teacher. Tangy never learns
+# from this: it learns from what you show.
 expected = [
   ["start", "open the round"],
   ["reply", "thank people"],
@@ -96,7 +106,7 @@ does = ["set opened yes"]
 says = ["Welcome to {new.title}!"]
 [behaviours."begin the next"]
 {whose}does = [{nxt}, "set waiting yes", "set helped no", "clear answer", "start clock"]
-says = ["{name}{said}"]
+says = ["{said}"]
 [behaviours."give time"]
 says = ["Take your time.", "No hurry."]
 [behaviours."help on"]

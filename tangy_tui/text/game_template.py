@@ -25,10 +25,10 @@ def game_file(name: str, title: str) -> str:
 name = "{name}"
 title = "{title}"
 summary = "1 to 12 people, 15 minutes; say here what you need"  # read where activities are chosen
-flags = ["opened", "moving", "helped", "told"]  # what is so or not, at first not
+flags = ["opened", "moving", "helped", "told"]  # each is yes or no: no at first
 
-# The first stage whose conditions hold is the present one. `sees` names the facts that Tangy
-# goes by there: it learns one answer for each of their values. People read `words`.
+# The current stage is the first one whose conditions hold. `sees` names the facts that Tangy
+# decides by: it learns one answer for each of their values. People read `words`.
 stages = [
   {{ name = "start", words = "nobody has been welcomed yet", when = ["opened is no"] }},
   {{ name = "moved", words = "{{name}} made a move", when = {MOVED}, {WHOSE}, sees = ["move"] }},
@@ -38,8 +38,8 @@ stages = [
 ]
 words = {{ move = ["no move", "it won a point", "it won nothing"], told = {TOLD} }}
 
-# What a good host does, for `tangy activity try` and the scripted teacher; Tangy never learns
-# from it, it learns from what you show.
+# What a good host does, for `tangy activity try` and the scripted teacher. Tangy never learns
+# from this: it learns from what you show.
 expected = [
   ["start", "open the game"],
   ["moved", "move is hit", "applaud"],

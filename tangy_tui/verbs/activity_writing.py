@@ -56,7 +56,7 @@ def activity_new(
     item = _asked(template.ASK_ITEMS)
     while item and _yes_or_no(item):
         item = _asked(template.ASK_WHICH_ITEM)
-    item = "" if _yes_or_no(item) is False else item
+    item = "" if _yes_or_no(item) is False else template.without_article(item)
     turns = _asked_yes(template.ASK_TURNS)
     new = template.NewActivity(title, item, turns)
     if turns and not item and _asked_yes(ASK_POINTS):

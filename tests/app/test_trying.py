@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tangy_profiles.declared.activity import read_declared
+from tangy_profiles.person import load_people
 from tangy_tui.app.trying import tried_game
 from tangy_tui.text.activities import SAYS_NOTHING, activity_lines, people_did, tried_lines
 from tests.support.changed import changed_trivia
@@ -20,6 +21,13 @@ def test_everything_that_a_person_did_after_a_step_is_told() -> None:
         for did in step.doing.values()
     ]
     assert any(", " in did for did in told)
+
+
+def test_the_person_of_each_step_has_a_name() -> None:
+    names = {one.name for one in load_people(3)}
+    steps = [step for step in tried_game(declared("trivia"), 3, 1) if "an answer" in step.situation]
+    assert steps
+    assert all(any(name in step.situation for name in names) for step in steps)
 
 
 def test_who_says_nothing_and_is_asked_again_is_told(tmp_path: Path) -> None:

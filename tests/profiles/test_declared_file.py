@@ -90,6 +90,40 @@ def test_what_cannot_be_is_refused_by_name(folder: Path, old: str, new: str, tol
     assert any(told in line for line in mistakes(folder, (old, new)))
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong", "key"),
+    [
+        ('[behaviours."give hint"]', '[behaviours."give hnit"]', "behaviours"),
+        ('{ name = "listen", words', '{ name = "lisetn", words', "stages[4].name"),
+    ],
+)
+def test_a_name_that_expected_spells_otherwise_is_told_once_where_it_is_defined(
+    folder: Path, right: str, wrong: str, key: str
+) -> None:
+    names = [re.findall(r'"([^"]*)"', one)[0] for one in (right, wrong)]
+    first, *rest = mistakes(folder, (right, wrong))
+    row = place(TEXT.replace(right, wrong), wrong).partition(":")[0]
+    assert first.startswith(f"mine.toml:{row}:")
+    assert key in first
+    assert all(f"'{name}'" in first for name in names)
+    assert not any("expected:" in line for line in rest)
+
+
+def test_what_may_cause_other_mistakes_comes_first_at_its_place(folder: Path) -> None:
+    first, *_ = mistakes(folder, ("[behaviours.", "[behavours."))
+    row = place(TEXT.replace("[behaviours.", "[behavours."), "[behavours.").partition(":")[0]
+    assert first.startswith(f"mine.toml:{row}:")
+    assert "'behaviours'" in first
+
+
+def test_an_activity_without_a_name_is_called_like_its_file(folder: Path) -> None:
+    named = re.search(r'(?m)^name = .*\n', TEXT)
+    assert named is not None
+    path = folder / "garden-quiz.toml"
+    path.write_text(TEXT.replace(named[0], ""), encoding="utf-8")
+    assert read_declaration(path).name == "garden-quiz"
+
+
 @pytest.mark.parametrize("name", DECLARED)
 def test_what_ships_has_80_lines_at_most(name: str) -> None:
     assert shipped_activities()[name].read_text(encoding="utf-8").count("\n") <= 80

@@ -91,8 +91,9 @@ def test_a_key_that_nobody_took_is_refused_with_the_nearest_one() -> None:
     table.text("title", "")
     with pytest.raises(ProfileError, match="tilte = 'y': is not a key here; did you mean 'title'"):
         table.close()
+    other = Table({"tilte": "y"}, "mine.toml")
     with pytest.raises(ProfileError, match="did you mean 'tilt'"):
-        table.close(also=["tilt"])
+        other.close(also=["tilt"])
 
 
 @pytest.mark.parametrize(
@@ -114,6 +115,7 @@ def test_the_nearest_word_is_named_or_all_words_are_listed() -> None:
     assert nearest("jok", ["joke", "greeting"]) == "did you mean 'joke'?"
     assert nearest("zzz", ["joke", "greeting"]) == "choose one of: greeting, joke."
     assert nearest("tiems", ["items", "teams", "title"]) == "did you mean 'items'?"
+    assert nearest("signing", ["sees", "singing", "sings"]) == "did you mean 'singing'?"
     assert nearest("zzz", []) == "there is none to choose from."
 
 

@@ -97,3 +97,18 @@ def test_a_mistake_in_it_is_told_with_its_place(
 
 def test_people_read_who_is_meant() -> None:
     assert selector_words(RIGHT) == "the person whose guess is right"
+
+
+def test_a_stage_about_whom_a_fact_selects_never_sees_it_otherwise(tmp_path: Path) -> None:
+    shutil.copy(BUZZ.with_suffix(".csv"), tmp_path)
+    text = BUZZ.read_text(encoding="utf-8")
+    about = 'about = "whose guess is right"'
+    other = text.replace(f"{about} }}", f'{about}, sees = ["guess"] }}')
+    other = other.replace(
+        'about = "whose guess is wrong" }', 'about = "whose guess is not right", sees = ["guess"] }'
+    )
+    (tmp_path / "buzz.toml").write_text(other, encoding="utf-8")
+    found = read_declared(tmp_path / "buzz.toml").situations
+    seen = {stage: [one.user_state for one in found if one.stage == stage] for stage, *_ in found}
+    assert seen["right"] == ["guess is right"]
+    assert len(seen["wrong"]) == 3  # not everybody can be meant: perhaps nobody is

@@ -9,6 +9,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
+from tangy_tui.text.activity_template import NewActivity, items_table, without_article
 from tests.support.declared import DECLARED, each_of_first
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -68,6 +69,13 @@ def test_an_author_who_answers_something_else_is_asked_again(tangy: Tangy, tmp_p
     made = tangy("activity", "new", tmp_path, stdin="Bags\ny\n\nperhaps\nyes\nmaybe\ny\n")
     assert made.returncode == 0 and made.stdout.count("Please type y or n.") == 2
     assert "add score" in (tmp_path / "bags.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("said", ["poem", "a poem", "An old poem", "the poem", "a"])
+def test_an_author_may_name_what_a_round_brings_with_its_article(said: str) -> None:
+    item = without_article(said)
+    assert item in ("poem", "old poem", "a")
+    assert f"The first {item}," in items_table(NewActivity("Poems", item, turns=True))
 
 
 def test_a_file_that_is_there_is_not_written_over(tangy: Tangy, tmp_path: Path) -> None:

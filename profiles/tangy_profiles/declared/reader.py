@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import cast
 
 from tangy_profiles.declared.behaviour_reader import read_behaviours
-from tangy_profiles.declared.conditions import Phrasing
+from tangy_profiles.declared.conditions import ALIKE, Phrasing
 from tangy_profiles.declared.facts_reader import read_facts, read_words
 from tangy_profiles.declared.items import read_csv, with_right_options
 from tangy_profiles.declared.media import read_media
@@ -21,6 +22,7 @@ from tangy_profiles.declared.model import (
     Stage,
 )
 from tangy_profiles.declared.section import Section
+from tangy_profiles.declared.source import Path as Place
 from tangy_profiles.declared.source import SourceText
 from tangy_profiles.declared.vocabulary import (
     ASKING,
@@ -71,7 +73,7 @@ def _read(top: Section, path: Path) -> Declaration:
     facts = read_words(top, read_facts(top, items.columns))
     items = with_right_options(top, items, facts.values())
     phrasing = Phrasing(facts)
-    name = top.text("name")
+    name = top.text("name", plain(path.stem))
     title = top.text("title", name[:1].upper() + name[1:])
     strategies = {key: top.table("strategies").text(key) for key in top.table("strategies")}
     strategies = strategies or {PLAIN: PLAIN}
@@ -211,12 +213,16 @@ def _read_expected(
         top.wrong("expected", "must be a list of lists: stage, conditions, behaviour")
         return ()
     names = [stage.name for stage in stages]
+    places: dict[str, Place] = {one: ("stages", n, "name") for n, one in enumerate(names)}
+    misspelt = _misspelt(top, places, {stage for stage, *_ in lines})
+    places = {one: ("behaviours", one) for one in behaviours}
+    misspelt |= _misspelt(top, places, {one.partition("->")[0].strip() for *_, one in lines})
     for line in lines:
         stage, *conditions, last = line
         behaviour, _, to = (part.strip() for part in last.partition("->"))
-        if stage not in names:
+        if stage not in names and names and stage not in misspelt:
             top.wrong("expected", f"{stage!r} is not a stage; {nearest(stage, names)}", stage)
-        if behaviour not in behaviours:
+        if behaviour not in behaviours and behaviours and behaviour not in misspelt:
             near = nearest(behaviour, behaviours)
             top.wrong("expected", f"{behaviour!r} is not a behaviour; {near}", last)
         to = phrasing.selector(top, "expected", to, last) if to else ""
@@ -225,6 +231,27 @@ def _read_expected(
         conditions_of = phrasing.all_of(top, "expected", conditions)
         found.append(Expectation(stage, conditions_of, behaviour, to or None))
     return tuple(found)
+
+
+def _misspelt(top: Section, named: Mapping[str, Place], expected: Collection[str]) -> set[str]:
+    """Return the expected names that are spelt otherwise where the file defines them; record those.
+
+    A name is meant by an unknown one if it is much like it, and is not expected itself.
+
+    Args:
+        top: the file.
+        named: where the file defines each name.
+        expected: the names in `expected`.
+    """
+    unused, found = [name for name in named if name not in expected], set[str]()
+    for name in sorted(set(expected).difference(named)):
+        near = get_close_matches(name, unused, 1, ALIKE)
+        if near:
+            line = top.source.line(("expected",), f'"{name}')
+            problem = f"{near[0]!r} is {name!r} in 'expected' (line {line}): which one is right?"
+            top.source.wrong(named[near[0]], problem, near[0], cause=True)
+            found.add(name)
+    return found
 
 
 def _read_pronunciations(section: Section) -> dict[str, tuple[str, ...]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 
 from tangy_profiles.declared.model import Declaration, FactCondition, Stage
@@ -43,21 +44,27 @@ def situations(declaration: Declaration) -> Iterator[Situation]:
     """Yield every situation that the conditions of the stages do not rule out."""
     earlier: list[Stage] = []
     for stage in declaration.stages:
+        own = (*stage.when, *_of_its_person(declaration, stage))
         known = {
-            one.fact: one.value
-            for one in stage.when
-            if one.comparison == "is" and not one.quantifier
+            one.fact: one.value for one in own if one.comparison == "is" and not one.quantifier
         }
         if stage.about == "first asking":
             known.setdefault(ASKING, "yes" if known.get(ASKING) == "yes" else "")
         for values in product(*(declaration.facts[name].values for name in stage.sees)):
             seen = dict(zip(stage.sees, values, strict=True))
-            if any(told(one, seen) is False for one in stage.when):
+            if any(told(one, seen) is False for one in own):
                 continue
             facts = known | seen
             if not any(_rules_out(declaration, one, stage, facts) for one in earlier):
                 yield Situation(stage.name, request_of(stage), label(stage.sees, values))
         earlier.append(stage)
+
+
+def _of_its_person(declaration: Declaration, stage: Stage) -> Iterator[FactCondition]:
+    """Yield the condition that selects the person of a stage, if there is always one."""
+    condition = declaration.whose.get(stage.about)
+    if condition is not None and replace(condition, quantifier="any") in stage.when:
+        yield condition
 
 
 def told(condition: FactCondition, facts: Mapping[str, str]) -> bool | None:

@@ -18,15 +18,10 @@ Path = tuple[str | int, ...]
 class MistakesError(ProfileError):
     """An activity's file has mistakes; `lines` has each, with its line and column."""
 
-    def __init__(self, lines: list[str], cause: str = "") -> None:
-        """Create the error for one or more mistakes.
-
-        Args:
-            lines: all mistakes.
-            cause: the mistake that may cause others (default: the first).
-        """
+    def __init__(self, lines: list[str]) -> None:
+        """Create the error for one or more mistakes; its message is the first of them."""
         more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
-        super().__init__((cause or lines[0]) + more)
+        super().__init__(lines[0] + more)
         self.lines = tuple(lines)
 
 
@@ -50,7 +45,7 @@ class SourceText:
             cause: other mistakes may follow from it, as from a misspelt key.
         """
         offset = self._offset(path, quoted)
-        line = self._text.count("\n", 0, offset) + 1
+        line = self.line(path, quoted)
         column = offset - (self._text.rfind("\n", 0, offset) + 1) + 1
         problem = problem if problem.endswith(("?", ".")) else f"{problem}."
         told = f"{self.file}:{line}:{column}: {dotted(path)}: {problem}"
@@ -62,12 +57,11 @@ class SourceText:
         """Raise an error if the file has mistakes.
 
         Raises:
-            MistakesError: lists all of them, in the order of the file.
+            MistakesError: lists all of them: those that may cause others, then in the file's order.
         """
         if self._found:
-            found = [told for _, _, told in sorted(self._found)]
-            cause = next((plain(told) for told in found if told in self._causes), "")
-            raise MistakesError([plain(told) for told in found[:MOST_MISTAKES]], cause)
+            by_place = sorted(self._found, key=lambda one: (one[2] not in self._causes, *one))
+            raise MistakesError([plain(told) for *_, told in by_place[:MOST_MISTAKES]])
 
     def _offset(self, path: Path, quoted: str) -> int:
         """Return the offset of a key, or the nearest one before it."""
@@ -94,10 +88,17 @@ class SourceText:
             begin = place if place >= 0 else begin
         return begin
 
+    def line(self, path: Path, quoted: str = "") -> int:
+        """Return the line (from 1) of a key or a text in its value, or of the key before it."""
+        return self._text.count("\n", 0, self._offset(path, quoted)) + 1
+
     def _key(self, key: str | int, begin: int, end: int) -> re.Match[str] | None:
         if isinstance(key, str):
-            pattern = re.compile(rf"(?<![\w-])([\"']?{re.escape(key)}[\"']?)\s*=")
-            return pattern.search(self._text, begin, end)
+            word = rf"([\"']?{re.escape(key)}[\"']?)"
+            found = re.compile(rf"(?<![\w-]){word}\s*=").search(self._text, begin, end)
+            if found is None and not begin:  # a table of tables only, without a header of its own
+                found = re.compile(rf"^\s*\[\s*{word}\s*\.", re.MULTILINE).search(self._text)
+            return found
         found = None
         places = re.compile(r"([{\"'])(?:[^{}\"'\n]*(?:\"[^\"\n]*\"|'[^'\n]*')?)*?[}\"']")
         for count, found in enumerate(re.finditer(r"(\{)", self._text[begin:end])):
