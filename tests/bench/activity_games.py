@@ -1,9 +1,9 @@
 """Games of the activities that ship, on the bench: which end, what Tangy asks, and faults.
 
-Run by hand: `python -m tests.bench.activity_games [--seed N] [--games N] [--people N]... [NAME...]`.
-NAME is an activity or its file. A scripted teacher shows each activity in two guided games. Then the
-policy learnt from them plays with simulated devices and with so many people, each game with a seed
-of its own. Nobody injects a fault: each fault in the table is a false alarm or a defect of the
+Run by hand: `python -m tests.bench.activity_games [--seed N] [--games N] [--people N] [NAME...]`.
+NAME is an activity or its file. A scripted teacher shows each activity in two guided games. Then
+the policy learnt from them plays with simulated devices and with so many people, each game with a
+seed of its own. Nobody injects a fault: each fault in the table is a false alarm or a defect of the
 bench. `asked` counts Tangy's questions to the teacher.
 """
 
@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import json
 import subprocess
-import sys
 import time
 from collections import Counter
 from pathlib import Path
@@ -28,12 +27,10 @@ LONGEST = 3600.0  # s
 HEAD = ("activity", "people", "seed", "finished", "asked", "steps", "minutes", "faults")
 
 
-def tangy(folder: Path, *words: str, timeout: float = LONGEST) -> subprocess.CompletedProcess[str]:
+def tangy(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Run Tangy on a data folder, and return what it printed."""
-    return subprocess.run(
-        [TANGY, *words, "--data", str(folder)],
-        text=True, capture_output=True, timeout=timeout, check=False,
-    )  # fmt: skip
+    command = [TANGY, *words, "--data", str(folder)]
+    return subprocess.run(command, text=True, capture_output=True, timeout=LONGEST)  # noqa: S603
 
 
 def teach(folder: Path, activity: str, seed: int) -> None:
@@ -91,4 +88,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -117,7 +117,7 @@ def test_what_may_cause_other_mistakes_comes_first_at_its_place(folder: Path) ->
 
 
 def test_an_activity_without_a_name_is_called_like_its_file(folder: Path) -> None:
-    named = re.search(r'(?m)^name = .*\n', TEXT)
+    named = re.search(r"(?m)^name = .*\n", TEXT)
     assert named is not None
     path = folder / "garden-quiz.toml"
     path.write_text(TEXT.replace(named[0], ""), encoding="utf-8")
