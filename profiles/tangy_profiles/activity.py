@@ -16,23 +16,24 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tangy_profiles.activity_parts import (
+    AskingLimits,
+    read_asking_limits,
     read_by_request,
     read_pressing,
     read_sentence,
     read_strategies,
     read_user_states,
 )
-from tangy_profiles.asking_limits import AskingLimits, read_asking_limits
 from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
 from tangy_profiles.cards import CardState, Deck, read_deck
 from tangy_profiles.declared.vocabulary import declares
+from tangy_profiles.defaults import SHIPPED
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.extensions import activity_files
 from tangy_profiles.game_rules import NO_RULES, GameRules, read_game_rules
 from tangy_profiles.persuading import PAPER, PersuasionConfig, read_persuading
 from tangy_profiles.phones import read_pronunciations
 from tangy_profiles.reading import Table, nearest, plain, read_toml
-from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import Outcome, Request, Situation
 
 LISTENING = ("tiers", "paper")

@@ -20,9 +20,9 @@ from typing import Any
 from urllib.parse import quote
 
 from tangy_profiles.codec import keys_of
+from tangy_profiles.defaults import SHIPPED
 from tangy_profiles.events import kinds
 from tangy_profiles.reading import read_toml
-from tangy_profiles.shipped import SHIPPED
 
 FREE_TEXT = frozenset(("heard", "how", "what", "why", "stopped"))
 """The keys of an event's body that hold people's words."""

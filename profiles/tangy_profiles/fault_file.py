@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from string import Formatter
 
+from tangy_profiles.defaults import SHIPPED
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.faults import (
     CONTEXT,
@@ -25,7 +26,6 @@ from tangy_profiles.known_devices import possible_devices
 from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.robot import DeviceProfile, Robot
 from tangy_profiles.rules_for_robot import for_devices
-from tangy_profiles.shipped import SHIPPED
 
 _TESTS = ("is", "not", "above", "below", "at_least")
 

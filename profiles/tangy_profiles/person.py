@@ -6,9 +6,9 @@ import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 
+from tangy_profiles.defaults import SHIPPED
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain, read_toml
-from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import FRONT
 from tangy_profiles.voice import VoicePreference
 

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 from tangy_profiles.body import BodyProfile, read_body
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, read_contact
 from tangy_profiles.contacts import Contact as Contact
-from tangy_profiles.defaults import USUAL_ROBOT
+from tangy_profiles.defaults import SHIPPED, USUAL_ROBOT
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.liveness import PAUSING, Liveness, read_liveness
 from tangy_profiles.reading import Table, nearest, plain, read_toml
-from tangy_profiles.shipped import SHIPPED
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity

@@ -12,10 +12,10 @@ from itertools import accumulate, pairwise
 from math import hypot
 from pathlib import Path
 
+from tangy_profiles.defaults import SHIPPED
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
 from tangy_profiles.reading import Table, nearest, plain, read_toml
-from tangy_profiles.shipped import SHIPPED
 from tangy_profiles.state import FRONT
 
 ELBOW_ROOM = 0.9

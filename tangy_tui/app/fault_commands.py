@@ -1,9 +1,11 @@
-"""What staff do about faults in a game: acknowledge, call the expert, clear, accept."""
+"""What staff do about faults in a game, and the faults that they can inject."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TypeAlias
 
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.game_commands import Accept, Acknowledge, CallExpert, Clear, Reached, StaffNote
 from tangy_tui.monitoring.supervision import Event, Supervision
 
@@ -31,3 +33,9 @@ def attend(game: Supervision, command: FaultCommand, by: str) -> list[Result]:
             return [StaffNote("reached" if game.reached(by) else "nobody named")]
         case Clear():
             return list(game.clear(by)) if fault.acknowledged else [StaffNote("not seen yet")]
+
+
+def possible_kinds(codes: Iterable[str]) -> tuple[str, ...]:
+    """Return the kinds of fault whose correct diagnosis is one of these codes."""
+    known = set(codes)
+    return tuple(name for name, kind in KINDS.items() if kind.code in known)

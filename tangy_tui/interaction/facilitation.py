@@ -31,10 +31,9 @@ from tangy_tui.interaction.game_events import (
     Unsure,
 )
 from tangy_tui.interaction.game_log import GameLog
-from tangy_tui.interaction.observation import Observation
+from tangy_tui.interaction.observation import Observation, refused
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.interaction.reading_error import learnt_error
-from tangy_tui.interaction.refusal import refused
 from tangy_tui.interaction.uncertainty import remedy_for, which_of, why_not
 from tangy_tui.language.commands import Learnt, Phrasebook
 from tangy_tui.learning.online_learning import OnlineLearning

@@ -11,7 +11,8 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Protocol, runtime_checkable
 
-from tangy_profiles.state import ActivityState
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.state import ActivityState, Outcome
 from tangy_tui.interaction.reading_error import FusedLook, ReadingError
 from tangy_tui.world import World
 
@@ -132,3 +133,19 @@ class Observation:
         look = getattr(self._world, "look_again", self._world.observe)
         state: ActivityState = look()
         return state
+
+
+def refused(
+    behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
+) -> bool:
+    """Return whether the attended person did not do what a behaviour asked for.
+
+    If no response was seen, an unchanged state counts as a refusal, so that people are not asked
+    endlessly because their card is out of sight.
+    """
+    if not behaviour.persuades or before.attended is None or not outcome.completed:
+        return False
+    if outcome.response is not None:
+        return not outcome.response.followed
+    person = before.attended
+    return behaviour.effect != "none" and after.user(person) == before.user(person)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tangy_profiles.activity import Activity, StageRule
-from tangy_profiles.asking_limits import GAME, VISIT
+from tangy_profiles.activity_parts import GAME, VISIT
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.errors import ProfileError

@@ -28,7 +28,7 @@ from tangy_profiles.health import (
 from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState, Outcome, Variable
 from tangy_tui.interaction.game_events import Acted
-from tangy_tui.interaction.refusal import refused
+from tangy_tui.interaction.observation import refused
 from tangy_tui.learning.effects import Effects, Mismatch, who_waits
 
 OWED_BY_PEOPLE = ("what was asked about", "request")

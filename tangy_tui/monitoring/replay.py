@@ -24,7 +24,7 @@ from tangy_profiles.game_records import (
     GameResumed,
     GameStep,
 )
-from tangy_profiles.open_requests import OpenRequests
+from tangy_profiles.past_game import OpenRequests
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.staff_records import StaffAction, StaffActionKind
 from tangy_profiles.state import ActivityState

@@ -1,4 +1,4 @@
-"""Words for conflicts between demonstrations: the question, and its resolution."""
+"""Words for conflicts between demonstrations, for settling them, and for accepted events."""
 
 from __future__ import annotations
 
@@ -52,3 +52,17 @@ def done_words(settled: int, left: int) -> str:
 def keys_words(then: str) -> str:
     """Tell which keys continue after the last conflict."""
     return f"Press enter to {then}, esc to go back, {{undo}} to take the last answer back."
+
+
+WHICH_IS_RIGHT = "Which is right? Type a number, b for all of them, or Enter to leave it open: "
+LEFT_OPEN = "Left open. Tangy will ask when it happens."
+SETTLE_ONE = "Settle one with `tangy demonstrations resolve 1 --right BEHAVIOUR`, or --both."
+ALL_AGREE = "The demonstrations agree in every situation."
+UNDO_TAKES_BACK = "`tangy demonstrations undo` takes it back."
+FAULT_AGAIN = "Taken back. It counts as a fault again."
+NOTHING_ACCEPTED = "Staff have accepted nothing unexpected as all right."
+
+
+def how_to_settle(answers: int) -> str:
+    """Tell what can be typed where demonstrations disagree."""
+    return f"Type a number from 1 to {answers}, the answer itself, b, or only Enter."

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.state import FRONT
-from tangy_tui.text.votes import shown_here
+from tangy_tui.text.decisions import shown_here
 
 if TYPE_CHECKING:
     from tangy_tui.app.game_commands import Autonomy, NoteKind, Proposal, StaffNote

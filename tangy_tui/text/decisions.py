@@ -9,7 +9,6 @@ from tangy_profiles.declared.whom import addressee
 from tangy_tui.learning.policy import SURE
 from tangy_tui.text.activities import selector_words
 from tangy_tui.text.numbers import listed
-from tangy_tui.text.votes import shown_here
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -18,6 +17,15 @@ if TYPE_CHECKING:
     from tangy_tui.learning.conflicts import Shown
     from tangy_tui.learning.explanation import Why
     from tangy_tui.learning.policy import Decision, Policy
+
+
+def shown_here(seen: int, share: float) -> str:
+    """Tell how often a behaviour was demonstrated, and its share of the votes if that is not 1."""
+    votes = f"{share:.0%} of the votes"
+    if not seen:
+        return f"a guess of the trees, {votes}"
+    times = "once" if seen == 1 else f"{seen} times"
+    return f"as shown {times}" if share >= 1 else f"as shown {times}, {votes}"
 
 
 def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:

@@ -148,3 +148,19 @@ def changed_lines(activity: Activity, before: str, changed: Sequence[Change]) ->
 def grounds(why: Why) -> tuple[tuple[str, Sequence[Shown]], ...]:
     """Return the steps that support a decision, and the others, each group with its heading."""
     return ("Based on", why.rests_on), ("Against it", why.against), ("Nearby", why.near)
+
+
+NOTHING_SHOWN = "Nobody has shown Tangy anything yet."
+
+
+def coverage_so_far(number: int, game: int, steps: int, shown: int, situations: int) -> str:
+    """Tell the coverage up to a demonstration, given by number."""
+    return (
+        f"Demonstration {number} (game {game}): {counted(steps, 'step')}; "
+        f"{shown} of {situations} situations were shown so far."
+    )
+
+
+def situations_shown(shown: int, situations: int) -> str:
+    """Tell how many situations were demonstrated."""
+    return f"{shown} of {situations} situations were shown."

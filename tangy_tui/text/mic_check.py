@@ -6,12 +6,29 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, assert_never
 
-from tangy_tui.text.microphone import trouble_words
-
 if TYPE_CHECKING:
+    from tangy_hw.audio.meter import SoundTrouble
     from tangy_tui.speech.calibration import CalibrationPrompt
     from tangy_tui.speech.loudness import SoundAdvice
     from tangy_tui.speech.microphone_check import CheckNews, CheckResult, CheckStep
+
+
+def trouble_words(trouble: SoundTrouble) -> str:
+    """Describe a fault of the sound in one line."""
+    match trouble.kind:
+        case "nothing comes":
+            return f"The microphone has sent nothing for {trouble.seconds} s: is it connected?"
+        case "no sound":
+            return (
+                f"No sound for {trouble.seconds} s: is the microphone plugged in? It may be muted."
+            )
+        case "too loud":
+            return "Too loud: move a little away from the microphone, or turn it down."
+        case "very quiet":
+            return "Very quiet: move closer to the microphone, or turn it up."
+        case forgotten:
+            assert_never(forgotten)
+
 
 LOUD_ENOUGH = "The sound is loud enough."
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from textual.screen import Screen
 
-from tangy_profiles.game_records import CallMade
+from tangy_profiles.game_records import CallMade, CallStage
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import (
     Acted,
@@ -20,11 +20,13 @@ from tangy_tui.interaction.game_events import (
     Taught,
     Unsure,
 )
-from tangy_tui.monitoring.fault import Diagnosed, Moved
+from tangy_tui.monitoring.fault import ENDINGS, Diagnosed, FaultEvent, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.activities import with_activity
+from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_lines
 from tangy_tui.text.fault_views import WAITS
+from tangy_tui.text.faults import kind_words, move_words
 from tangy_tui.text.games import (
     begun_words,
     broken_off_words,
@@ -37,11 +39,10 @@ from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.situations import OVER_NOW, lesson_words, moment_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
-from tangy_tui.ui.fault_log import write_call, write_fault
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.reasons import Ground, why_asked, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
-from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
 from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -221,3 +222,33 @@ class GamePicture:
     def _show_beliefs(self, highlight: tuple[str, str] | None) -> None:
         beliefs = self._supervision.persuasion.beliefs
         self._screen.query_one(Posteriors).show(beliefs, self._workspace.names, highlight)
+
+
+CALLS: Mapping[CallStage, Kind] = {"answered": "good", "reached": "good", "failed": "bad"}
+
+
+def write_call(screen: Screen[Any], made: CallMade) -> None:
+    """Write the outcome of a call to the log."""
+    words = logged_words(made.role, made.way, made.stage, made.said)
+    screen.query_one(LogView).write(words, CALLS.get(made.stage, "warn"))
+
+
+def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
+    """Write a fault or a recovery event to the log, with Tangy's speech."""
+    fault, log = event.fault, screen.query_one(LogView)
+    if isinstance(event, Moved) and event.move.speech:
+        screen.query_one(RoomView).say(event.move.speech)
+    if fault.asks_only:
+        return  # Tangy's question tells all of it
+    kind: Kind = "bad" if fault.critical else "warn"
+    if isinstance(event, Diagnosed):
+        log.write(f"Fault, {kind_words(fault)}: {fault.name}. {fault.console}", kind)
+        return
+    move = event.move
+    if move.kind in ENDINGS:
+        kind = "good"
+    elif move.kind not in ("halted", "still there", "escalated", "given up"):
+        kind = "dim"
+    log.write(f"{fault.name}: {move_words(move)}.", kind)
+    if move.speech:
+        log.write(move.speech)

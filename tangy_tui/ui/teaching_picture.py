@@ -8,10 +8,11 @@ from typing import Any
 from textual.screen import Screen
 from textual.widgets import Static
 
-from tangy_profiles.state import ActivityState
+from tangy_profiles.state import ActivityState, Situation
 from tangy_tui.app.tour import Tour, TourStop
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.coverage import Coverage, missing_words
+from tangy_tui.learning.coverage import Coverage, coverage, missing_words
+from tangy_tui.learning.library import read_library
 from tangy_tui.learning.teaching_events import (
     Announced,
     Begun,
@@ -41,7 +42,6 @@ from tangy_tui.text.tour import tour_words
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens.teach_keys import TOUR_GOES_ON, TOUR_KEYS
-from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
@@ -50,6 +50,36 @@ from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.sayable_list import SayableList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
+
+
+class ShownSoFar:
+    """Counts the situations of a session; reads the library once per game, not per step."""
+
+    def __init__(self, workspace: Workspace, teaching: TeachingSession) -> None:
+        self._workspace = workspace
+        self._teaching = teaching
+        self._before = Coverage(dict.fromkeys(workspace.activity.situations, 0))
+
+    def begin(self) -> None:
+        """Count the situations shown before this game, without those it replaces."""
+        activity, present = self._workspace.activity, self._teaching.demonstration
+        replaced = {present.id, *present.of}
+        finished = read_library(self._workspace.store, activity.name).finished
+        self._before = coverage(activity, [d for d in finished if d.id not in replaced])
+
+    def now(self) -> Coverage:
+        """Count all situations shown up to now."""
+        here = self.here().times
+        return Coverage({s: times + here[s] for s, times in self._before.times.items()})
+
+    def here(self) -> Coverage:
+        """Count the situations shown in this game."""
+        return coverage(self._workspace.activity, [self._teaching.demonstration])
+
+    def first(self, situation: Situation) -> bool:
+        """Return whether the last step was the first one ever in its situation."""
+        return self.now().times.get(situation) == 1
+
 
 WRAPPING = 14  # characters that wrapping may waste on two lines
 DRIVING_PACE = 4.0

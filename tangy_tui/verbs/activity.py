@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangy_profiles.asking_limits import GAME, VISIT
+from tangy_profiles.activity_parts import GAME, VISIT
 from tangy_profiles.defaults import DEFAULT_ACTIVITY, TO_BEGIN_WITH
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain

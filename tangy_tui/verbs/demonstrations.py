@@ -10,7 +10,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text import settling
+from tangy_tui.text import conflicts as text
 from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace
 
@@ -181,9 +181,9 @@ def conflicts(
             for line in rest:
                 print(line)
         if found:
-            print(settling.SETTLE_ONE)
+            print(text.SETTLE_ONE)
         else:
-            print(settling.ALL_AGREE)
+            print(text.ALL_AGREE)
 
 
 @app.command()
@@ -268,7 +268,7 @@ def _change(
             return
         print(plain(f"{before}{_edit_words(workspace, editor, edit)}"))
         if not before:
-            print(settling.UNDO_TAKES_BACK)
+            print(text.UNDO_TAKES_BACK)
         if edit.done.what == "resolve":
             left = len(editor.library.conflicts)
             print(f"{counted(left, 'conflict')} left; then `tangy learn`.")
@@ -320,8 +320,8 @@ def accepted(
             )
             return
         if take_back is not None:
-            print(settling.FAULT_AGAIN)
+            print(text.FAULT_AGAIN)
         for n, (one, what) in enumerate(zip(there, words, strict=True), 1):
             print(plain(f"{n}. {local_time(one.at)}, {one.by}: {what}"))
         if not there:
-            print(settling.NOTHING_ACCEPTED)
+            print(text.NOTHING_ACCEPTED)

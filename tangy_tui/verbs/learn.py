@@ -9,9 +9,9 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.text.conflicts import LEFT_OPEN, WHICH_IS_RIGHT, how_to_settle
 from tangy_tui.text.learnt import changed_lines, grounds, learnt_lines, only_unfinished
 from tangy_tui.text.policies import notice_words
-from tangy_tui.text.settling import LEFT_OPEN, WHICH_IS_RIGHT, how_to_settle
 from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace, say_notices
 

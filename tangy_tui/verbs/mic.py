@@ -13,8 +13,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.mic_check import LOUD_ENOUGH
-from tangy_tui.text.microphone import trouble_words
+from tangy_tui.text.mic_check import LOUD_ENOUGH, trouble_words
 from tangy_tui.verbs.common import Data, as_given, hand_on_options
 
 if TYPE_CHECKING:

@@ -117,7 +117,7 @@ def check_injections(injections: Sequence[Injection], workspace: Workspace) -> N
         TangyError: names the fault and the robot.
     """
     from tangy_profiles.fault_file import load_faults
-    from tangy_tui.app.injected import possible_kinds
+    from tangy_tui.app.fault_commands import possible_kinds
     from tangy_tui.text.injections import not_of_this_robot
 
     if not injections:
@@ -192,7 +192,7 @@ def _lines(
     from tangy_tui.console.inputs import is_typed, line_reader
     from tangy_tui.console.staff import StaffLines
     from tangy_tui.console.typed_yes import TypedYes
-    from tangy_tui.interaction.voiding import void_last
+    from tangy_tui.interaction.feedback import void_last
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.freezes import told_words
     from tangy_tui.text.live_news import news_lines

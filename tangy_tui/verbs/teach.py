@@ -13,7 +13,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.text.progress import NOTHING_SHOWN, coverage_so_far, situations_shown
+from tangy_tui.text.learnt import NOTHING_SHOWN, coverage_so_far, situations_shown
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import (
     HandsFree,

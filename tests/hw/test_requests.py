@@ -10,9 +10,8 @@ import pytest
 
 from tangy_hw.perception.requests.buttons import EVENT, ButtonBox, Events, find_boxes
 from tangy_hw.perception.requests.help_request_source import RequestError, RequestSource
-from tangy_hw.perception.requests.keyboard import Keyboard
 from tangy_hw.perception.requests.mqtt import Topic
-from tangy_hw.perception.requests.sources import open_requests
+from tangy_hw.perception.requests.sources import Keyboard, open_requests
 from tangy_profiles.health import OK, STALE
 from tangy_profiles.room import load_room
 

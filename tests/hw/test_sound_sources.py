@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 
 from tangy_hw.audio.arecord import LocalMicrophone
-from tangy_hw.audio.format_sniffing import odd_kind
-from tangy_hw.audio.piped_source import open_standard_input
+from tangy_hw.audio.piped_source import odd_kind, open_standard_input
 from tangy_hw.audio.source import Recording, Source, WholeSamples
 from tangy_hw.audio.sources import open_source
 from tangy_hw.audio.wav import RATE, SoundError

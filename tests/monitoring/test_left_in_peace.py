@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 
-from tangy_profiles.asking_limits import AskingLimits
+from tangy_profiles.activity_parts import AskingLimits
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
 from tangy_profiles.state import FRONT

@@ -18,7 +18,7 @@ from tangy_profiles.known_devices import (
 )
 from tangy_profiles.robot import Robot, load_robot
 from tangy_sim.worlds.devices import WELL
-from tangy_tui.app.injected import possible_kinds
+from tangy_tui.app.fault_commands import possible_kinds
 from tangy_tui.monitoring.detection import device_evidence
 from tangy_tui.monitoring.diagnosis import diagnose
 from tests.support.robots import SHIPPED, robot_without

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rich.cells import cell_len
 from textual.app import ComposeResult
 
-from tangy_tui.text.microphone import trouble_words
+from tangy_tui.text.mic_check import trouble_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import to_ascii
 from tangy_tui.ui.widgets.microphone_line import BAR, MicrophoneLine

@@ -1,4 +1,4 @@
-"""Changes by staff in a live game, and the robot's part in them."""
+"""Numbers of a live game, changes to it by staff, and the robot's part in them."""
 
 from __future__ import annotations
 
@@ -8,16 +8,51 @@ from math import hypot
 from typing import TypeAlias
 
 from tangy_hw.device_protocols import DeviceError, Picture
-from tangy_hw.robot_client.call_order import LAST_CALLS, CallOrder
 from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
+from tangy_profiles.activity import Activity
+from tangy_profiles.cards import Deck
 from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_profiles.health import OK
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import SEAT, Room
+
+LAST_CALLS = 5  # on the chest screen
+
+
+class CallOrder:
+    """The order of a game's numbers, drawn at its beginning."""
+
+    def __init__(self, numbers: Sequence[int]) -> None:
+        self.called: list[int] = []
+        """Numbers that count as called, the latest last."""
+        self._numbers = list(numbers)
+
+    def resume(self, past: PastGame, activity: Activity) -> None:
+        """Restore the state of an interrupted game."""
+        self.called = past.called(activity)
+        self._numbers = past.order(self._numbers, self.called)
+
+    @property
+    def next(self) -> tuple[int, ...]:
+        """The next number, if one is left."""
+        return tuple(self._numbers[len(self.called) : len(self.called) + 1])
+
+    def labels(self, deck: Deck, most: int = LAST_CALLS) -> tuple[str, ...]:
+        """Return the labels of the latest numbers, at most `most`, the newest first."""
+        return tuple(map(deck.label, self.called[: -most - 1 : -1]))
+
+    def take_back(self, number: int) -> None:
+        """Revert a call: the number counts as not called, and will be called last."""
+        if number in self.called:
+            self.called.remove(number)
+            self._numbers.remove(number)
+            self._numbers.append(number)
+
 
 BESIDE = 0.6
 """Distance in m to its place within which the robot is shown as being there."""

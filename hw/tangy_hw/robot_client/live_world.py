@@ -15,12 +15,11 @@ from random import Random
 from typing import Any, assert_never
 
 from tangy_hw.device_protocols import DeviceError, Picture, Pose
-from tangy_hw.robot_client.call_order import CallOrder
 from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
-from tangy_hw.robot_client.live_plan import LivePlan
+from tangy_hw.robot_client.live_plan import CallOrder, LivePlan
 from tangy_hw.robot_client.recovery_actions import RecoveryActions
 from tangy_hw.robot_client.response_watch import LOOK_SECONDS, watch_response
 from tangy_hw.robot_client.staff_card_reports import StaffCardReports

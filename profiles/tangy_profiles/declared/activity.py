@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tangy_profiles.activity import Activity, StageRule
-from tangy_profiles.asking_limits import AskingLimits
+from tangy_profiles.activity_parts import AskingLimits
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.cards import CardState, Deck
 from tangy_profiles.declared.model import Declaration, DeclaredBehaviour, Expectation

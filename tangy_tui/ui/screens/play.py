@@ -19,9 +19,9 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.feedback import void_last
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.interaction.voiding import void_last
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text import games as text
 from tangy_tui.text.control import noted_words

@@ -38,11 +38,11 @@ from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_w
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
 from tangy_tui.text.typed_commands import IS_AWAY, IS_HERE, WHO_IS_HERE, example_words
 from tangy_tui.text.watching import stopped_by_guest
+from tangy_tui.ui.base import perform
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
-from tangy_tui.ui.dialogs.command import CommandDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.line import CommandDialog
 from tangy_tui.ui.game_voice import GameVoice
-from tangy_tui.ui.performing import perform
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, wanted
 

@@ -44,18 +44,16 @@ from tangy_tui.text import questions as text
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.refusals import refused_words
 from tangy_tui.text.situations import ALL_RIGHT
-from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.base import Dialog, perform
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.hearing import hearing_of
 from tangy_tui.ui.keys import foot, keymap_of
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.performing import perform
 from tangy_tui.ui.screens.question_text import question_words, seen_words
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
-from tangy_tui.ui.widgets.answer_bar import AnswerBar
-from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.command_bar import AnswerBar, CommandBar
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 
 ResultT = TypeVar("ResultT")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from time import monotonic
 from typing import ClassVar
 
-from textual.app import ComposeResult
+from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
@@ -17,11 +17,12 @@ from textual.content import Content
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.robot_controls import STOPPED
+from tangy_tui.app.rooms import KnownRoom
 from tangy_tui.app.set_up import CHECKS, SetUp
 from tangy_tui.text import set_up as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOTHING_MOVES
 from tangy_tui.text.register import staff_names
-from tangy_tui.text.rooms import OTHER_ROOM
+from tangy_tui.text.rooms import CHOOSE_ROOM, OTHER_ROOM, places_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
@@ -32,7 +33,6 @@ from tangy_tui.ui.joining import ask_new_name, ask_who_joins
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import WIDE, key_line, panel
-from tangy_tui.ui.room_choice import ask_room
 from tangy_tui.ui.screens.set_up_lines import check_lines, game_lines, people_lines
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.set_up_list import SetUpList
@@ -356,3 +356,13 @@ class SetUpScreen(TangyScreen[bool]):
         """Close the screen; the robot is switched off again."""
         if not self._busy:
             self.close(False)
+
+
+async def ask_room(app: App[object], rooms: Iterable[KnownRoom]) -> str | None:
+    """Return the source of the chosen room, None if none was chosen."""
+    options = [
+        Option(one.source, one.source if one.room is None else one.room.title,
+               one.problem if one.room is None else places_words(one.room))
+        for one in rooms
+    ]  # fmt: skip
+    return await app.push_screen_wait(ChooseDialog(CHOOSE_ROOM, options))

@@ -8,7 +8,7 @@ from tangy_tui.app.command_grammar import AgainFrom, Leave, Perform, TeachAs, Te
 from tangy_tui.learning.teaching_events import Discard, Finish, Next, Redo, SameWhatever, Undo
 from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.text.teaching import left_words
-from tangy_tui.ui.performing import perform
+from tangy_tui.ui.base import perform
 from tangy_tui.ui.widgets.command_bar import CommandBar
 
 if TYPE_CHECKING:

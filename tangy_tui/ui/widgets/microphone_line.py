@@ -9,7 +9,7 @@ from rich.cells import cell_len
 from textual.strip import Strip
 from textual.timer import Timer
 
-from tangy_tui.text.microphone import trouble_words
+from tangy_tui.text.mic_check import trouble_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.inks import Inked
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten

@@ -12,10 +12,25 @@ from collections.abc import Sequence
 
 from tangy_hw.perception.requests.buttons import ButtonBox
 from tangy_hw.perception.requests.help_request_source import RequestError, RequestSource
-from tangy_hw.perception.requests.keyboard import Keyboard
 from tangy_hw.perception.requests.mqtt import Topic
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.room import Room
+
+
+class Keyboard(RequestSource):
+    """The program passes keys in; a seat's number toggles its request."""
+
+    def press(self, key: str) -> bool:
+        """Handle a key; return whether it belongs to a seat."""
+        seat = int(key) if len(key) == 1 and key in "123456789" else 0
+        if not 1 <= seat <= self.seats:
+            return False
+        if seat in self._asks:
+            self._withdraw(seat)
+        else:
+            self._ask(seat)
+        return True
+
 
 KINDS = ("keyboard", "buttons", "mqtt://HOST/TOPIC", "signs:CAMERA")
 
