@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.contacts import EXPERT, STAFF_ROLE, Contact
 from tangy_profiles.reading import plain
-from tangy_sim.worlds.faulty_world import FaultyWorld
 
 if TYPE_CHECKING:
     from tangy_profiles.robot import Robot
@@ -98,6 +97,8 @@ def staff_words(game: Supervision) -> str:
 
 def expert_line(game: Supervision) -> str:
     """Tell who is called about the fault that halts Tangy, or whom staff should call."""
+    from tangy_sim.worlds.faulty_world import FaultyWorld
+
     return SIMULATED if isinstance(game.world, FaultyWorld) else expert_words(game)
 
 
