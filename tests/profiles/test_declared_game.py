@@ -123,6 +123,16 @@ def test_a_turn_goes_on_when_its_player_leaves_and_skips_who_is_away(game: Decla
     assert game.whom("whose turn") == "ann"
 
 
+def test_only_one_holds_for_exactly_one_of_those_who_are_here(game: DeclaredGame) -> None:
+    one = FactCondition("only one", "answer", "is", "right")
+    held = [game.holds(one, None)]
+    for player in ("ann", "ben"):
+        game.observe("answer", player, "eight")
+        held.append(game.holds(one, None))
+    game.observe("here", "ann", "no")
+    assert [*held, game.holds(one, None)] == [False, True, False, True]
+
+
 def test_nobody_who_is_away_asks_answers_or_counts(game: DeclaredGame) -> None:
     game.observe("asking", "ben", "yes")
     game.observe("here", "ben", "no")

@@ -81,7 +81,13 @@ def test_what_was_shown_before_is_not_brought_about_again() -> None:
     assert len({state.situation for state in long}) == len(activity.situations)
 
 
-@pytest.mark.parametrize("name", ["toss", "who-am-i"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("toss", "who-am-i", "simon-says"),
+        pytest.param("twenty-questions", marks=pytest.mark.slow),
+    ],
+)
 @pytest.mark.parametrize("count", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_two_guided_games_are_enough_where_something_comes_about_only_once_in_a_game(
     name: str, count: int

@@ -11,6 +11,7 @@ from tangy_profiles.declared.model import Effect, Fact, FactCondition
 from tangy_profiles.declared.section import Section
 from tangy_profiles.declared.vocabulary import (
     DOES,
+    QUANTIFIERS,
     SELECTORS,
     WHOSE,
     Comparison,
@@ -22,7 +23,7 @@ from tangy_profiles.reading import nearest
 
 Facts = Mapping[str, Fact]
 _CONDITION = re.compile(
-    r"\s*(?:(any|every|nobody|most)\s+)?(\S.*?)\s+(is\s+not|is|>=|<)\s+(\S.*?)\s*"
+    rf"\s*(?:({'|'.join(QUANTIFIERS)})\s+)?(\S.*?)\s+(is\s+not|is|>=|<)\s+(\S.*?)\s*"
 )
 LARGEST = 9_999
 ALIKE = 0.8

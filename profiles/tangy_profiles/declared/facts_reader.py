@@ -16,6 +16,7 @@ from tangy_profiles.declared.vocabulary import (
     ITEMS,
     KINDS,
     NO,
+    QUANTIFIERS,
     SOURCES,
     YES,
     Kind,
@@ -82,7 +83,11 @@ def _free(section: Section, key: str, name: str, facts: dict[str, Fact]) -> bool
     if name == HERE:
         section.wrong(key, f"the fact {name!r} is built in", name)
         return False
-    if " ".join(words) != name or not words or words[0] in ("any", "every", "nobody", "most"):
+    if (
+        " ".join(words) != name
+        or not words
+        or any(f"{name} ".startswith(f"{one} ") for one in QUANTIFIERS)
+    ):
         section.wrong(key, f"{name!r} cannot be the name of a fact", name)
         return False
     if {"is", "if", ">=", "<"} & set(words):

@@ -143,9 +143,11 @@ class DeclaredGame:
                 return all(self._holds_for(condition, one) for one in self.here)
             case "nobody":
                 return not any(self._holds_for(condition, one) for one in self.here)
-            case "most":
+            case "most" | "only one":
                 many = sum(self._holds_for(condition, one) for one in self.here)
-                return 2 * many > len(self.here)
+                return (
+                    many == 1 if condition.quantifier == "only one" else 2 * many > len(self.here)
+                )
 
     def _holds_for(self, condition: FactCondition, player: str | None) -> bool:
         if condition.comparison == "is":

@@ -24,7 +24,7 @@ PAUSE_SECONDS = 8.0
 
 @dataclass(frozen=True, slots=True)
 class FactCondition:
-    """One condition: `[any|every|nobody|most] FACT is|is not VALUE`, `FACT >= N` or `FACT < N`."""
+    """One condition: `[QUANTIFIER] FACT is|is not VALUE`, `FACT >= N` or `FACT < N`."""
 
     quantifier: Quantifier
     fact: str

@@ -248,7 +248,7 @@ def _misspelt(top: Section, named: Mapping[str, Place], expected: Collection[str
         near = get_close_matches(name, unused, 1, ALIKE)
         if near:
             line = top.source.line(("expected",), f'"{name}')
-            problem = f"{near[0]!r} is {name!r} in 'expected' (line {line}); write it alike"
+            problem = f"{near[0]!r} is {name!r} in 'expected' (line {line}); use one spelling"
             top.source.wrong(named[near[0]], problem, near[0], cause=True)
             found.add(name)
     return found

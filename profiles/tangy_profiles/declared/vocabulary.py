@@ -14,8 +14,9 @@ Source = Literal["button", "sign", "speech", "camera", "card", "staff"]
 """Sources of facts about people."""
 SOURCES: tuple[Source, ...] = get_args(Source)
 
-Quantifier = Literal["", "any", "every", "nobody", "most"]
+Quantifier = Literal["", "any", "every", "nobody", "most", "only one"]
 """Quantifiers over players in a condition; "": the person of the stage."""
+QUANTIFIERS: tuple[Quantifier, ...] = get_args(Quantifier)[1:]
 
 Comparison = Literal["is", "is not", ">=", "<"]
 
