@@ -133,6 +133,17 @@ class TestFinding:
         assert off < 0.15 and robot.heading_off(estimate) < 0.1
         assert estimate.settled and not estimate.lost
 
+    @pytest.mark.slow
+    @pytest.mark.parametrize("seed", [25, 26])
+    def test_a_turn_that_the_wheels_missed_is_noticed_and_made_up_for(self, seed: int) -> None:
+        robot = Driven(seed)
+        robot.drive(ROUND[:60])
+        robot.true = robot.true._replace(heading=wrap(robot.true.heading + 1.4))
+        found = robot.drive([Twist(0, 0.5)] * 126)
+        assert not any(estimate.found and off > 0.5 for off, estimate in found)
+        off, estimate = found[-1]
+        assert off < 0.15 and robot.heading_off(estimate) < 0.1 and estimate.found
+
     def test_a_robot_that_stands_is_found_out_as_well(self) -> None:
         robot = Driven(23)
         robot.drive(ROUND[:60])

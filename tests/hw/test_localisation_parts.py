@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import Pose, Twist
-from tangy_hw.navigation.likelihood import LikelihoodField, thin
+from tangy_hw.navigation.likelihood import IN_CACHE, LikelihoodField, thin
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
+from tangy_hw.navigation.pose_search import Search
 from tangy_hw.navigation.poses import compose, relative_pose, wrap
 from tangy_hw.navigation.scan_matching import Reference
 from tangy_hw.navigation.slip_detection import SlipDetector
@@ -96,6 +97,13 @@ class TestField:
         scores = field.scores(np.vstack((true, others)), points)
         assert scores[0] > 0.9 and scores[0] == scores.max()
 
+    def test_many_poses_are_scored_as_each_by_itself(self) -> None:
+        field = LikelihoodField(MAP)
+        points = thin(look(SIDES, START), 20.0)
+        poses = around(START, (3, 3, 2), IN_CACHE // len(points) + 7, np.random.default_rng(0))
+        alone = [field.beams(one[None], points).mean() for one in poses]
+        assert field.scores(poses, points) == pytest.approx(np.array(alone), abs=1e-5)
+
     def test_beams_that_end_short_tell_nothing_and_those_through_walls_do(self) -> None:
         field, true = LikelihoodField(MAP), Pose(4.0, 2.0, 0.7)
         points = thin(look(SIDES, true), 20.0)
@@ -105,6 +113,17 @@ class TestField:
         assert right.score > 0.9 and right.share > 0.9
         assert short.score == pytest.approx(right.score, abs=0.1) and short.share < 0.7
         assert through.score < 0.7 and through.share > 0.9
+
+
+class TestSearch:
+    @pytest.mark.parametrize("turn", [-1.4, 1.4, 3.0])
+    def test_a_turn_that_the_wheels_missed_needs_few_tries(self, turn: float) -> None:
+        field, rng = LikelihoodField(MAP), np.random.default_rng(0)
+        points = thin(look(SIDES, START), 20.0)
+        last = START._replace(heading=wrap(START.heading + turn))
+        poses, scores = Search(MAP, field, rng).places(points, 32, 600, last)
+        x, y, heading = poses[scores.argmax()]
+        assert hypot(x - START.x, y - START.y) < 0.1 and abs(wrap(heading - START.heading)) < 0.1
 
 
 class TestMatching:

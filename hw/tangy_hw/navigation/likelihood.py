@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt, label
+from scipy.ndimage import label
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, OccupancyMap
@@ -20,7 +20,7 @@ COVERED = 0.4  # share of beams that end this near if the scanner is covered
 SIGMA = 0.12  # metres between a beam's end and its wall, with the errors of map and pose
 FLOOR = 0.1  # likelihood of a beam that ends in free space, for example at a person
 SHORT = 0.3  # metres that a beam must pass beyond a wall to contradict it
-MOST_STEPS = 60  # steps of the search along a beam
+IN_CACHE = 1 << 15  # beams that are scored at a time, so that their numbers stay in the cache
 WALL = 15  # connected cells that make a wall; chairs have fewer, and move
 
 
@@ -59,9 +59,8 @@ class LikelihoodField:
         # one more cell on each side represents everything outside
         self._field = np.pad(inner, 1, constant_values=np.float32(FLOOR))
         self._flat: Field = self._field.ravel()
-        self._width = self._field.shape[1]
         self._free = np.pad(map_.cells == FREE, 1, constant_values=False).ravel()
-        self._room = np.pad(_room(map_), 1, mode="edge").ravel()
+        self._walls = np.pad(_walls(map_), 1, constant_values=False).ravel()
 
     def scores(self, poses: Floats, points: Floats) -> Floats:
         """Return the mean likelihood (0 to 1) of the beams at each of the poses (m, 3).
@@ -70,26 +69,25 @@ class LikelihoodField:
             poses: x, y, heading.
             points: ends of the beams (n, 2) in the robot's frame.
         """
-        return np.asarray(self.beams(poses, points).mean(axis=1), dtype=np.float64)
+        count = len(points)
+        share = np.full(count, 1 / max(count, 1), dtype=np.float32)
+        at_once = max(1, IN_CACHE // max(count, 1))
+        found = [
+            self.beams(poses[first : first + at_once], points) @ share
+            for first in range(0, len(poses), at_once)
+        ]
+        return np.concatenate(found, dtype=np.float64) if found else np.zeros(0)
 
     def beams(self, poses: Floats, points: Floats) -> Field:
         """Return the likelihood of each beam at each pose (m, n)."""
         scale = 1.0 / self.map.resolution
         # in cells, single precision: .1 mm on a map of 100 m
-        c = (np.cos(poses[:, 2]) * scale).astype(np.float32)[:, None]
-        s = (np.sin(poses[:, 2]) * scale).astype(np.float32)[:, None]
-        x = ((poses[:, 0] - self.map.origin[0]) * scale + 1).astype(np.float32)[:, None]
-        y = ((poses[:, 1] - self.map.origin[1]) * scale + 1).astype(np.float32)[:, None]
-        px, py = points[:, 0].astype(np.float32), points[:, 1].astype(np.float32)
-        column = c * px - s * py
-        column += x
-        row = s * px + c * py
-        row += y
-        rows, columns = self._field.shape
-        np.clip(column, 0, columns - 1, out=column)
-        np.clip(row, 0, rows - 1, out=row)
-        index = row.astype(np.int32) * np.int32(self._width) + column.astype(np.int32)
-        return np.asarray(self._flat.take(index))
+        c, s = np.cos(poses[:, 2]) * scale, np.sin(poses[:, 2]) * scale
+        x, y = self._cells(poses)
+        ends = np.vstack((points.T, np.ones(len(points)))).astype(np.float32)
+        column = np.column_stack((c, -s, x)).astype(np.float32) @ ends
+        row = np.column_stack((s, c, y)).astype(np.float32) @ ends
+        return np.asarray(self._flat.take(self._index(column, row), mode="clip"))
 
     def evidence(self, pose: Pose, points: Floats) -> ScanLikelihood:
         """Return how well beams with ends `points` (n, 2), in the robot's frame, support a pose."""
@@ -107,42 +105,39 @@ class LikelihoodField:
         )
 
     def _crosses(self, pose: Pose, points: Floats) -> NDArray[np.bool_]:
-        """Return whether each beam crosses a wall; step by the distance to the nearest wall."""
+        """Return whether each beam crosses a wall more than `SHORT` before its end."""
         far = lengths(points)
-        reach = far - SHORT
-        ends = transform_points(points, pose)
-        unit = (ends - np.array([pose.x, pose.y])) / np.maximum(far, 1e-9)[:, None]
-        gone = np.zeros(len(points))
-        crossed = np.zeros(len(points), dtype=np.bool_)
-        left = np.flatnonzero(reach > 0)
-        for _ in range(MOST_STEPS):
-            if not len(left):
-                break
-            at = unit[left] * gone[left, None] + np.array([pose.x, pose.y])
-            room = self._room[self._index(at)]
-            hit = room < self.map.resolution
-            crossed[left[hit]] = True
-            gone[left] += np.maximum(room, self.map.resolution / 2)
-            left = left[~hit & (gone[left] < reach[left])]
-        return crossed
-
-    def _index(self, points: Floats) -> NDArray[np.intp]:
-        cells = (points - np.array(self.map.origin)) / self.map.resolution + 1
-        rows, columns = self._field.shape
-        column = np.clip(cells[:, 0], 0, columns - 1).astype(np.intp)
-        return np.asarray(np.clip(cells[:, 1], 0, rows - 1).astype(np.intp) * columns + column)
+        steps = np.arange(0.0, far.max(initial=0.0) - SHORT, self.map.resolution)[:, None]
+        along = (transform_points(points, pose) - (pose.x, pose.y)) / np.maximum(far, 1e-9)[:, None]
+        at = np.stack((pose.x + steps * along[:, 0], pose.y + steps * along[:, 1]), axis=-1)
+        walls = self._walls.take(self._index(*self._cells(at)), mode="clip")
+        return np.asarray((walls & (steps < far - SHORT)).any(axis=0))
 
     def on_floor(self, poses: Floats) -> NDArray[np.bool_]:
         """Return whether each of the poses (m, 3) lies on free floor."""
-        return np.asarray(self._free[self._index(poses[:, :2])])
+        return np.asarray(self._free.take(self._index(*self._cells(poses))))
+
+    def _cells(self, points: Floats) -> tuple[Floats, Floats]:
+        """Return the columns and rows, with fractions, of points (..., 2 or more)."""
+        x, y = self.map.origin
+        scale = 1.0 / self.map.resolution
+        return (points[..., 0] - x) * scale + 1, (points[..., 1] - y) * scale + 1
+
+    def _index(self, column: NDArray[Any], row: NDArray[Any]) -> NDArray[np.int32]:
+        """Return the index of each cell; the nearest one for those outside. Overwrites both."""
+        rows, columns = self._field.shape
+        for values, most in ((column, columns - 1), (row, rows - 1)):
+            np.maximum(values, 0, out=values)
+            np.minimum(values, most, out=values)
+        index = row.astype(np.int32)
+        index *= np.int32(columns)
+        index += column.astype(np.int32)
+        return index
 
 
-def _room(map_: OccupancyMap) -> Field:
-    """Return the distance in m to the nearest group of occupied cells large enough to be a wall."""
+def _walls(map_: OccupancyMap) -> NDArray[np.bool_]:
+    """Return which cells belong to a group of occupied cells large enough to be a wall."""
     parts, _ = label(map_.cells == OCCUPIED, np.ones((3, 3)))
     sizes = np.bincount(parts.ravel())
     sizes[0] = 0
-    walls = (sizes >= WALL)[parts]
-    if not walls.any():
-        return np.full(map_.shape, max(map_.size), dtype=np.float32)
-    return np.asarray(distance_transform_edt(~walls, sampling=map_.resolution), dtype=np.float32)
+    return np.asarray((sizes >= WALL)[parts])

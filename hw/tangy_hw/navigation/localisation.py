@@ -16,7 +16,7 @@ from numpy.random import Generator
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.likelihood import LikelihoodField, covered, thin
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.particles import MOST, around, likeliest, move, needed, resample
+from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
 from tangy_hw.navigation.pose_search import Search
 from tangy_hw.navigation.poses import IDENTITY, Floats, compose, relative_pose, wrap
 
@@ -25,6 +25,7 @@ WIDE = 0.5  # metres of spread above which several places are possible
 DOUBT = 0.95  # of the usual fit: below this, a scan does not update the usual fit
 MOVED, TURNED = 0.1, 0.1  # metres and radians after which particles are weighted again
 FAST, SLOW = 0.1, 0.002  # weights of a new value in the averages of the fit
+WEIGHTIEST = 3  # usual steps that one long step counts for at most
 USUAL, BELIEF = (
     0.75,
     10,
@@ -36,11 +37,13 @@ FEWEST_BEAMS = 10  # beams with a return that a scan needs
 SEEN = 0.2  # share of beams that the map must explain or contradict
 BLIND = 0.02  # odometry noise without scans: the squared error for each squared unit moved
 GENTLE = 0.15  # factor on SHARPNESS while several places are possible
-EVERY = 360  # beams used while several places are possible: few beams tell them apart
+EVERY = 120  # beams used while several places are possible: few beams tell them apart
 SETTLING = 15  # scans with a good fit at one place before it is believed
 JUMP, PROOF = 0.5, 0.75  # metres of a jump that resets the fast fit, and the share it resets to
 FRESH = 0.1  # share of the particles drawn again until then
-FIRST_TRIED, TRIED, PLACES = 20_000, 4000, 40  # poses tried at first, later, and kept
+FIRST_TRIED, TRIED, PLACES = 20_000, 1500, 32  # poses tried at first, later, and kept
+
+LATELY = 5  # searches for which the last settled pose may be near
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,11 +102,12 @@ class Localisation:
         if pose is None:
             self._particles = self._search.anywhere(MOST)
         else:
-            self._particles = around(pose, START, MOST // 4, self._rng)
+            self._particles = around(pose, START, FEWEST, self._rng)
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
         self._fast = self._slow = USUAL
         self._scans = BELIEF
         self._unsettled = SETTLING if pose is None else 0
+        self._searches = 0 if pose else LATELY
         self._odometry = None
         self._sum_up()
 
@@ -145,13 +149,16 @@ class Localisation:
         if not first and hypot(self._anchor.x - here.x, self._anchor.y - here.y) > JUMP:
             self._fast = min(self._fast, PROOF * self._slow)  # one of the two poses is wrong
         score = self._field.evidence(self._anchor, every).score
-        self._note(score, moved or first)
+        self._note(score, moved or first, hypot(step.x, step.y) / MOVED)
         self._renew(every)
         return self._told(self._anchor)
 
-    def _note(self, score: float, moved: bool) -> None:
-        """Update both averages with a score, and count the scans until the pose has settled."""
-        self._fast += FAST * (score - self._fast)
+    def _note(self, score: float, moved: bool, steps: float) -> None:
+        """Update both averages with a score, and count the scans until the pose has settled.
+
+        A scan that follows a step of several `MOVED` counts as several scans.
+        """
+        self._fast += (1 - (1 - FAST) ** min(max(steps, 1.0), WEIGHTIEST)) * (score - self._fast)
         self._scans += 1
         doubtful = self._fast < DOUBT * self._slow  # so it must not change the usual fit
         share = SLOW if doubtful else max(SLOW, 1 / self._scans)
@@ -182,9 +189,13 @@ class Localisation:
         """Resample; until the pose has settled, draw some particles again where the scan fits."""
         drawn = resample(self._particles, self._weights, len(self._particles), self._rng)
         count, renewed = needed(drawn), self._particles[:0]
-        if self._unsettled:
+        if not self._unsettled:
+            self._searches = 0
+        else:
             tried = FIRST_TRIED if self._global else TRIED
-            places, scores = self._search.places(points, PLACES, tried)
+            self._searches += 1
+            last = self._anchor if self._searches <= LATELY else None
+            places, scores = self._search.places(points, PLACES, tried, last)
             weights = scores ** (SHARPNESS * GENTLE)
             share = 1.0 if self._global else max(FRESH, 1 - self._fast / (LOST * self._slow))
             fresh = int(min(1.0 if self._global else 0.5, share) * count)

@@ -13,7 +13,7 @@ from tangy_hw.navigation.poses import Floats, wrap
 
 ALPHA = 0.2  # all four alphas of the odometry model: squared error for each squared unit moved
 WHOLE = 0.1  # metres and radians: a longer step has the error of several steps
-FEWEST, MOST = 300, 2000
+FEWEST, MOST = 300, 600
 BIN, BIN_ANGLE = 0.5, pi / 18  # metres and radians of a bin of the KLD histogram
 ERROR, QUANTILE = 0.05, 2.33  # bound on the KL divergence, and normal quantile of probability .99
 CLUSTER, CLUSTER_ANGLE = 0.6, 0.6  # metres and radians around a pose that belong to its cluster
