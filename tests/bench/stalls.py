@@ -4,8 +4,9 @@ Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]... [--stage
 [--link-delay S] [--link-loss SHARE]`. Games are played on the bench in real time, with staff who
 clear what halts the robot, with N busy processes beside them, and over a link of that quality. The
 robot's process is stopped for so many s in each stage in turn, N times for each length: while a
-number is due, while it drives to a person who asks, and beside that person. A dialog is a critical
-fault.
+number is due, while it drives to a person who asks, and beside that person; while it speaks, waits
+for what a person does, waits for people to clear its way, or for staff to answer a question. A
+dialog is a critical fault; other faults that are diagnosed after a stall are shown, too.
 """
 
 from __future__ import annotations
@@ -24,9 +25,14 @@ from pathlib import Path
 from random import Random
 from statistics import quantiles
 from tempfile import TemporaryDirectory
+from typing import Any
 
+from tangy_profiles.behaviour import Action
 from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import Remedy
+from tangy_profiles.state import Outcome
 from tangy_sim.servers.link_relay import LinkQuality
+from tangy_tui.app.game_commands import TakeOver
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.robot_opening import open_bench
 from tangy_tui.app.scripted_staff import go_on_by_script
@@ -34,19 +40,22 @@ from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED
-from tangy_tui.monitoring.fault import Diagnosed
+from tangy_tui.monitoring.fault import Diagnosed, Fault
 from tests.bench.fault_latency import teach
 from tests.bench.jitter import busy
 
 RESTS = (2.0, 6.0)  # s between two stalls, by chance
-STAGES = ("facilitate", "navigate", "help")
+STAGES = ("facilitate", "navigate", "help")  # of the activity
+SPEAKING, WATCHING, RECOVERING, ASKING = "speaking", "watching", "recovering", "asking"
+MOMENTS = (SPEAKING, WATCHING, RECOVERING, ASKING)
+BLOCKED = "path-blocked"  # the fault that it recovers from
 COMES = 120.0  # s in which a stage has to come about
 SETTLES = 4.0  # s after a stall in which what comes of it is told
 
 
 @dataclass
 class Stall:
-    """One stall: how long it was, in which stage, the dialogs after it, and what the base did.
+    """One stall: how long it was, in which stage, the faults told after it, and what the base did.
 
     If it drove, `told` is after how many s it was told to stand, and `stood` after how many it did.
     """
@@ -54,6 +63,7 @@ class Stall:
     seconds: float
     stage: str
     dialogs: list[str] = field(default_factory=list)
+    others: list[str] = field(default_factory=list)
     told: float | None = None
     stood: float | None = None
 
@@ -66,66 +76,128 @@ class Stall:
             self.stood = after
 
 
-def play(
-    control: GameController, over: threading.Event, held: threading.Event, dialogs: list[str]
-) -> None:
-    """Play games until it is over; while the process is `held` staff only look."""
-    while not over.is_set():
-        control.begin()
-        while not control.supervision.over and not over.is_set():
-            waits = held.is_set() and control.supervision.halted is not None
-            events = control.look() if waits else go_on_by_script(control, expert=True)
-            for event in events or ():
-                if isinstance(event, Diagnosed) and event.fault.critical:
-                    dialogs.append(event.fault.code)
-            if waits:
-                time.sleep(0.05)
+class WatchedBench(BenchedWorld):
+    """A bench of which another thread can tell what the robot is doing."""
+
+    doing = ""
+    _watches = False
+
+    def execute(self, action: Action) -> Outcome:
+        """Carry an action out; after a request, it watches what the person does."""
+        self._watches = action.behaviour.persuades and self.tracker.place in self.tracker.queue
+        try:
+            return super().execute(action)
+        finally:
+            self._watches, self.doing = False, ""
+
+    def say(self, speech: str, *others: Any, **more: Any) -> None:
+        """Speak."""
+        before, self.doing = self.doing, SPEAKING
+        super().say(speech, *others, **more)
+        self.doing = WATCHING if self._watches else before
+
+    def recover(self, remedy: Remedy) -> float:
+        """Carry out a remedy."""
+        self.doing = RECOVERING if remedy.kind == "ask" else self.doing
+        try:
+            return super().recover(remedy)
+        finally:
+            self.doing = ""
 
 
-def come_to(world: BenchedWorld, stage: str, chance: Random) -> None:
-    """Wait until a game is in a stage, and drives where the stage has to do with driving.
+class StalledGames:
+    """Games that another thread plays, and what was told in them."""
 
-    A person asks for help where that is needed. A stage that does not come about is left out: the
-    stall says in which one it came.
-    """
-    until = time.monotonic() + COMES
-    asked = stage == STAGES[0]
-    while time.monotonic() < until:
-        now = world.tracker.state().situation.stage
-        if not asked and now == STAGES[0] and not world.over:
-            world.bench.do("ask", person=chance.choice(world.people))
-            asked = True
-        if now == stage and (stage != "navigate" or world.truth()["moving"]):
-            return
-        time.sleep(0.05)
+    def __init__(self, control: GameController, world: WatchedBench) -> None:
+        self.control = control
+        self.world = world
+        self.told: list[Fault] = []
+        self.over, self.held = threading.Event(), threading.Event()
+        self.wanted = ""
+        """The stage in which the next stall is to come."""
 
+    def play(self) -> None:
+        """Play games until it is over; while the process is `held` staff only look."""
+        game = self.control.supervision
+        while not self.over.is_set():
+            self.control.begin()
+            while not game.over and not self.over.is_set():
+                waits = self.held.is_set() and game.halted is not None
+                waits |= game.question is not None and (self.held.is_set() or self.asked)
+                events = (
+                    self.control.look() if waits else go_on_by_script(self.control, expert=True)
+                )
+                self.told += [one.fault for one in events or () if isinstance(one, Diagnosed)]
+                if waits:
+                    time.sleep(0.05)
 
-def stall(world: BenchedWorld, seconds: float, held: threading.Event, dialogs: list[str]) -> Stall:
-    """Stop the robot process for so many s, and look what comes of it."""
-    pid = world.link.pid
-    assert pid is not None
-    one = Stall(seconds, world.tracker.state().situation.stage)
-    before = len(dialogs)
-    moving = any(world.truth()["commanded"])
-    held.set()
-    os.kill(pid, signal.SIGSTOP)
-    began = time.monotonic()
-    try:
-        while (now := time.monotonic()) < began + seconds:
+    @property
+    def asked(self) -> bool:
+        """Whether the next stall is to come while a question is open."""
+        return self.wanted == ASKING
+
+    def come_to(self, stage: str, chance: Random) -> None:
+        """Wait until the games are in a stage, and drive where the stage has to do with driving.
+
+        What it needs is brought about: a person asks for help, the way is blocked, staff take over.
+        A stage that does not come about is left out: the stall says in which one it came.
+        """
+        world, until = self.world, time.monotonic() + COMES
+        self.wanted = stage
+        asked = stage in (STAGES[0], ASKING)
+        if stage == RECOVERING:
+            world.inject(BLOCKED)
+        while time.monotonic() < until:
+            now = world.tracker.state().situation.stage
+            if not asked and now == STAGES[0] and not world.over:
+                world.bench.do("ask", person=chance.choice(world.people))
+                asked = True
+            if stage == ASKING and self.control.phase == "running" and not world.over:
+                self.control.apply(TakeOver())
+            there = self.stage == stage
+            if there and (stage != "navigate" or world.truth()["moving"]):
+                return
+            time.sleep(0.05)
+
+    @property
+    def stage(self) -> str:
+        """What the robot is doing now if a stall is wanted in it, else the activity's stage."""
+        game = self.control.supervision
+        if self.wanted not in MOMENTS:
+            return self.world.tracker.state().situation.stage
+        return ASKING if game.question is not None else self.world.doing
+
+    def stall(self, seconds: float) -> Stall:
+        """Stop the robot process for so many s, and look what comes of it."""
+        world = self.world
+        pid = world.link.pid
+        assert pid is not None
+        one = Stall(seconds, self.stage)
+        before = len(self.told)
+        moving = any(world.truth()["commanded"])
+        self.held.set()
+        os.kill(pid, signal.SIGSTOP)
+        began = time.monotonic()
+        try:
+            while (now := time.monotonic()) < began + seconds:
+                if moving:
+                    one.look(world, now - began)
+                time.sleep(0.01)
+        finally:
+            os.kill(pid, signal.SIGCONT)
+        until = time.monotonic() + SETTLES
+        while time.monotonic() < until:
             if moving:
-                one.look(world, now - began)
-            time.sleep(0.01)
-    finally:
-        os.kill(pid, signal.SIGCONT)
-    until = time.monotonic() + SETTLES
-    while time.monotonic() < until:
-        if moving:
-            one.look(world, time.monotonic() - began)
-        time.sleep(0.02)
-        if time.monotonic() > until - SETTLES / 2:
-            held.clear()
-    one.dialogs = dialogs[before:]
-    return one
+                one.look(world, time.monotonic() - began)
+            time.sleep(0.02)
+            if time.monotonic() > until - SETTLES / 2:
+                self.held.clear()
+                self.wanted = ""
+        for fault in self.told[before:]:
+            (one.dialogs if fault.critical else one.others).append(fault.code)
+        if BLOCKED in world.present:
+            world.lift(BLOCKED)
+        return one
 
 
 def spread(found: Sequence[float | None]) -> str:
@@ -142,38 +214,38 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--times", type=int, default=3)
     parser.add_argument("--seconds", type=float, action="append")
-    parser.add_argument("--stage", choices=STAGES, action="append")
+    parser.add_argument("--stage", choices=(*STAGES, *MOMENTS), action="append")
     parser.add_argument("--load", type=int, default=0, help="busy processes beside it")
     parser.add_argument("--link-delay", type=float, default=0.0, help="s in each direction")
     parser.add_argument("--link-loss", type=float, default=0.0, help="the share of packets lost")
     given = parser.parse_args()
     link = LinkQuality(given.link_delay, given.link_loss)
     lengths = given.seconds or [0.3, 1.0, 4.0, 10.0]
-    chance, dialogs = Random(1), list[str]()
-    over, held = threading.Event(), threading.Event()
+    chance = Random(1)
     with TemporaryDirectory() as folder, closing(Workspace(Path(folder))) as workspace:
         teach(workspace)
         policy, _ = load_policy(workspace.store, workspace.activity)
         book = load_faults(workspace.robot)
         with (
             open_bench(
-                workspace, seed=1, stepped=False, pace=1.0, book=book, kind=BenchedWorld, link=link
+                workspace, seed=1, stepped=False, pace=1.0, book=book, kind=WatchedBench, link=link
             ) as world,
             busy(given.load),
         ):
             supervision = workspace.supervision(policy, 1, asks=True, world=world)
             control = GameController(supervision, SCRIPTED, robot=world, paced=False)
-            game = threading.Thread(target=play, args=(control, over, held, dialogs))
-            game.start()
+            games = StalledGames(control, world)
+            thread = threading.Thread(target=games.play)
+            thread.start()
             found: list[Stall] = []
             for stage, seconds in product(given.stage or STAGES, lengths * given.times):
                 time.sleep(chance.uniform(*RESTS))
-                come_to(world, stage, chance)
-                found.append(stall(world, seconds, held, dialogs))
+                games.come_to(stage, chance)
+                found.append(games.stall(seconds))
                 print(found[-1], flush=True)
-            over.set()
+            games.over.set()
             control.break_off()
-            game.join(60)
+            thread.join(60)
             pauses = world.link.state.pauses
     for seconds in lengths:
         those = [one for one in found if one.seconds == seconds]
@@ -181,6 +253,7 @@ def main() -> None:
         print(
             f"{seconds:g} s x {len(those)}: {sum(bool(o.dialogs) for o in those)} with a dialog, "
             f"{max(len(o.dialogs) for o in those)} at most, {dict(codes)}; "
+            f"other faults {dict(Counter(code for o in those for code in o.others))}; "
             f"stages {dict(Counter(o.stage for o in those))}"
         )
     print("base told to stand after", spread([one.told for one in found]))
