@@ -199,10 +199,17 @@ class Detector:
     def unexpected(
         self, behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
     ) -> list[Mismatch]:
-        """Return the variables that differ from the expected effect of a behaviour."""
+        """Return the variables that differ from the expected effect of a behaviour.
+
+        If a card stays out of view whose owner refused in a whole visit, that is a refusal, too.
+        """
         if behaviour.name not in self.effects.values:
             return []
-        followed = outcome.response is None or outcome.response.followed
+        if outcome.response is not None:
+            followed = outcome.response.followed
+        else:
+            refuses = self._in_game[str(before.attended)] >= self.activity.asking.visit
+            followed = not (refuses and behaviour.effect == "bring card closer")
         return [
             mismatch
             for mismatch in self.effects.mismatches(behaviour.name, before, after, self.activity)

@@ -17,7 +17,7 @@ from tangy_sim.worlds import faulty_world
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.interaction.persuasion import Persuasion
-from tangy_tui.monitoring.fault import Moved
+from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.supervision import Event
 from tests.monitoring.conftest import Supervise
@@ -106,6 +106,25 @@ def test_what_cannot_be_seen_counts_as_not_followed_and_is_named(
 
 
 @pytest.mark.slow
+@pytest.mark.slow
+def test_who_was_left_in_peace_with_a_hidden_card_refuses_again_and_the_card_is_no_new_fault(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
+    again = 0
+    for seed in range(1, 13):
+        told: Counter[tuple[str, str | None]] = Counter()
+        for event in play(supervise("card-out-of-sight~1", seed=seed)):
+            if isinstance(event, Diagnosed) and event.fault.person is not None:
+                fault = event.fault
+                hidden = fault.code == "card-out-of-sight" and fault.behaviour == "move card closer"
+                if hidden:
+                    assert not told["never-complies", fault.person]
+                again += fault.code == "never-complies" and told[fault.code, fault.person] > 0
+                told[fault.code, fault.person] += 1
+    assert again > 3  # who came again and refused again
+
+
 def test_a_covered_camera_says_nothing_of_a_person(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
