@@ -69,11 +69,20 @@ class Scan:
 
 @dataclass(frozen=True, slots=True)
 class Stamped(Generic[Value]):
-    """A value with its time of arrival (the robot's clock, in s) and number."""
+    """A value with its time of arrival (the robot's clock, in s) and number.
+
+    `measured` is when it was measured, on the same clock; None: unknown.
+    """
 
     value: Value
     stamp: float
     seq: int
+    measured: float | None = None
+
+    @property
+    def time(self) -> float:
+        """When it was measured, as far as known, in s."""
+        return self.stamp if self.measured is None else self.measured
 
 
 class Picture(NamedTuple):

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
 from tangy_hw.device_protocols import Stamped
+from tangy_hw.drivers.source_clock import SourceClock
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import OK, STALE, DeviceState, Fact, Reading
 
@@ -25,13 +26,16 @@ class LatestValue(Generic[Value]):
         """LatestValue value; None before the first."""
         self._clock = clock
         self._arrivals = RateEstimator()
+        self._source = SourceClock()
         self._since = clock()
 
-    def take(self, value: Value) -> None:
-        """Store a new value."""
+    def take(self, value: Value, stamp: float | None = None) -> None:
+        """Store a new value; `stamp` is its time on the clock of its source, in s, if known."""
         number = 1 if self.stamped is None else self.stamped.seq + 1
-        self.stamped = Stamped(value, self._clock(), number)
-        self._arrivals.count(self.stamped.stamp)
+        arrived = self._clock()
+        measured = None if stamp is None else self._source.measured(stamp, arrived)
+        self.stamped = Stamped(value, arrived, number, measured)
+        self._arrivals.count(arrived)
 
     def restart(self) -> None:
         """Forget the value, so that only new data counts."""

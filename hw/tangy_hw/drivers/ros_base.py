@@ -9,7 +9,7 @@ from contextlib import suppress
 
 from tangy_hw.device_protocols import STILL, DeviceError, Odometry, Stamped, Twist
 from tangy_hw.drivers.latest_value import LatestValue
-from tangy_hw.drivers.ros_messages import Message, odometry_of
+from tangy_hw.drivers.ros_messages import Message, odometry_of, stamp_of
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.ros_velocity import VelocityTopic
 from tangy_hw.drivers.rosbridge import Rosbridge
@@ -127,7 +127,7 @@ class RosBase:
             self._say(STILL)
 
     def _hear(self, message: Message) -> None:
-        self._newest.take(odometry_of(message))
+        self._newest.take(odometry_of(message), stamp_of(message))
 
     async def _repeat_on(self) -> None:
         while True:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Scan, Stamped
 from tangy_hw.drivers.latest_value import LatestValue
-from tangy_hw.drivers.ros_messages import Message, changed_share, near_share, scan_of
+from tangy_hw.drivers.ros_messages import Message, changed_share, near_share, scan_of, stamp_of
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import Fact, Reading
@@ -81,7 +81,7 @@ class RosLaser:
 
     def _hear(self, message: Message) -> None:
         scan, raw = scan_of(message, self._turned)
-        self._newest.take(scan)
+        self._newest.take(scan, stamp_of(message))
         now = self._bridge.clock()
         if self._seen and len(self._seen[-1][1]) != len(raw):
             self._seen.clear()  # its settings have changed

@@ -36,6 +36,19 @@ def time_message(seconds: float, ros: int) -> dict[str, int]:
     return {"secs": whole, "nsecs": rest} if ros == 1 else {"sec": whole, "nanosec": rest}
 
 
+def seconds_of(message: Message) -> float:
+    """Return a time or duration of either form in s."""
+    whole = message["secs"] if "secs" in message else message["sec"]
+    rest = message["nsecs"] if "nsecs" in message else message["nanosec"]
+    return number(whole) + number(rest) / 1e9
+
+
+def stamp_of(message: Message) -> float | None:
+    """Return the time in a message's header in s; None if it is not filled in."""
+    stamp = message.get("header", {}).get("stamp")
+    return (seconds_of(stamp) or None) if stamp else None
+
+
 def header(frame: str, ros: int) -> dict[str, Any]:
     """Return a header with time 0, which means now."""
     return {"stamp": time_message(0, ros), "frame_id": frame}

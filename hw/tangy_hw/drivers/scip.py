@@ -29,6 +29,7 @@ from tangy_hw.drivers.scip_codec import (
     trouble,
 )
 from tangy_hw.drivers.scip_link import Link, open_link
+from tangy_hw.drivers.source_clock import SourceClock
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Fact, Reading
 
@@ -101,6 +102,7 @@ class ScipLaser:
         self._facts: tuple[int, Mapping[str, Fact]] = (0, MappingProxyType({}))
         self._arrived = asyncio.Event()
         self._ticks: int | None = None
+        self._scanner_clock = SourceClock()
         self._warned = -math.inf
         self._refused = False  # by an explicit status, not by silence
         self._why = "It was not started."
@@ -312,7 +314,9 @@ class ScipLaser:
         self._seen.append((stamp, measured))
         while self._seen[0][0] < stamp - WINDOW:
             self._seen.popleft()
-        self._scan = Stamped(scan, stamp, 1 if self._scan is None else self._scan.seq + 1)
+        taken = self._scanner_clock.measured(ticks / 1000, stamp)
+        number = 1 if self._scan is None else self._scan.seq + 1
+        self._scan = Stamped(scan, stamp, number, taken)
         self._refused, self._why = False, ""
         self._arrived.set()
 

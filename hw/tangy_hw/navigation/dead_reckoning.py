@@ -55,16 +55,20 @@ class DeadReckoning:
         """Pose by wheel odometry; its error is unknown."""
         return Estimate(self._pose, np.zeros((3, 3)), 0.0, 1.0, 1)
 
-    def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
+    def tick(
+        self, odometry: Odometry, scan: Scan | None, dt: float, at_scan: Pose | None = None
+    ) -> Twist:
         """Update pose and tracks for `dt` s and record the scan; always return a zero twist."""
         if self._odometry is not None:
             self._pose = compose(self._pose, relative_pose(self._odometry, odometry.pose))
         self._odometry = odometry.pose
         self._time += dt
         if scan is not None:
-            tracks = self._tracker.update(odometry.pose, scan, dt, None)
-            self.tracks = tuple(one.seen_from(odometry.pose) for one in tracks)
-            self._recorder.note(scan, compose(self._pose, self._laser), self._time)
+            then = odometry.pose if at_scan is None else at_scan
+            tracks = self._tracker.update(then, scan, dt, None)
+            self.tracks = tuple(one.seen_from(then) for one in tracks)
+            pose = compose(self._pose, relative_pose(odometry.pose, then))
+            self._recorder.note(scan, compose(pose, self._laser), self._time)
         return STILL
 
     def go(self, goal: Pose) -> None:

@@ -86,11 +86,13 @@ class ExternalNavigator:
         """Return whether people have had time to clear the path."""
         return self._since_blocked >= CLEARING_SECONDS
 
-    def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
+    def tick(
+        self, odometry: Odometry, scan: Scan | None, dt: float, at_scan: Pose | None = None
+    ) -> Twist:
         """Send the goal if the robot may drive, or return the twist of a spin; `dt` is in s."""
         self._allowed += dt
         self._since_blocked += dt
-        self._watch(odometry, scan, dt)
+        self._watch(odometry, scan, dt, odometry.pose if at_scan is None else at_scan)
         if self.state == "spinning":
             self._turned += abs(odometry.twist.turn) * dt
             if self._turned < 2 * pi:
@@ -101,12 +103,12 @@ class ExternalNavigator:
             self._driving = asyncio.create_task(self._drive(goal))
         return STILL
 
-    def _watch(self, odometry: Odometry, scan: Scan | None, dt: float) -> None:
+    def _watch(self, odometry: Odometry, scan: Scan | None, dt: float, at_scan: Pose) -> None:
         """Track people, and hold the robot for a person who walks into its way."""
         if scan is None:
             return
-        tracks = self._tracker.update(odometry.pose, scan, dt)
-        self.tracks = tuple(one.seen_from(odometry.pose) for one in tracks)
+        tracks = self._tracker.update(at_scan, scan, dt)
+        self.tracks = tuple(one.seen_from(at_scan) for one in tracks)
         if self.lets and self._allowed < AGAIN_SECONDS:
             return  # go on after nobody has come for a moment
         walking = [one for one in self.tracks if one.speed > WALKS]

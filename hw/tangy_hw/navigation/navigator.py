@@ -6,6 +6,7 @@ laser scan, and sends the returned twist to the base.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import hypot, pi
 from typing import Literal
 
@@ -29,7 +30,14 @@ from tangy_hw.navigation.planning import (
     near_ends,
     plan,
 )
-from tangy_hw.navigation.poses import IDENTITY, Floats, lengths, relative_pose, transform_points
+from tangy_hw.navigation.poses import (
+    IDENTITY,
+    Floats,
+    compose,
+    lengths,
+    relative_pose,
+    transform_points,
+)
 from tangy_hw.navigation.pursuit import Pursuit
 from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_hw.navigation.surroundings import Held, Surroundings
@@ -215,18 +223,29 @@ class Navigator:
         )
 
     # ------------------------------------------------------------------ driving
-    def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
+    def tick(
+        self, odometry: Odometry, scan: Scan | None, dt: float, at_scan: Pose | None = None
+    ) -> Twist:
         """Update with the latest odometry and scan, and return the twist for the next `dt` s.
 
         Without a scan the robot stops, because it cannot see obstacles.
+
+        Args:
+            odometry: the latest odometry.
+            scan: the latest scan.
+            dt: s until the next tick.
+            at_scan: the pose by odometry when the scan was taken; None: that of `odometry`.
         """
         self._note_still(odometry, dt)
         if scan is None:
             self._told = STILL
             return STILL
-        estimate = self._estimate = self._localisation.update(odometry.pose, scan)
-        self.slip = self._slip_detector.update(odometry.pose, scan)
-        self._around.see(estimate, odometry.pose, scan, dt)
+        then = odometry.pose if at_scan is None else at_scan
+        seen = self._localisation.update(then, scan)
+        self.slip = self._slip_detector.update(then, scan)
+        self._around.see(seen, then, scan, dt)
+        now = compose(seen.pose, relative_pose(then, odometry.pose))
+        estimate = self._estimate = replace(seen, pose=now)
         self._told = self._command(estimate, odometry, scan, dt)
         return self._told
 

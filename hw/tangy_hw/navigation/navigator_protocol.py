@@ -87,8 +87,13 @@ class NavigatorProtocol(Protocol):
         """Return whether a blocked path to a goal may be free again."""
         ...
 
-    def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
-        """Update with the latest data, and return the twist for the next `dt` s."""
+    def tick(
+        self, odometry: Odometry, scan: Scan | None, dt: float, at_scan: Pose | None = None
+    ) -> Twist:
+        """Update with the latest data, and return the twist for the next `dt` s.
+
+        `at_scan` is the pose by odometry when the scan was taken; None: that of `odometry`.
+        """
         ...
 
     def facts(self) -> Mapping[str, Fact]:

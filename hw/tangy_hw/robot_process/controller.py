@@ -16,6 +16,7 @@ from contextlib import suppress
 from tangy_hw.device_protocols import STILL, Clock, Pose, Twist
 from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
+from tangy_hw.navigation.odometry_history import OdometryHistory
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.help_request_source import Ask, RequestSource, ShownLetter
@@ -95,6 +96,7 @@ class LiveRobot:
         self._performer = Performer(body, self.passing, robot, navigator, lambda: self._halted)
         self.perform = self._performer.perform
         self._courtesies = WaitExplanations(courtesies or {}, lambda text: self.perform(text=text))
+        self._moved = OdometryHistory()
         self._wanted: Pose | None = None
         self._was = ""  # state at the end of the last drive
         self._evidence = DriveMonitor(navigator, clock.now)
@@ -338,7 +340,9 @@ class LiveRobot:
         odometry, scan = base.odometry, laser.scan
         command, seen = STILL, None if scan is None else scan.value
         if odometry is not None:
-            command = self.navigator.tick(odometry.value, seen, passed)
+            self._moved.note(odometry)
+            at_scan = None if scan is None else self._moved.at(scan.time)
+            command = self.navigator.tick(odometry.value, seen, passed, at_scan)
             self._evidence.note()
         by_hand = self.hand.command(seen, now, self.navigator.unseen, self.navigator.tracks)
         command = command if by_hand is None else by_hand
