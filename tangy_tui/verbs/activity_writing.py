@@ -1,4 +1,4 @@
-"""`tangy activity new` and `import`: write the file of a new activity."""
+"""`tangy activity new`, `import` and `convert`: write the file of an activity."""
 
 from __future__ import annotations
 
@@ -66,23 +66,58 @@ def activity_new(
     _write_new(folder, new.name, template.activity_file(new), table)
 
 
+def activity_convert(
+    file: Annotated[Path, typer.Argument(help="The TOML of an activity of an older Tangy.")],
+    to: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The new file; default: beside it, -new.")
+    ] = None,
+) -> None:
+    """Write an older activity's file with the keys of today.
+
+    Its games stay the same, and the old file stays as it is.
+    """
+    from tangy_tui.app.activity_conversion import converted
+    from tangy_tui.text.activity_conversion import COMMENTS, converted_lines, is_no_activity
+
+    if file.suffix != ".toml":
+        raise TangyError(plain(is_no_activity(str(file))))
+    new = file.with_name(f"{file.stem}-new.toml") if to is None else to
+    found = converted(file, COMMENTS)
+    if found.added:
+        _write(new, found.text, "choose another with --to")
+    for line in converted_lines(str(file), str(new), found.added, found.lacks):
+        print(plain(line))
+
+
 def _write_new(folder: Path, name: str, activity: str, items: str) -> None:
     """Write the file of a new activity, and its table if it has one; never overwrite a file."""
     from tangy_tui.text import activity_template as template
 
     toml, table = folder / f"{name}.toml", folder / f"{name}.csv"
-    for path in (toml, table):
-        if path.exists():
-            raise TangyError(plain(f"{path} is there already: give it another title."))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        toml.write_text(activity, encoding="utf-8")
-        if items:
-            table.write_text(items, encoding="utf-8")
-    except OSError as error:
-        raise TangyError(plain(f"{toml}: cannot be written ({error.strerror}).")) from None
+    instead = "give it another title"
+    if table.exists():
+        raise _there_already(table, instead)
+    _write(toml, activity, instead)
+    if items:
+        _write(table, items, instead)
     for line in template.written_lines(str(toml), str(table) if items else ""):
         print(plain(line))
+
+
+def _write(path: Path, text: str, instead: str) -> None:
+    """Write a new file; `instead` says what to do if there is one of this name."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise _there_already(path, instead) from None
+    except OSError as error:
+        raise TangyError(plain(f"{path}: cannot be written ({error.strerror}).")) from None
+
+
+def _there_already(path: Path, instead: str) -> TangyError:
+    return TangyError(plain(f"{path} is there already: {instead}."))
 
 
 def _asked_yes(question: str) -> bool:

@@ -76,6 +76,7 @@ VERBS = {
         below=(
             ("new", "activity_writing", "activity_new"),
             ("import", "activity_writing", "activity_import"),
+            ("convert", "activity_writing", "activity_convert"),
         ),
     ),
     "cards": Verb("cards"),

@@ -1,0 +1,92 @@
+"""An activity's file of version 0.6.0 gets the keys of today, and its games stay the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from tangy_profiles.activity import Activity, read_activity, shipped_activities
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.person import load_people
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_tui.app.activity_conversion import OPTIONAL, converted
+from tangy_tui.language.activity_check import check_activity
+from tangy_tui.text.activity_conversion import CAN_ADD, COMMENTS
+
+Tangy = Callable[..., CompletedProcess[str]]
+OLD = Path(__file__).parents[1] / "lanterns.toml"
+"""A file of version 0.6.0, of a game in other words than the one that ships."""
+TEXT = OLD.read_text(encoding="utf-8")
+
+
+def put(folder: Path, text: str) -> Path:
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def as_before(activity: Activity) -> Activity:
+    """Leave out where the activity was read, and whether its file names the defaults."""
+    asking = replace(activity.asking, named=False)
+    return replace(activity, source="", names_pressing=False, asking=asking)
+
+
+@pytest.mark.parametrize("more", ["", "asks_in_visit = 8\n", "asks_in_game = 9\n"])
+def test_a_converted_file_is_the_same_activity_and_names_its_defaults(
+    more: str, tmp_path: Path
+) -> None:
+    file = put(tmp_path, more + TEXT)
+    before, found = read_activity(file), converted(file, COMMENTS)
+    assert set(found.text.split("\n")) > set(file.read_text(encoding="utf-8").split("\n"))
+    assert found.lacks == OPTIONAL
+    after = read_activity(put(tmp_path, found.text))
+    assert as_before(after) == as_before(before)
+    people = load_room().placed(load_people(4))
+    assert check_activity(before, load_robot(), people).warnings
+    assert not check_activity(after, load_robot(), people).warnings
+    assert not converted(put(tmp_path, found.text), COMMENTS).added
+
+
+def test_every_key_that_it_can_write_or_name_has_words(tmp_path: Path) -> None:
+    assert set(converted(put(tmp_path, TEXT), COMMENTS).added) == set(COMMENTS)
+    assert tuple(CAN_ADD) == OPTIONAL
+
+
+@pytest.mark.parametrize("name", shipped_activities())
+def test_what_ships_is_up_to_date(name: str) -> None:
+    found = converted(shipped_activities()[name], COMMENTS)
+    assert (found.added, found.lacks) == ((), ())
+
+
+def test_a_mistake_is_refused_with_its_line(tmp_path: Path) -> None:
+    wrong = TEXT.replace('effect = "draw"', 'effect = "drow"', 1)
+    line = wrong[: wrong.index("drow")].count("\n") + 1
+    with pytest.raises(ProfileError, match=rf"\(line {line}\).*did you mean 'draw'"):
+        converted(put(tmp_path, wrong), COMMENTS)
+
+
+@pytest.mark.slow  # five programs
+def test_the_verb_writes_beside_the_old_file_and_never_over_one(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    file = put(tmp_path, TEXT)
+    done = tangy("activity", "convert", file)
+    assert (done.returncode, done.stderr) == (0, "")
+    new = tmp_path / "mine-new.toml"
+    assert file.read_text(encoding="utf-8") == TEXT
+    assert f"Written: {new}" in done.stdout
+    written = new.read_text(encoding="utf-8")
+    again = tangy("activity", "convert", file)
+    assert again.returncode == 2 and "--to" in again.stderr
+    assert new.read_text(encoding="utf-8") == written
+    assert "nothing is written" in tangy("activity", "convert", new, "--to", file).stdout
+    assert file.read_text(encoding="utf-8") == TEXT
+    assert "up to date" in tangy("activity", "convert", shipped_activities()["trivia"]).stdout
+    (tmp_path / "garden.txt").write_text("What is green?\nA. Grass\nB. Milk\nANSWER: A\n")
+    told = tangy("activity", "convert", tmp_path / "garden.txt")
+    assert told.returncode == 2 and "tangy activity import" in told.stderr
