@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tangy_tui.text.numbers import counted
@@ -37,12 +36,6 @@ REJECTED = "Not done. Give a new command."
 def yes_words(key: str) -> str:
     """Name the key for yes, after another was pressed."""
     return f"The yes of this question is {key}."
-
-
-def not_understood_words(heard: str, suggestions: Sequence[str]) -> str:
-    """Tell that words were not understood, and suggest similar ones."""
-    near = f" {DID_YOU_MEAN}: {', '.join(suggestions)}?" if suggestions else ""
-    return f"I do not know what {heard!r} means.{near}"
 
 
 def asked_words(reason: str, given: str = "") -> str:

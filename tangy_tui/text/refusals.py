@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
+from tangy_profiles.reading import plain
 from tangy_tui.text.numbers import listed
 
 if TYPE_CHECKING:
@@ -65,3 +67,12 @@ def _no_such_person(refused: Refused) -> str:
     take = "take part" if len(refused.people) > 1 else "takes part"
     there = "There is no" if " " in refused.about else "There is nobody called"
     return f"{there} {refused.about}: {listed(refused.people)} {take}."
+
+
+def not_understood_words(heard: str, suggestions: Sequence[str]) -> str:
+    """Tell that words were not understood, and name similar commands.
+
+    This asks nothing: a y would answer no question.
+    """
+    near = f" You can say: {', '.join(suggestions)}." if suggestions else ""
+    return f"I do not know what {plain(heard)!r} means.{near}"

@@ -19,7 +19,7 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.text.activities import facts_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.refusals import refused_words
+from tangy_tui.text.refusals import not_understood_words, refused_words
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -131,8 +131,7 @@ def verification_lines(said: Verification, yes: str = "Y") -> list[str]:
                 *(f"  {number}  {question}" for number, question in enumerate(questions, 1)),
             ]
         case NotUnderstood(heard, suggestions):
-            near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
-            return [f"I do not know what {plain(heard)!r} means.{near} Type help for all commands."]
+            return [f"{not_understood_words(heard, suggestions)} Type help for all commands."]
         case Refused():
             return [refused_words(said)]
         case Rejected(heard):

@@ -23,5 +23,5 @@ def not_begun(fault: str) -> str:
 
 def not_known(text: str, near: str | None) -> str:
     """Tell that a line is no command here, and suggest a similar one."""
-    meant = f" Did you mean: {near}?" if near else ""
-    return f"I do not know {text!r} here.{meant} Type: help."
+    meant = f" You can type: {near}." if near else ""
+    return f"I do not know {text!r} here.{meant} Type help for all commands."

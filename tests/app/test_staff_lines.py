@@ -109,7 +109,7 @@ def test_what_is_no_command_is_said_with_the_nearest_and_help(workspace: Workspa
         "# a remark", "", "end",
     )  # fmt: skip
     text = "\n".join(written)
-    assert "I do not know 'pasue' here. Did you mean: pause?" in text
+    assert "I do not know 'pasue' here. You can type: pause." in text
     assert "I do not know 'qwertz' here." in text and "There is nobody called 'Nobody'" in text
     assert "take over: you say what Tangy does next" in text
     assert "No faults in this game." in text
@@ -203,4 +203,4 @@ def test_nothing_that_moves_the_robot_is_guessed_from_words_that_are_far_from_it
     workspace: Workspace,
 ) -> None:
     written, _ = told(workspace, "pause", "don't stop", "end")
-    assert 'I do not know "don\'t stop" here. Type: help.' in written
+    assert 'I do not know "don\'t stop" here. Type help for all commands.' in written

@@ -42,7 +42,7 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.text import questions as text
 from tangy_tui.text.keys import with_keys
-from tangy_tui.text.refusals import refused_words
+from tangy_tui.text.refusals import not_understood_words, refused_words
 from tangy_tui.text.situations import ALL_RIGHT
 from tangy_tui.ui.base import Dialog, perform
 from tangy_tui.ui.clean_output import clean
@@ -315,7 +315,7 @@ class AskingPanel(Vertical):
                 self._be_open(False)
                 self.screen.run_worker(self._verify(said), name="question", group="question")
             case NotUnderstood(heard, suggestions):
-                self._return(heard, text.not_understood_words(heard, suggestions))
+                self._return(heard, not_understood_words(heard, suggestions))
             case Rejected(heard):
                 self._return(heard, text.STOPPED_FIRST if self._held else text.REJECTED)
             case Refused():

@@ -34,8 +34,8 @@ from tangy_tui.learning.teaching_events import (
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
 from tangy_tui.text import teaching as text
-from tangy_tui.text.questions import REJECTED, not_understood_words
-from tangy_tui.text.refusals import refused_words
+from tangy_tui.text.questions import REJECTED
+from tangy_tui.text.refusals import not_understood_words, refused_words
 from tangy_tui.text.who import renamed_teacher
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.question import dialog_for
