@@ -27,7 +27,8 @@ LOOKING = "Looking whether it is gone ..."
 WHOM_TO_CALL = "What to do, and whom to call"
 SO_FAR = "So far"
 
-GIVE_UP = "Give this game up?"
+GIVE_UP_KEY = "Give this game up"
+GIVE_UP = f"{GIVE_UP_KEY}?"
 GIVE_UP_DETAIL = (
     "The game ends here, and the log says why. Tangy stays where it is and does not move. "
     "The fault is not mended: keep people away until someone has seen to it."

@@ -95,7 +95,7 @@ class CriticalDialog(Dialog[None]):
         *bind("expert", "nothing"),
         *bind("reached", "nothing"),
         *bind("accept", "nothing"),
-        *bind("back", "nothing", name=halts.GIVE_UP),
+        *bind("back", "nothing", name=halts.GIVE_UP_KEY),
     ]
     HELP = (
         "Tangy has stopped and stands still. {acknowledge} says that you have seen it. {expert} "

@@ -52,7 +52,8 @@ def help_for(screen: Screen[Any]) -> Help:
     for one in listed(screen):
         word = f"  ({one.word})" if typing and one.word and one.word != one.name.lower() else ""
         (everywhere if one.everywhere else here).setdefault(f"{one.name}{word}", one.key)
-    title = str(screen.TITLE or "Tangy")
+    boxes = (str(box.border_title or "") for box in screen.query(".box"))  # a dialog's
+    title = str(screen.TITLE or next(filter(None, boxes), "Tangy"))
     if focused is not None and isinstance(focused.border_title, str) and focused.border_title:
         title = f"{title} · {focused.border_title}"
     return Help(title, tuple(paragraphs), _pairs(here), _pairs(everywhere))
