@@ -40,7 +40,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.scoring import score_game, share_interval
-from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.monitoring.supervision import Event, Supervision
 from tests.bench.fault_latency import teach
 
 ANEW = "never-complies"
@@ -49,15 +49,17 @@ STEPS = (3, 9)  # of the first fault, by chance
 
 @dataclass
 class PairGame:
-    """A game with a pair of faults: what came, and what was wrong about its diagnoses."""
+    """A game with faults: what came, and what was wrong about its diagnoses."""
 
-    pair: tuple[str, str]
-    at: tuple[str, str]
+    at: tuple[str, ...]
     seed: int
     could_show: int = 0
     named: int = 0
     wrong: list[str] = field(default_factory=list)
     stopped: str | None = None
+    events: list[Event] = field(default_factory=list, repr=False)
+    places: list[tuple[float, str]] = field(default_factory=list, repr=False)
+    """When in the game (s) the robot was where."""
 
     @property
     def fine(self) -> bool:
@@ -108,13 +110,13 @@ def left_at(earlier: Fault, fault: Fault) -> bool:
 
 def play(control: GameController, one: PairGame) -> PairGame:
     """Play a game to its end, with scripted people."""
-    control.begin()
-    while not control.supervision.over:
-        events = go_on_by_script(control, expert=True)
-        for event in events:
-            if isinstance(event, GameEnded):
-                one.stopped = event.stopped
-    return judged(control.supervision, one)
+    game = control.supervision
+    one.events += control.begin()
+    while not game.over:
+        one.events += go_on_by_script(control, expert=True)
+        one.places.append((game.seconds, game.world.scene().place))
+    one.stopped = next(event.stopped for event in one.events if isinstance(event, GameEnded))
+    return judged(game, one)
 
 
 def simulated(
@@ -127,13 +129,13 @@ def simulated(
             seed = chance.randrange(1_000_000)
             game = workspace.supervision(policy, seed, asks=True, injections=at)
             with workspace.store.transaction():
-                yield play(scripted_controller(game), PairGame(pair, at, seed))
+                yield play(scripted_controller(game), PairGame(at, seed))
 
 
 def drawn(pairs: Sequence[tuple[str, str]], chance: Random) -> list[PairGame]:
     """Draw one game of each pair, to be played on the bench."""
     return [
-        PairGame(pair, ways(pair, chance.randint(*STEPS), number % 2), chance.randrange(1_000_000))
+        PairGame(ways(pair, chance.randint(*STEPS), number % 2), chance.randrange(1_000_000))
         for number, pair in enumerate(pairs)
     ]
 

@@ -12,7 +12,6 @@ import pytest
 from tangy_profiles.activity_parts import AskingLimits
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
-from tangy_profiles.state import FRONT
 from tangy_sim.worlds import faulty_world
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted
@@ -21,26 +20,10 @@ from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.supervision import Event
 from tests.monitoring.conftest import Supervise
-from tests.support.games import codes, ended, play
+from tests.support.games import codes, ended, in_vain, play
 
 MOST = 3
 """Requests that a person who refuses hears in a visit."""
-
-
-def in_vain(events: list[Event]) -> list[tuple[int, str]]:
-    """Return each request that was not followed: in which visit, and by which way of speaking."""
-    found: list[tuple[int, str]] = []
-    visit = 0
-    for event in events:
-        if isinstance(event, Acted):
-            visit += event.state.place != event.after.place
-            response = event.outcome.response
-            asks = event.action.behaviour.persuades and event.action.behaviour.effect != "none"
-            if asks and event.after.place != FRONT and not (response and response.followed):
-                found.append((visit, str(event.action.strategy)))
-        elif isinstance(event, Moved) and event.move.kind == "asked" and event.fault.person:
-            found.append((visit, "aloud"))
-    return found
 
 
 @pytest.mark.parametrize("kind", ["never-complies@8", "card-out-of-sight~1"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from tangy_profiles.state import FRONT
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.interaction.game_events import Acted, GameEnded
@@ -56,3 +57,19 @@ def acts(events: list[Event]) -> list[Acted]:
 def ended(events: Sequence[object]) -> GameEnded:
     """Return how a game ended."""
     return next(event for event in events if isinstance(event, GameEnded))
+
+
+def in_vain(events: list[Event]) -> list[tuple[int, str]]:
+    """Return each request that was not followed: in which visit, and by which way of speaking."""
+    found: list[tuple[int, str]] = []
+    visit = 0
+    for event in events:
+        if isinstance(event, Acted):
+            visit += event.state.place != event.after.place
+            response = event.outcome.response
+            asks = event.action.behaviour.persuades and event.action.behaviour.effect != "none"
+            if asks and event.after.place != FRONT and not (response and response.followed):
+                found.append((visit, str(event.action.strategy)))
+        elif isinstance(event, Moved) and event.move.kind == "asked" and event.fault.person:
+            found.append((visit, "aloud"))
+    return found
