@@ -215,11 +215,11 @@ class BenchedWorld(LiveWorld):
                 return behaviour.effect in CORRECTS
             case injection.ASKING:
                 return beside and behaviour.effect in ABOUT_CARD and tracker.allows(behaviour)
+            case injection.CLOSING | injection.WAITING if "requests-silent" in self.present:
+                return False  # no sensor sees whether a sign is up
             case injection.CLOSING:
                 settled = self.activity.card_states[-1].name
                 return beside and behaviour.closes == "always" and tracker.seen == settled
-            case injection.WAITING if "requests-silent" in self.present:
-                return False  # no sensor sees that a sign goes down
             case injection.WAITING:
                 return len(tracker.queue) > 1
             case injection.MOVING_ON:

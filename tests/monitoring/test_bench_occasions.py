@@ -64,3 +64,12 @@ def test_a_person_who_never_complies_shows_it_at_any_request_about_the_card() ->
         world = beside_somebody()
         world.tracker.seen = None if name == "move card closer" else "missing numbers"
         assert world.can_show(KINDS["never-complies"], action)
+
+
+def test_a_sign_that_stays_up_shows_only_to_a_sensor_that_works() -> None:
+    closing = next(one for one in BINGO.behaviours.values() if one.closes == "always")
+    action = BINGO.action(closing, "user1", None)
+    for silent, shows in (({}, True), ({"requests_silent": ""}, False)):
+        world = beside_somebody(**silent)
+        world.tracker.seen = BINGO.card_states[-1].name
+        assert world.can_show(KINDS["request-stuck"], action) == shows
