@@ -8,21 +8,14 @@ defaults, which are kept unless others gain a whole utterance.
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass, replace
 
-from tangy_profiles.errors import TangyError
-from tangy_profiles.people_records import MicrophoneChecked, MicrophoneForgotten
-from tangy_profiles.reading import nearest, plain
-from tangy_profiles.store import Store
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.labels import UtteranceLabel
 from tangy_tui.learning.verification import StopCommand
-from tangy_tui.speech.evidence import MODES, USUAL, AcousticEvidence, EvidenceSettings
-from tangy_tui.speech.labels import UtteranceLabel
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings
 from tangy_tui.speech.understanding import SURE, UNSURE, understand
 
 WEIGHTS = (0.1, 0.2, 0.43, 0.9, 2.0)
@@ -165,75 +158,3 @@ def _figures(scores: Sequence[CalibrationScore], shift: float) -> Figures:
     known = sum(s.right and s.told - shift >= PERHAPS for s in commands)
     taken = sum(s.told - shift >= PERHAPS for s in others)
     return Figures(len(commands), surely, known - surely, len(others), taken)
-
-
-def microphone(source: str) -> str:
-    """Return the name under which the settings of a source are stored.
-
-    Paths are stored as a digest, because they may contain names of people.
-    """
-    kind, _, rest = source.partition(":")
-    if source in ("-", "arecord", "socket") or (kind == "arecord" and rest):
-        return source
-    path = Path(rest if kind == "socket" and rest else source).absolute()
-    digest = hashlib.sha256(str(path).encode(errors="replace")).hexdigest()[:12]
-    return f"{'socket' if kind == 'socket' else 'file'} {digest}"
-
-
-def keep(store: Store, source: str, chosen: Chosen) -> None:
-    """Store the calibration of a microphone."""
-    settings = {"garbage": chosen.settings.garbage, "shift": chosen.settings.shift}
-    figures = asdict(chosen.figures)
-    store.append(MicrophoneChecked(source=microphone(source), settings=settings, figures=figures))
-
-
-def forget(store: Store, source: str) -> bool:
-    """Reset a microphone to the default settings; return whether it had others."""
-    if _stored(store, source) is None:
-        return False
-    store.append(MicrophoneForgotten(source=microphone(source)))
-    return True
-
-
-def is_checked(store: Store, source: str) -> bool:
-    """Return whether a microphone has settings of its own."""
-    return _stored(store, source) is not None
-
-
-def settings_for(store: Store, source: str | None, mode: str = "tiers") -> EvidenceSettings:
-    """Return the settings of a microphone: those of its last check, or else the defaults.
-
-    Args:
-        store: the log with the checks.
-        source: its name, as in `tangy_hw.audio.sources`; None for no particular one.
-        mode: one of MODES.
-
-    Raises:
-        TangyError: there is no such mode.
-    """
-    if mode not in MODES:
-        raise TangyError(plain(f"--mode {mode[:40]!r} is not known; {nearest(mode, MODES)}"))
-    stored = None if source is None else _stored(store, source)
-    return replace(stored or USUAL, mode=mode)
-
-
-def _stored(store: Store, source: str) -> EvidenceSettings | None:
-    found: EvidenceSettings | None = None
-    name = microphone(source)
-    for event in store.events(MicrophoneChecked, MicrophoneForgotten):
-        match event.record:
-            case MicrophoneChecked(source=of, settings=settings) if of == name:
-                found = _read(settings)
-            case MicrophoneForgotten(source=of) if of == name:
-                found = None
-    return found
-
-
-def _read(written: Any) -> EvidenceSettings | None:
-    """Read stored settings; return None if they are invalid."""
-    try:
-        settings = replace(USUAL, garbage=float(written["garbage"]), shift=float(written["shift"]))
-    except (KeyError, TypeError, ValueError):
-        return None
-    fits = 0 < settings.garbage <= 10 and SHIFTS[0] <= settings.shift <= SHIFTS[-1]
-    return settings if fits else None

@@ -18,6 +18,7 @@ from tangy_hw.audio.source import Source
 from tangy_hw.audio.utterances import split
 from tangy_hw.audio.wav import SoundError
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.labels import UtteranceLabel
 from tangy_tui.language.lexicon import Lexicon
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.speech.calibration import (
@@ -37,7 +38,6 @@ from tangy_tui.speech.evidence import (
     Expecting,
     Wanted,
 )
-from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.loudness import LOUD, SILENT, SoundAdvice, advice, loudness
 from tangy_tui.speech.understanding import wanted
 

@@ -15,6 +15,7 @@ from typing import Any, Literal, Protocol
 from tangy_hw.audio.wav import SoundError, read_wav, seconds_cut_off
 from tangy_profiles.reading import plain
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.labels import STOP, LabelledRecordings, UtteranceLabel
 from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.speech.evidence import (
     LONGEST,
@@ -24,7 +25,6 @@ from tangy_tui.speech.evidence import (
     Expecting,
     Wanted,
 )
-from tangy_tui.speech.labels import STOP, LabelledRecordings, UtteranceLabel
 from tangy_tui.speech.recogniser import SpeechUnavailable, cpu_seconds
 from tangy_tui.speech.transcription import tier_of
 from tangy_tui.speech.understanding import understand, wanted

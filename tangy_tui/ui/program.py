@@ -320,7 +320,7 @@ class Program(SoundingApp):
 
     async def action_phrases(self) -> None:
         """Open the phrasebook; the microphone is closed while it speaks a word."""
-        from tangy_tui.speech.aloud import hear
+        from tangy_tui.app.aloud import hear
         from tangy_tui.ui.screens.phrases import PhrasesScreen
 
         async def say(phones: str) -> None:

@@ -231,8 +231,8 @@ def activity_hear(
     import asyncio
 
     from tangy_profiles.activity import load_activity
+    from tangy_tui.app.aloud import hear
     from tangy_tui.language.lexicon import phones_of
-    from tangy_tui.speech.aloud import hear
 
     phones = phones_of(text, load_activity(activity))
     if not as_json:

@@ -84,7 +84,7 @@ class Listening:
         """
         if self.mic is None:
             return None
-        from tangy_tui.speech.calibration import settings_for
+        from tangy_tui.app.microphones import settings_for
         from tangy_tui.speech.input import SpeechInput
 
         return SpeechInput(

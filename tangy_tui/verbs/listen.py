@@ -73,7 +73,7 @@ def listen(
     (call_number-3.wav) or that of its folder (call number/3.wav). Everything that is no command is
     named none, noise or speech, or lies in a folder of that name.
     """
-    from tangy_tui.speech.calibration import is_checked, settings_for
+    from tangy_tui.app.microphones import is_checked, settings_for
 
     if bool(files) + (bench is not None) + (text is not None) + forget_recordings != 1:
         raise TangyError(WHAT_TO_LISTEN_TO)
@@ -151,8 +151,8 @@ def _cut_off(file: Path) -> str:
 
 
 def _bench(folder: Path, phrasebook: Phrasebook, settings: EvidenceSettings, as_json: bool) -> None:
+    from tangy_tui.language.labels import Labels
     from tangy_tui.language.lexicon import Lexicon
-    from tangy_tui.speech.labels import Labels
     from tangy_tui.speech.practice import Practice, practise
     from tangy_tui.speech.recogniser import Recogniser
     from tangy_tui.text.practice import practice_lines

@@ -57,8 +57,8 @@ def check(
     microphone or the file gives no voice.
     """
     from tangy_hw.audio.sources import open_source
-    from tangy_tui.speech.calibration import forget as forget_check
-    from tangy_tui.speech.calibration import keep
+    from tangy_tui.app.microphones import forget as forget_check
+    from tangy_tui.app.microphones import keep
 
     with open_workspace(data, activity, REGISTERED, write=not listed) as workspace:
         if listed:

@@ -122,7 +122,7 @@ def _check_voice(wanted: VoicePreference) -> None:
 
 
 def _hear(phones: str, person: Person, sink: str) -> None:
-    from tangy_tui.speech.aloud import hear
+    from tangy_tui.app.aloud import hear
 
     if not phones:
         raise TangyError(plain(f"Nobody knows how {person.name} is said: give the phones."))

@@ -18,7 +18,9 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
+from tangy_tui.app.microphones import forget, keep, microphone, settings_for
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.labels import UtteranceLabel
 from tangy_tui.language.lexicon import Lexicon
 from tangy_tui.speech import microphone_check
 from tangy_tui.speech.calibration import (
@@ -30,13 +32,8 @@ from tangy_tui.speech.calibration import (
     Chosen,
     Figures,
     choose,
-    forget,
-    keep,
-    microphone,
-    settings_for,
 )
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings, Expecting, Wanted
-from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.microphone_check import (
     CheckNews,
     CheckResult,

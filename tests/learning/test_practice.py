@@ -12,8 +12,8 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.labels import STOP, Labels, UtteranceLabel
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings, Expecting, Wanted
-from tangy_tui.speech.labels import STOP, Labels, UtteranceLabel
 from tangy_tui.speech.practice import Practice, practise
 from tangy_tui.speech.recogniser import SpeechUnavailable
 from tangy_tui.text.practice import practice_lines

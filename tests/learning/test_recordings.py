@@ -18,6 +18,7 @@ from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.labels import Labels
 from tangy_tui.learning.teaching_events import Begun, StepUndone, TeachingEvent
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import (
@@ -29,7 +30,6 @@ from tangy_tui.learning.verification import (
     Say,
     StopCommand,
 )
-from tangy_tui.speech.labels import Labels
 from tangy_tui.speech.recordings import (
     FOLDER,
     Recorder,

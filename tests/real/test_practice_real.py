@@ -16,9 +16,9 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.person import Person
 from tangy_profiles.room import load_room
 from tangy_profiles.store import Store
+from tangy_tui.app.microphones import settings_for
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.lexicon import Lexicon
-from tangy_tui.speech.calibration import settings_for
 from tangy_tui.speech.microphone_check import to_say
 from tests.hw.sounds import wav
 

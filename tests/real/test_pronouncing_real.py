@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tangy_profiles.phones import PHONES
+from tangy_tui.app.aloud import hear
 from tangy_tui.language.espeak_phones import PROGRAM, espeak_phones, from_ipa, to_espeak
 from tangy_tui.language.pronunciation import pronounce, suggest
-from tangy_tui.speech.aloud import hear
 
 pytestmark = pytest.mark.skipif(
     shutil.which(PROGRAM) is None, reason="espeak-ng is not installed: nobody to say a name"

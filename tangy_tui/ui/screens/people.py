@@ -11,11 +11,11 @@ from textual.containers import Container
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import PLAYED_WORLDS
+from tangy_tui.app.aloud import hear
 from tangy_tui.app.joining import let_join
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
-from tangy_tui.speech.aloud import hear
 from tangy_tui.text import people as text
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean

@@ -13,10 +13,10 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.aloud import hear
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.language.phrase_list import list_phrases
 from tangy_tui.learning.own_phrases import own_phrases, personal_activity
-from tangy_tui.speech.aloud import hear
 from tangy_tui.text import phrases as text
 from tangy_tui.text.phrases import NONE_FOUND, Item, items
 from tangy_tui.ui.base import TangyScreen
