@@ -12,10 +12,10 @@ import pytest
 
 from tangy_profiles.store import Store
 from tangy_profiles.voice import VoicePreference
+from tangy_tui.app import aloud
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.verification import Asked
 from tangy_tui.learning.verification import Say as Words
-from tangy_tui.speech import aloud
 
 Tangy = Callable[..., CompletedProcess[str]]
 
