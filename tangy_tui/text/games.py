@@ -180,6 +180,13 @@ def resumed_words(number: int, steps: int) -> str:
     return f"Game {number} is back where it was after {counted(steps, 'step')}. It is paused."
 
 
+def earlier_steps_words(steps: int) -> str:
+    """Tell where to read the steps before an interruption."""
+    if not steps:
+        return "No steps yet."
+    return f"{counted(steps, 'step')} before the interruption: see `tangy log show last`."
+
+
 def over_words(steps: int) -> str:
     """Tell that a game is over, and which key starts another."""
     return f"The game is over after {counted(steps, 'step')}. {{next}} plays another."

@@ -89,8 +89,5 @@ ALL_WELL = "Is all well now?"
 
 
 def uncleared_words(name: str) -> str:
-    """Name the fault that nobody cleared in the last game, and tell what a new game does."""
-    return (
-        f"The last game ended with: {name}, which nobody cleared. Tangy moves as soon "
-        "as a game begins."
-    )
+    """Name the fault that nobody cleared in the last game, and tell what going on does."""
+    return f"Nobody cleared a fault of the last game: {name}. Tangy may move as soon as you go on."

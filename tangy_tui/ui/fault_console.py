@@ -280,8 +280,8 @@ class FaultConsole:
         dialog = ConfirmDialog(
             ALL_WELL,
             uncleared_words(fault.name),
-            yes="all is well: begin the game",
-            no="do not begin",
+            yes="all is well: go on",
+            no="not yet",
         )
         if not await self._screen.app.push_screen_wait(dialog):
             return False

@@ -30,6 +30,7 @@ from tangy_tui.text.faults import kind_words, move_words
 from tangy_tui.text.games import (
     begun_words,
     broken_off_words,
+    earlier_steps_words,
     over_words,
     response_words,
     resumed_words,
@@ -97,7 +98,8 @@ class GamePicture:
                     room = self._screen.query_one(RoomView)
                     room.say("")
                     room.put(state.place)
-                    self._screen.query_one(Transcript).clear(resumed)
+                    transcript = self._screen.query_one(Transcript)
+                    transcript.clear(resumed, earlier_steps_words(resumed))
                     self.grounds.clear()
                     self.lesson = ""
                     self._stage = self._workspace.activity.in_words(state.situation)

@@ -58,6 +58,7 @@ async def test_it_goes_on_paused_with_its_steps_counted(interrupted: Workspace, 
         assert isinstance(screen, PlayScreen)
         await until(lambda: screen.query_one(Transcript).count == STEPS)
         assert str(screen.control.phase) == "paused"
+        assert f"{STEPS} steps before the interruption" in pilot.text()
         await pilot.press("full_stop")
         await until(lambda: screen.query_one(Transcript).count == STEPS + 1)
 

@@ -124,8 +124,10 @@ class Transcript(Choosable):
         self._mark()
         self.post_message(self.Moved(self, None))
 
-    def clear(self, after: int = 0) -> None:
-        """Clear the steps; the next one is numbered `after` + 1."""
+    def clear(self, after: int = 0, empty: str | None = None) -> None:
+        """Clear the steps, and show `empty` if given; the next one is numbered `after` + 1."""
+        if empty is not None:
+            self._empty = clean(empty)
         self.fill([])
         self._count = after
 
