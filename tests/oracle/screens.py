@@ -65,17 +65,20 @@ def _settle(terminal: Terminal) -> None:
 
 SIZES = {"80x24": (80, 24), "120x40": (120, 40)}
 
+F1, F4 = "\x1bOP", "\x1bOS"
 _TEACH = [
-    ("Now:", "greet everyone"),
+    ("Who are you?", "\r"),
+    ("skips the tour", "\x1b"),
+    ("No steps yet", "greet everyone"),
     ("> greet everyone", "\r"),
     ("Did you say", "y"),
     ("Steps", "call number"),
     ("> call number", "\r"),
     ("Did you say", "n"),
     ("> call number", "\x1b"),
-    ("", "w"),
+    ("", F4),
     ("", "\x1b"),
-    ("", "?"),
+    ("", F1),
     ("", "\x1b"),
 ]
 _HOME = [("Teach", "?"), ("", "\x1b")]
