@@ -11,7 +11,7 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
-from tangy_profiles.scene import Arranged, ArrangedSituation, Scene
+from tangy_profiles.scene import ArrangedCard, ArrangedSituation, Scene
 from tangy_profiles.state import ActivityState, Outcome
 
 
@@ -77,7 +77,7 @@ class Arranging(Protocol):
     """A world that sees to it that everything comes about, and says what comes next."""
 
     @property
-    def coming(self) -> Arranged | ArrangedSituation | None:
+    def coming(self) -> ArrangedCard | ArrangedSituation | None:
         """What is about to come about, None where nothing is."""
         ...
 

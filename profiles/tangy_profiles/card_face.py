@@ -39,7 +39,7 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True)
-class Words:
+class PrintedText:
     """A text centred on a point; `high` is the height of its capitals in mm."""
 
     text: str
@@ -90,24 +90,24 @@ class CardLayout:
             x = grid.left + column * self.cell
             yield Box(x - half, grid.top - half, x + half, grid.bottom + half)
 
-    def words(self, card: int, seed: int, title: str) -> Iterator[Words]:
+    def words(self, card: int, seed: int, title: str) -> Iterator[PrintedText]:
         """Yield all texts on a card."""
         for column, told in enumerate(self.deck.columns):
             x = self.grid.left + (column + 0.5) * self.cell
-            yield Words(told.letter, x, self.grid.top - LETTERS_ABOVE, LETTERS_HIGH)
+            yield PrintedText(told.letter, x, self.grid.top - LETTERS_ABOVE, LETTERS_HIGH)
         for cell, number in enumerate(numbers_of(self.deck, card, seed)):
             free = self.deck.free >> cell & 1
             x, y = self.middle(cell)
             yield (
-                Words("FREE", x, y, self.cell / 5)
+                PrintedText("FREE", x, y, self.cell / 5)
                 if free
-                else Words(str(number), x, y, self.number_high)
+                else PrintedText(str(number), x, y, self.number_high)
             )
         middle = WIDTH / 2
-        yield Words(title, middle, TAGS_TOP + 5, 5.0)
-        yield Words(str(card), middle, TAGS_TOP + 19, 11.0)
-        yield Words(f"card {card}", middle, TAGS_BOTTOM + 9, 5.0)
-        yield Words(f"deck {seed}", middle, TAGS_BOTTOM + 18, 3.0)
+        yield PrintedText(title, middle, TAGS_TOP + 5, 5.0)
+        yield PrintedText(str(card), middle, TAGS_TOP + 19, 11.0)
+        yield PrintedText(f"card {card}", middle, TAGS_BOTTOM + 9, 5.0)
+        yield PrintedText(f"deck {seed}", middle, TAGS_BOTTOM + 18, 3.0)
 
 
 TAGS = (

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box, CardLayout, Words, tag_ids
+from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box, CardLayout, PrintedText, tag_ids
 from tangy_profiles.errors import TangyError
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def draw_number(face: CardLayout, number: int, side: int) -> Picture:
     from PIL import Image, ImageDraw
 
     picture = Image.new("L", (FINE * side, FINE * side), 255)
-    words = Words(str(number), face.cell / 2, face.cell / 2, face.number_high)
+    words = PrintedText(str(number), face.cell / 2, face.cell / 2, face.number_high)
     _write(ImageDraw.Draw(picture), words, FINE * side / face.cell)
     return _array(picture.resize((side, side), Image.Resampling.BOX))
 
@@ -91,7 +91,7 @@ def _fill(draw: Any, box: Box, scale: float, grey: int) -> None:
     draw.rectangle((left, top, right - 1, bottom - 1), fill=grey)
 
 
-def _write(draw: Any, words: Words, scale: float) -> None:
+def _write(draw: Any, words: PrintedText, scale: float) -> None:
     font = _font(round(words.high / CAPITALS * scale))
     place = words.x * scale, (words.y + words.high / 2) * scale
     draw.text(place, words.text, font=font, fill=0, anchor="ms")

@@ -64,7 +64,7 @@ FACTS_UNKNOWN = "its log has no facts: it was played by an earlier version"
 OTHERWISE = "its steps do not come out as they did"
 
 
-class Replayed(Protocol):
+class ReplayedWorld(Protocol):
     """A deterministic simulated world."""
 
     activity: Activity
@@ -164,7 +164,7 @@ class PastGame:
             since = {person: since.get(person, over) for person in requests.people}
         return since
 
-    def replay(self, world: Replayed) -> ActivityState:
+    def replay(self, world: ReplayedWorld) -> ActivityState:
         """Replay the logged games of the run; return the last state.
 
         Raises:

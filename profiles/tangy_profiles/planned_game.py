@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Due:
+class DueChange:
     """A change that is due, its person, and its number of calls."""
 
     what: ChangeKind
@@ -133,7 +133,7 @@ class PlannedGame:
         return winning_state(self.activity.user_states) if place in self.vouched else state
 
     @property
-    def due(self) -> Due | None:
+    def due(self) -> DueChange | None:
         """Return the change that is due before the next behaviour, or None."""
         tracker = self.tracker
         if tracker.place in tracker.queue or (tracker.place != FRONT and not self.all_called):
@@ -143,14 +143,14 @@ class PlannedGame:
             person = winner if isinstance(winner, str) else "".join(winner)
             others = set(tracker.queue) - {person} or self._unseen
             if self.game_plan.several and others:
-                return Due("others first", person)
-            return Due("played on", person) if self.patterns.left else None
+                return DueChange("others first", person)
+            return DueChange("played on", person) if self.patterns.left else None
         if self.winner and not tracker.queue and not self._unseen:
-            return Due("played on" if self.patterns.left else "won", self.winner)
+            return DueChange("played on" if self.patterns.left else "won", self.winner)
         if len(self.called_now) >= len(self.own_deck.numbers):
-            return self._visit_due() if self.all_called else Due("all called")
+            return self._visit_due() if self.all_called else DueChange("all called")
         if calls := self._calls_due():
-            return Due("calls first", number=calls)
+            return DueChange("calls first", number=calls)
         return self._visit_due() if self.game_plan.visits else None
 
     def _calls_due(self) -> int:
@@ -172,7 +172,7 @@ class PlannedGame:
         here = (person for person in self.people if person not in self.away)
         return next((person for person in here if person not in self._visited), "")
 
-    def _visit_due(self) -> Due | None:
+    def _visit_due(self) -> DueChange | None:
         """Return the visit that is due or put off; a visit delays no request.
 
         When all numbers have been called, each person gets one, and then the game is over.
@@ -180,21 +180,21 @@ class PlannedGame:
         queue, place, calls = self.tracker.queue, self.tracker.place, len(self.called_now)
         if self.visiting:
             if self.visiting in queue and place != self.visiting and len(queue) > 1:
-                return Due("visit put off", self.visiting)
-            return None if self.visiting in queue else Due("visit over", self.visiting)
+                return DueChange("visit put off", self.visiting)
+            return None if self.visiting in queue else DueChange("visit over", self.visiting)
         if queue or place != FRONT or not self.tracker.begun():
             return None
         here = [person for person in self.people if person not in self.away]
         if self.all_called:
             unseen, won = self._unseen, self.patterns.won
-            return Due("visit", unseen) if unseen else Due("nobody won", number=won)
+            return DueChange("visit", unseen) if unseen else DueChange("nobody won", number=won)
         if not self.activity.rules.unvisited:
             return None
         longest = min(here, key=lambda person: self._visited.get(person, 0), default="")
         waited = calls - self._visited.get(longest, 0)
         if not longest or waited < self.activity.rules.unvisited:
             return None
-        return Due("visit", longest)
+        return DueChange("visit", longest)
 
     # ---------------------------------------------------------------------- changes
 

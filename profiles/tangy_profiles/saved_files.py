@@ -35,14 +35,14 @@ _HEAD = 2000  # bytes of a page to search for its mark
 _COPY = re.compile(rf"{re.escape(FILE)}\.(?:damaged-|version-\d|copying)")
 
 
-class Erased(NamedTuple):
+class ErasureResult(NamedTuple):
     """The changed files, and those that may still have the name."""
 
     changed: tuple[Path, ...]
     left: tuple[Path, ...]
 
 
-def erase_from_files(folder: Path, eraser: NameEraser) -> Erased:
+def erase_from_files(folder: Path, eraser: NameEraser) -> ErasureResult:
     """Erase a name from every file of a data folder except the log itself.
 
     A file is replaced atomically; files behind links are not changed.
@@ -68,7 +68,7 @@ def erase_from_files(folder: Path, eraser: NameEraser) -> Erased:
             or eraser.text(path.name) != path.name
         ):
             left.append(path)
-    return Erased(tuple(changed), tuple(left))
+    return ErasureResult(tuple(changed), tuple(left))
 
 
 def _files(folder: Path) -> Iterator[Path]:

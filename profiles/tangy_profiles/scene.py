@@ -19,7 +19,7 @@ class CardView:
 
 
 @dataclass(frozen=True, slots=True)
-class Arranged:
+class ArrangedCard:
     """The next situation of a guided game: a person, and the state of their card when they ask.
 
     `hidden`: the card is out of view when the robot arrives.

@@ -16,7 +16,7 @@ Spoken: TypeAlias = Verification | StaffNote
 """The reply to an answer before Tangy acts on it; the controller carries out a `Verified`."""
 
 
-class Answers:
+class AnswerCollector:
     """Collects and verifies staff's answer to the open question."""
 
     def __init__(self, supervision: Supervision) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, FactObservation
 from tangy_profiles.behaviour import Action
 from tangy_profiles.codec import encode
 from tangy_profiles.declared.speech import media
@@ -52,5 +52,5 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
         super()._listen()
         acts = self.truth()["acts"]
         for fact, who, raw, sure in acts[self._passed_on :]:
-            self.take(Observed(TypedObservation(fact, who or None, raw), sure, "staff"))
+            self.take(FactObservation(TypedObservation(fact, who or None, raw), sure, "staff"))
         self._passed_on = len(acts)

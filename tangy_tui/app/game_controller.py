@@ -17,7 +17,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.process_log import serving
 from tangy_profiles.staff_records import StaffActionKind
-from tangy_tui.app.answers import Answers
+from tangy_tui.app.answers import AnswerCollector
 from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.ending_games import EndingGames
 from tangy_tui.app.fault_commands import Result, attend
@@ -97,7 +97,7 @@ class GameController(EndingGames):
         self.by = by
         self.robot = RobotControls(robot, self.note, lambda: self.stopped, paced=paced)
         self.plan = GamePlanControls(supervision, self.note, by)
-        self.answers = Answers(supervision)
+        self.answers = AnswerCollector(supervision)
         """Verifies answers to Tangy's questions; `answer` then carries them out."""
         self._void = void
         self.going = True

@@ -112,12 +112,12 @@ def map_so_far(record: Path) -> SoFar | None:
 
     A line that is still being written counts as nothing; the next call reads it whole.
     """
-    from tangy_hw.navigation.mapping import MapError, Placed, map_of_scans, sparse
+    from tangy_hw.navigation.mapping import MapError, PlacedScan, map_of_scans, sparse
     from tangy_hw.navigation.scan_log import LogError, read_log
 
     try:
         logged = read_log(record)
-        scans = sparse(Placed(one.scan, one.odometry) for one in logged)
+        scans = sparse(PlacedScan(one.scan, one.odometry) for one in logged)
         drawn = map_of_scans(scans, COARSE)
     except (LogError, MapError):
         return None

@@ -65,7 +65,9 @@ class Sweep:
         Raises:
             TangyError: the folder is not writable, or the cluster not reachable.
         """
-        kept = Kept(where.folder, f"{self.name}-{self.digest[:12]}.jsonl", fresh=where.fresh)
+        kept = StoredResults(
+            where.folder, f"{self.name}-{self.digest[:12]}.jsonl", fresh=where.fresh
+        )
         done = {
             key: kept.results[key] for case in self.cases if (key := _key(case)) in kept.results
         }
@@ -79,7 +81,7 @@ class Sweep:
         return [done[_key(case)] for case in self.cases]
 
 
-class Kept:
+class StoredResults:
     """The stored results of a sweep, one JSON line each.
 
     A line is written at once; a line truncated by a kill or a full disk is ignored, and the next

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tangy_profiles.scene import Arranged, ArrangedSituation
+from tangy_profiles.scene import ArrangedCard, ArrangedSituation
 from tangy_tui.learning.teaching_events import Announced
 from tangy_tui.world import Arranging, World
 
@@ -11,7 +11,7 @@ class Announcements:
     """Checks a world after each step, and announces each upcoming event once."""
 
     def __init__(self) -> None:
-        self._coming: Arranged | ArrangedSituation | None = None
+        self._coming: ArrangedCard | ArrangedSituation | None = None
 
     def news(self, world: World) -> list[Announced]:
         """Return the event that the world will bring about next, unless already announced."""

@@ -16,7 +16,7 @@ from tangy_profiles.state import Situation
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class DemonstratedStep:
     """One demonstrated step, as step `number` (from 1) of a demonstration."""
 
     demonstration: str
@@ -30,10 +30,10 @@ class Conflict:
     """A situation with the steps of each answer to it, most frequent answer first."""
 
     situation: Situation
-    answers: Mapping[str, tuple[Shown, ...]]
+    answers: Mapping[str, tuple[DemonstratedStep, ...]]
 
     @property
-    def steps(self) -> tuple[Shown, ...]:
+    def steps(self) -> tuple[DemonstratedStep, ...]:
         """All steps that were shown in this situation."""
         return tuple(shown for steps in self.answers.values() for shown in steps)
 
@@ -57,7 +57,7 @@ def joined(resolutions: Iterable[Resolution]) -> dict[Situation, Resolution]:
     return settled
 
 
-def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[Shown]:
+def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[DemonstratedStep]:
     """Yield every step with its demonstration and number; skip copies of earlier steps."""
     known: set[int] = set()
     for demonstration in demonstrations:
@@ -66,7 +66,7 @@ def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[Shown]:
                 continue
             known.add(step.id)
             teacher = step.teacher or demonstration.teacher
-            yield Shown(demonstration.id, teacher, number, step)
+            yield DemonstratedStep(demonstration.id, teacher, number, step)
 
 
 def find_conflicts(
@@ -77,7 +77,7 @@ def find_conflicts(
     Two answers that were both called right are no conflict. A later step with a third answer is.
     """
     settled = joined(resolutions)
-    answers: dict[Situation, dict[str, list[Shown]]] = {}
+    answers: dict[Situation, dict[str, list[DemonstratedStep]]] = {}
     for shown in shown_steps(demonstrations):
         said = settled.get(shown.step.state.situation)
         if said is not None and said.sets_aside(shown.step):

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
-from tangy_tui.learning.conflicts import Resolution, Shown, joined, shown_steps
+from tangy_tui.learning.conflicts import DemonstratedStep, Resolution, joined, shown_steps
 
 
 class Contradictions:
@@ -27,7 +27,7 @@ class Contradictions:
         Contradictions that `teacher` has been told about already are not reported again.
         """
         self._settled = joined(resolutions)
-        self._shown: dict[Situation, dict[str, list[Shown]]] = {}
+        self._shown: dict[Situation, dict[str, list[DemonstratedStep]]] = {}
         self._told: set[tuple[Situation, frozenset[str]]] = set()
         for shown in sorted(shown_steps(earlier), key=lambda shown: shown.step.id):
             if shown.teacher == teacher:
@@ -35,7 +35,7 @@ class Contradictions:
             else:
                 self._add(shown)
 
-    def found(self, now: Shown) -> Shown | None:
+    def found(self, now: DemonstratedStep) -> DemonstratedStep | None:
         """Add a step and return the latest step that contradicts it, if that is new.
 
         Return None if no other behaviour was shown, if a teacher called this answer right, or if
@@ -95,7 +95,7 @@ class Contradictions:
                         if of != situation or behaviour not in pair
                     }
 
-    def _add(self, shown: Shown) -> None:
+    def _add(self, shown: DemonstratedStep) -> None:
         said = self._settled.get(shown.step.state.situation)
         if said is None or not said.sets_aside(shown.step):
             answers = self._shown.setdefault(shown.step.state.situation, {})

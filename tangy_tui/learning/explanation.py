@@ -12,13 +12,13 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.learning.conflicts import Shown, shown_steps
+from tangy_tui.learning.conflicts import DemonstratedStep, shown_steps
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import Decision, Policy, learn_policy
 
 
 @dataclass(frozen=True, slots=True)
-class Why:
+class DecisionReasons:
     """The reasons for one decision.
 
     `rests_on` are the steps in this situation that show the chosen behaviour, `against` those that
@@ -28,17 +28,19 @@ class Why:
 
     situation: Situation
     decision: Decision
-    rests_on: tuple[Shown, ...]
-    against: tuple[Shown, ...]
-    near: tuple[Shown, ...]
+    rests_on: tuple[DemonstratedStep, ...]
+    against: tuple[DemonstratedStep, ...]
+    near: tuple[DemonstratedStep, ...]
 
     @property
-    def steps(self) -> tuple[Shown, ...]:
+    def steps(self) -> tuple[DemonstratedStep, ...]:
         """All of these steps, in the order in which they are presented."""
         return (*self.rests_on, *self.against, *self.near)
 
 
-def explain(policy: Policy, demonstrations: Sequence[Demonstration], situation: Situation) -> Why:
+def explain(
+    policy: Policy, demonstrations: Sequence[Demonstration], situation: Situation
+) -> DecisionReasons:
     """Find the steps behind a policy's decision.
 
     Args:
@@ -54,7 +56,7 @@ def explain(policy: Policy, demonstrations: Sequence[Demonstration], situation: 
     shown = list(shown_steps(d for d in demonstrations if d.id in used))
     here = [s for s in shown if s.step.state.situation == situation]
     near = () if decision.seen else (s for s in shown if _differ(s, situation) == 1)
-    return Why(
+    return DecisionReasons(
         situation,
         decision,
         tuple(s for s in here if s.step.behaviour == decision.behaviour),
@@ -78,6 +80,6 @@ def foresee(store: Store, activity: Activity, present: Demonstration | None) -> 
     return learn_policy(activity, list(shown.values()), resolutions=library.resolutions)
 
 
-def _differ(shown: Shown, situation: Situation) -> int:
+def _differ(shown: DemonstratedStep, situation: Situation) -> int:
     """Count the parts of the triple in which two situations differ."""
     return sum(a != b for a, b in zip(shown.step.state.situation, situation, strict=True))

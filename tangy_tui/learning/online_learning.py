@@ -23,7 +23,7 @@ from tangy_tui.learning.conflicts import Resolution, find_conflicts, joined, sho
 from tangy_tui.learning.editing import Editor, new_id
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.library_entries import Library
-from tangy_tui.learning.policies import Change, does, keep_policy, unused_name
+from tangy_tui.learning.policies import DecisionChange, does, keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 
 Unsettled = Literal["", "new", "otherwise"]
@@ -40,7 +40,7 @@ class PolicyReplay:
     """
 
     steps: int
-    changed: tuple[Change, ...]
+    changed: tuple[DecisionChange, ...]
     overruled: int = 0
     unsettled: Unsettled = ""
 
@@ -144,7 +144,7 @@ def replay(
     steps = list(shown_steps(demonstrations))
     situations = dict.fromkeys(shown.step.state.situation for shown in steps)
     changed = tuple(
-        Change(situation, does(before.decide(situation)), does(after.decide(situation)))
+        DecisionChange(situation, does(before.decide(situation)), does(after.decide(situation)))
         for situation in situations
         if situation != answered and does(before.decide(situation)) != does(after.decide(situation))
     )

@@ -33,7 +33,7 @@ RESERVED = ("last", "policy", "teacher")
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class DecisionChange:
     """A situation whose decision changed when the policy was refitted."""
 
     situation: Situation
@@ -64,7 +64,7 @@ class NotAsKept:
 
     policy: str
     versions: tuple[tuple[str, str | None, str], ...]
-    changes: tuple[Change, ...]
+    changes: tuple[DecisionChange, ...]
 
 
 PolicyNotice: TypeAlias = LeftOut | NotAsKept
@@ -220,7 +220,7 @@ def without_strange_steps(
     return kept, notices
 
 
-def changes(kept: PolicyLearnt, policy: Policy) -> list[Change]:
+def changes(kept: PolicyLearnt, policy: Policy) -> list[DecisionChange]:
     """Compare a stored policy with a refitted one: changed behaviours, or that it asks."""
     was: dict[Situation, str] = {}
     for row in kept.rows:
@@ -233,7 +233,7 @@ def changes(kept: PolicyLearnt, policy: Policy) -> list[Change]:
         now = GONE if decision is None else does(decision)
         before = was.get(situation, ASKS)
         if now != before:
-            found.append(Change(situation, before, now))
+            found.append(DecisionChange(situation, before, now))
     return found
 
 

@@ -15,7 +15,7 @@ from tangy_profiles.demonstration import Step
 from tangy_profiles.effects import Effect
 from tangy_profiles.state import FRONT, Situation
 from tangy_profiles.store import Store
-from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.contradictions import Contradictions
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library
@@ -83,7 +83,7 @@ class Remarks:
         """Discard the cache of earlier demonstrations, because one was deleted."""
         self._contradictions, self.open = None, None
 
-    def notice(self, shown: Shown, *, over: bool) -> None:
+    def notice(self, shown: DemonstratedStep, *, over: bool) -> None:
         """Check a step; a new remark about it becomes the open one.
 
         Args:
@@ -144,11 +144,11 @@ class Remarks:
             editor.undo()
             self._contradictions = None
 
-    def _goes(self, shown: Shown) -> bool:
+    def _goes(self, shown: DemonstratedStep) -> bool:
         """Return whether a step goes to a person: it may be right for another person too."""
         return self._activity.behaviour(shown.step.behaviour).effect == "go to user"
 
-    def _overlooked(self, shown: Shown, *, over: bool) -> Remark | None:
+    def _overlooked(self, shown: DemonstratedStep, *, over: bool) -> Remark | None:
         step, activity = shown.step, self._activity
         state, behaviour = step.state, activity.behaviour(step.behaviour)
         target = step.target
@@ -171,7 +171,7 @@ class Remarks:
             return None
         return Overlooked(shown.number, step, self._due(rule, shown))
 
-    def _passes_over(self, rule: StageRule, behaviour: Behaviour, shown: Shown) -> bool:
+    def _passes_over(self, rule: StageRule, behaviour: Behaviour, shown: DemonstratedStep) -> bool:
         """Return whether a behaviour skips the behaviour that is due in a stage."""
         step = shown.step
         match rule.condition:
@@ -189,7 +189,7 @@ class Remarks:
             case _:
                 return False
 
-    def _due(self, rule: StageRule, shown: Shown) -> str | None:
+    def _due(self, rule: StageRule, shown: DemonstratedStep) -> str | None:
         """Return the behaviour that the stage rule asks for, or None."""
         match rule.condition:
             case "before":

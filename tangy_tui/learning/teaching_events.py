@@ -7,9 +7,9 @@ from typing import Literal, TypeAlias
 
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
-from tangy_profiles.scene import Arranged, ArrangedSituation
+from tangy_profiles.scene import ArrangedCard, ArrangedSituation
 from tangy_profiles.state import Outcome, Situation
-from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.verification import (
     Asked,
     NotUnderstood,
@@ -107,7 +107,7 @@ class Contradicted:
 
     number: int
     step: Step
-    earlier: Shown
+    earlier: DemonstratedStep
     own: bool
     """Whether the same teacher showed the earlier step."""
 
@@ -166,7 +166,7 @@ class Settled:
 class Announced:
     """A guided game is about to bring about this event or situation."""
 
-    arranged: Arranged | ArrangedSituation
+    arranged: ArrangedCard | ArrangedSituation
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ from tangy_profiles.teaching_records import (
 )
 from tangy_tui.language.commands import Learnt, Phrasebook
 from tangy_tui.learning.announcements import Announcements
-from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.editing import Editor, NotPossible, new_id
 from tangy_tui.learning.game_replay import (
     MakeWorld,
@@ -329,7 +329,7 @@ class TeachingSession:
         speech, image = self.activity.words_of(action, outcome, self.name)
         number, speech = len(self.demonstration.steps), speech or NOTHING_SAID
         events: list[TeachingEvent] = [Executed(number, step, action, outcome, speech, image)]
-        shown = Shown(self.demonstration.id, self.teacher, number, step)
+        shown = DemonstratedStep(self.demonstration.id, self.teacher, number, step)
         self._remarks.notice(shown, over=finished)
         return [*events, Finished(self.demonstration)] if finished else events
 

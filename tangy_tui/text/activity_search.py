@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tangy_profiles.declared.checking import ActivityFlaw, Findings
     from tangy_profiles.declared.search import Cut
     from tangy_profiles.declared.search_way import Event
-    from tangy_profiles.declared.state_keys import Share
+    from tangy_profiles.declared.state_keys import StateFactor
     from tangy_tui.learning.coverage_proof import CoverageProof
 
 MOST_SHARES = 3
@@ -99,7 +99,7 @@ def _player(id: str) -> str:
     return {"one": "player 1", "other": "player 2"}.get(id, id)
 
 
-def shares_words(shares: Sequence[Share]) -> str:
+def shares_words(shares: Sequence[StateFactor]) -> str:
     """Tell which facts multiply the states most, and how an author can reduce them."""
     named = [
         f"{BUILT_IN.get(one.name, repr(one.name))} ({one.times:.1f} times as many)"

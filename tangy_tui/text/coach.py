@@ -13,7 +13,7 @@ from tangy_tui.text.situations import card_words, moment_words
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity, StageRule
-    from tangy_profiles.scene import Arranged, Scene
+    from tangy_profiles.scene import ArrangedCard, Scene
 
 Name = Callable[[str], str]
 
@@ -86,7 +86,9 @@ def _facts(activity: Activity, state: ActivityState, scene: Scene, name: Name) -
     return [fact for fact in facts if fact]
 
 
-def arranged_words(activity: Activity, arranged: Arranged | ArrangedSituation, name: Name) -> str:
+def arranged_words(
+    activity: Activity, arranged: ArrangedCard | ArrangedSituation, name: Name
+) -> str:
     """Announce what a guided game is about to arrange, and why."""
     if isinstance(arranged, ArrangedSituation):
         situation = activity.in_words(arranged.situation)

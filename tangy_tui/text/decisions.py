@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.behaviour import Action
     from tangy_profiles.state import ActivityState
-    from tangy_tui.learning.conflicts import Shown
-    from tangy_tui.learning.explanation import Why
+    from tangy_tui.learning.conflicts import DemonstratedStep
+    from tangy_tui.learning.explanation import DecisionReasons
     from tangy_tui.learning.policy import Decision, Policy
 
 
@@ -28,7 +28,7 @@ def shown_here(seen: int, share: float) -> str:
     return f"as shown {times}" if share >= 1 else f"as shown {times}, {votes}"
 
 
-def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
+def why_words(activity: Activity, why: DecisionReasons, *, votes: bool = True) -> list[str]:
     """Explain a decision in sentences, the most important first.
 
     Args:
@@ -105,7 +105,7 @@ def addressed_words(
     return f" ({name(action.target)}, {because})" if right else f" ({name(action.target)})"
 
 
-def shown_words(activity: Activity, shown: Shown, name: Callable[[str], str]) -> str:
+def shown_words(activity: Activity, shown: DemonstratedStep, name: Callable[[str], str]) -> str:
     """Name a demonstrated step: behaviour, place in the demonstration, teacher.
 
     Args:

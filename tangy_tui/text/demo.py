@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs
 from tangy_profiles.state import Response
-from tangy_tui.learning.explanation import Why
+from tangy_tui.learning.explanation import DecisionReasons
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.decisions import shown_words, why_words
 from tangy_tui.text.numbers import counted
@@ -125,7 +125,7 @@ def learnt_lines(activity: Activity, policy: Policy) -> list[str]:
     return lines
 
 
-def why_lines(activity: Activity, why: Why) -> list[str]:
+def why_lines(activity: Activity, why: DecisionReasons) -> list[str]:
     """Explain a decision, with the steps that support it."""
     steps = [shown_words(activity, shown, lambda id: "this game") for shown in why.rests_on]
     return [*why_words(activity, why), *steps]

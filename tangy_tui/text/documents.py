@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from tangy_tui.interaction.feedback import FeedbackEntry
     from tangy_tui.interaction.record import Record
     from tangy_tui.learning.comparison import SituationComparison
-    from tangy_tui.learning.conflicts import Conflict, Shown
-    from tangy_tui.learning.explanation import Why
+    from tangy_tui.learning.conflicts import Conflict, DemonstratedStep
+    from tangy_tui.learning.explanation import DecisionReasons
     from tangy_tui.learning.online_learning import Lesson
     from tangy_tui.learning.policy import Decision, Policy
 
@@ -136,7 +136,7 @@ def conflict_document(workspace: Workspace, conflict: Conflict) -> dict[str, Any
     }
 
 
-def shown_document(shown: Shown) -> dict[str, Any]:
+def shown_document(shown: DemonstratedStep) -> dict[str, Any]:
     """Describe the place of a demonstrated step."""
     return {
         "demonstration": shown.demonstration,
@@ -160,7 +160,7 @@ def decision_document(decision: Decision) -> dict[str, Any]:
     }
 
 
-def why_document(workspace: Workspace, why: Why) -> dict[str, Any]:
+def why_document(workspace: Workspace, why: DecisionReasons) -> dict[str, Any]:
     """Describe the explanation of a decision."""
     return {
         "situation": list(why.situation),

@@ -9,10 +9,10 @@ from tangy_tui.text.numbers import counted
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
-    from tangy_tui.learning.conflicts import Shown
-    from tangy_tui.learning.explanation import Why
+    from tangy_tui.learning.conflicts import DemonstratedStep
+    from tangy_tui.learning.explanation import DecisionReasons
     from tangy_tui.learning.online_learning import PolicyReplay, Unsettled
-    from tangy_tui.learning.policies import Change
+    from tangy_tui.learning.policies import DecisionChange
     from tangy_tui.learning.policy import Policy
 
 
@@ -133,7 +133,7 @@ def learnt_lines(
     return lines
 
 
-def changed_lines(activity: Activity, before: str, changed: Sequence[Change]) -> list[str]:
+def changed_lines(activity: Activity, before: str, changed: Sequence[DecisionChange]) -> list[str]:
     """Describe how a policy differs from the previous one, given by name."""
     if not changed:
         return [f"It does the same as {before!r}, the policy before it, in every situation."]
@@ -145,7 +145,7 @@ def changed_lines(activity: Activity, before: str, changed: Sequence[Change]) ->
     return lines
 
 
-def grounds(why: Why) -> tuple[tuple[str, Sequence[Shown]], ...]:
+def grounds(why: DecisionReasons) -> tuple[tuple[str, Sequence[DemonstratedStep]], ...]:
     """Return the steps that support a decision, and the others, each group with its heading."""
     return ("Based on", why.rests_on), ("Against it", why.against), ("Nearby", why.near)
 

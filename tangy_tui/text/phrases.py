@@ -31,7 +31,7 @@ SOURCES: dict[WordSource, str] = {
 """Words for the source of a pronunciation."""
 
 
-class Item(NamedTuple):
+class PhraseItem(NamedTuple):
     """One entry of the page: heading, subject, and text.
 
     `phones` are those to speak (a comma between words; "" for none), `person` the id of a person if
@@ -50,7 +50,7 @@ class Item(NamedTuple):
         return all(word in text for word in wanted.casefold().split())
 
 
-def items(listed: PhraseList) -> Iterator[Item]:
+def items(listed: PhraseList) -> Iterator[PhraseItem]:
     """Yield the page entry by entry."""
     phones = {said.word: said.phones[0] for said in listed.words if said.phones}
     for ways in listed.behaviours:
@@ -60,15 +60,15 @@ def items(listed: PhraseList) -> Iterator[Item]:
         texts += [f"your own: {', '.join(own)}"] if own else []
         first = ways.phrases[0].split() if ways.phrases else []
         aloud = ", ".join(phones[word] for word in first) if phones.keys() >= set(first) else ""
-        yield Item("What to say", ways.question, tuple(texts), aloud)
+        yield PhraseItem("What to say", ways.question, tuple(texts), aloud)
     for called in listed.people:
         texts = [", ".join(called.ways), said_words(called.said)]
         aloud, id = called.said.phones, called.person.id
-        yield Item("People and seats", called.person.name, tuple(texts), aloud, id)
+        yield PhraseItem("People and seats", called.person.name, tuple(texts), aloud, id)
     reasons = listed.left_out.values()
     for reason in dict.fromkeys(reasons):
         out = [phrase for phrase, why in listed.left_out.items() if why == reason]
-        yield Item("Cannot be heard, only typed", reason, (", ".join(out),))
+        yield PhraseItem("Cannot be heard, only typed", reason, (", ".join(out),))
     for said in listed.words:
         text = f"{' or '.join(said.phones) or '?'} ({SOURCES[said.source]})"
-        yield Item("How words are said", said.word, (text,), phones.get(said.word, ""))
+        yield PhraseItem("How words are said", said.word, (text,), phones.get(said.word, ""))

@@ -10,7 +10,7 @@ from tangy_tui.text.situations import ALL_RIGHT
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
-    from tangy_tui.learning.explanation import Why
+    from tangy_tui.learning.explanation import DecisionReasons
     from tangy_tui.learning.verification import Asked, Offered
 
 SAID_TOO_EARLY = "You said that before the question was on the screen."
@@ -48,7 +48,7 @@ def acceptable_words(reason: str) -> str:
     return f"{reason} If all is well, type: {ALL_RIGHT[0]}. If not, what should Tangy do?"
 
 
-def given_words(activity: Activity, why: Why) -> str:
+def given_words(activity: Activity, why: DecisionReasons) -> str:
     """Tell which answers demonstrations give in a situation, how often and by whom."""
     given: dict[str, list[str]] = {}
     for shown in (*why.rests_on, *why.against):

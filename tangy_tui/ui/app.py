@@ -42,7 +42,7 @@ from tangy_tui.ui.key_reading import KeyReader, prepare_stop
 from tangy_tui.ui.keys import DEFAULT, bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
-from tangy_tui.ui.screen_diff import ScreenDiff, Written
+from tangy_tui.ui.screen_diff import ScreenDiff, TextUpdate
 from tangy_tui.ui.terminal import SERVED, TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES, first_theme
 from tangy_tui.ui.writer import HeldWrites
@@ -249,7 +249,7 @@ class TangyApp(App[None]):
             if not changed and cursor == self._previous_cursor_position:
                 self.post_display_hook()
                 return
-            super()._display(screen, cast("RenderableType", Written(changed)))
+            super()._display(screen, cast("RenderableType", TextUpdate(changed)))
             return
         if renderable is not None:
             self._shown.forget()

@@ -16,7 +16,7 @@ from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.terminal import too_small
 from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import draw
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -26,7 +26,7 @@ LOW_OR_TALL = [(0, "-low"), (22, "-tall")]
 ResultT = TypeVar("ResultT")
 
 
-class Cover(Inked, can_focus=True):
+class Cover(InkedWidget, can_focus=True):
     """Covers a screen with one sentence if the window is too small for it, and swallows keys."""
 
     DEFAULT_CSS = """

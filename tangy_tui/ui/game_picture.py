@@ -41,7 +41,7 @@ from tangy_tui.text.situations import OVER_NOW, lesson_words, moment_words, once
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.keys import keymap_of
-from tangy_tui.ui.reasons import Ground, why_asked, why_row, why_step
+from tangy_tui.ui.reasons import DecisionGround, why_asked, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
@@ -64,7 +64,7 @@ class GamePicture:
     """Shows the events of games on room, steps, policy, posteriors and log of a screen."""
 
     def __init__(self, screen: Screen[Any], workspace: Workspace, supervision: Supervision) -> None:
-        self.grounds: list[Ground] = []
+        self.grounds: list[DecisionGround] = []
         """The ground of each step of the present game."""
         self.lesson = ""
         """The lesson of the last answer, until the next question tells it."""
@@ -170,7 +170,7 @@ class GamePicture:
 
     def _show_step(self, event: Acted, teacher: str, pace: float) -> None:
         workspace, screen = self._workspace, self._screen
-        self.grounds.append(Ground(self._policy, event, teacher))
+        self.grounds.append(DecisionGround(self._policy, event, teacher))
         words = workspace.activity.in_words(event.state.situation)
         target = f" ({workspace.name(event.action.target)})" if event.action.target else ""
         how = f", {event.choice.strategy}" if event.choice else ""

@@ -17,7 +17,7 @@ SILENT = frozenset({"number"})
 
 
 @dataclass(frozen=True, slots=True)
-class Listed:
+class ListedAction:
     """An action: its name here, its key, its typed word, and the node that runs it."""
 
     name: str
@@ -28,12 +28,12 @@ class Listed:
     everywhere: bool
 
 
-def listed(screen: Screen[Any]) -> list[Listed]:
+def listed(screen: Screen[Any]) -> list[ListedAction]:
     """List the actions of a screen and of its focused widget, each once.
 
     Letter keys are listed even while an input line takes letters: the palette runs them.
     """
-    found: dict[tuple[str, str], Listed] = {}
+    found: dict[tuple[str, str], ListedAction] = {}
     keymap, app = keymap_of(screen.app), screen.app
     typing = bool(screen.query("#command-input"))
     for node in _nodes(screen):
@@ -55,7 +55,7 @@ def listed(screen: Screen[Any]) -> list[Listed]:
                     )
                 )
                 word = "" if id in SILENT or id not in BY_ID else BY_ID[id].word
-                found[id or key, binding.description] = Listed(
+                found[id or key, binding.description] = ListedAction(
                     binding.description, given, word, binding.action, node, node is app
                 )
     return list(found.values())

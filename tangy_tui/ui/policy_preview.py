@@ -11,7 +11,7 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.explanation import Why
+from tangy_tui.learning.explanation import DecisionReasons
 from tangy_tui.text.program import THINKING
 
 
@@ -23,7 +23,7 @@ async def show_why(
 
     app: Any = screen.app
     app.say(THINKING)
-    worker: Worker[Why] = screen.run_worker(
+    worker: Worker[DecisionReasons] = screen.run_worker(
         lambda: grounds(workspace, present, situation),
         thread=True,
         exit_on_error=False,
@@ -45,7 +45,7 @@ async def show_why(
         app.push_screen(WhyDialog(workspace, why))
 
 
-def grounds(workspace: Workspace, present: Demonstration, situation: Situation) -> Why:
+def grounds(workspace: Workspace, present: Demonstration, situation: Situation) -> DecisionReasons:
     """Return the reasons for Tangy's behaviour in a situation."""
     from tangy_tui.learning.explanation import explain, foresee
     from tangy_tui.learning.library import read_library

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted
-from tangy_tui.learning.explanation import Why, explain
+from tangy_tui.learning.explanation import DecisionReasons, explain
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.decisions import WHY_ASKED, answered_words, why_row_title, why_step_title
@@ -15,7 +15,7 @@ from tangy_tui.ui.dialogs.why import WhyDialog
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
+class DecisionGround:
     """The ground of a step: the policy at that moment, the event, and who answered."""
 
     policy: Policy
@@ -23,13 +23,13 @@ class Ground:
     teacher: str = ""
 
 
-def why_of(workspace: Workspace, policy: Policy, situation: Situation) -> Why:
+def why_of(workspace: Workspace, policy: Policy, situation: Situation) -> DecisionReasons:
     """Explain a policy's decision, also by hidden demonstrations."""
     entries = read_library(workspace.store, workspace.activity.name).entries.values()
     return explain(policy, [entry.demonstration for entry in entries], situation)
 
 
-def why_step(workspace: Workspace, ground: Ground, number: int) -> WhyDialog:
+def why_step(workspace: Workspace, ground: DecisionGround, number: int) -> WhyDialog:
     """Explain a step of a game."""
     acted = ground.acted
     done = answered_words(ground.teacher, acted.action.behaviour.question)

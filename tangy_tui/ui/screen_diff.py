@@ -40,7 +40,7 @@ _LINES_AND_SWAPS = frozenset({"4", "7", "9", "21", "53"})
 """SGR codes that are visible on an empty cell."""
 
 
-class Written(CompositorUpdate):
+class TextUpdate(CompositorUpdate):
     """An update that is already text."""
 
     def __init__(self, text: str) -> None:

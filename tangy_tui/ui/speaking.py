@@ -15,7 +15,7 @@ from tangy_profiles.voice import VoicePreference
 from tangy_tui.text.voice import shown_words
 
 if TYPE_CHECKING:
-    from tangy_hw.audio.voice import Rendered, SpeechVoice
+    from tangy_hw.audio.voice import PrerenderedSpeech, SpeechVoice
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.ui.hearing import Hearing
 
@@ -47,7 +47,7 @@ class CanSpeak(Protocol):
 
     def prerender(
         self, texts: Iterable[str], preference: VoicePreference | None = None
-    ) -> asyncio.Task[Rendered]:
+    ) -> asyncio.Task[PrerenderedSpeech]:
         """Synthesise texts in advance."""
 
     async def close(self) -> None:

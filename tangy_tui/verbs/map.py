@@ -132,12 +132,12 @@ def _of_log(
     path: Path, resolution: float, match: bool, png: Path | None, *, tell: bool
 ) -> tuple[OccupancyMap, dict[str, Any]]:
     from tangy_hw.navigation.alignment import aligned
-    from tangy_hw.navigation.mapping import Placed, sparse
+    from tangy_hw.navigation.mapping import PlacedScan, sparse
     from tangy_hw.navigation.matched_map import judged, with_loops_closed
     from tangy_hw.navigation.scan_log import read_log
 
     logged = read_log(path)
-    scans = sparse(Placed(one.scan, one.odometry if match else one.pose) for one in logged)
+    scans = sparse(PlacedScan(one.scan, one.odometry if match else one.pose) for one in logged)
 
     def done(count: int) -> None:
         if tell and (count % 50 == 0 or count == len(scans)):

@@ -14,7 +14,7 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.verbs.common import Data, Json, Seed, Users, print_json
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
+    from tangy_hw.perception.requests.help_request_source import HelpRequest, RequestSource
 
 SOURCES = "buttons, buttons:/dev/input/event5, mqtt://HOST/TOPIC or signs:CAMERA"
 
@@ -97,6 +97,6 @@ async def _listen(
             print(f"{at:5.1f} s  {asking or 'nobody asks any more'}", flush=True)
 
 
-def _row(ask: Ask, began: float) -> dict[str, Any]:
+def _row(ask: HelpRequest, began: float) -> dict[str, Any]:
     since = round(ask.since - began, 2)
     return {"seat": ask.seat, "person": ask.person, "since": since, "sure": round(ask.sure, 2)}

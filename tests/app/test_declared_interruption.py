@@ -10,7 +10,7 @@ from typing import cast
 import pytest
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, FactObservation
 from tangy_profiles.codec import decode, encode
 from tangy_profiles.declared.acts import acts, raw
 from tangy_profiles.declared.typed_observations import TypedObservation
@@ -70,7 +70,7 @@ def let_act(world: DeclaredLiveWorld, step: int) -> None:
     """Let people act, the same at each step of every game."""
     for act in list(acts(world.game.copy(), drawn=Random(f"{step}").random)):
         said = raw(world.game, world.game.declaration.facts[act.fact], act.value)
-        world.take(Observed(TypedObservation(act.fact, act.who, said), 1.0, "staff"))
+        world.take(FactObservation(TypedObservation(act.fact, act.who, said), 1.0, "staff"))
 
 
 def states(steps: list[GameStep]) -> list[tuple[str, str | None, ActivityState | None]]:

@@ -145,7 +145,7 @@ def train(learnt: Cells) -> Classifier:
     centre, spread = (
         np.mean([values[turned(turn)] for turn in range(TURNS)], 0) for values in usual(learnt.rows)
     )
-    alike = shipped.Nets(centre, spread, ())
+    alike = shipped.NetEnsemble(centre, spread, ())
     scaled, half = alike.scaled(learnt.rows), np.arange(len(learnt.rows)) % 2
     first = np.zeros(learnt.belongs.shape, np.float32)
     nets: list[Net] = []
@@ -159,7 +159,7 @@ def train(learnt: Cells) -> Classifier:
         nets += mine
     alone = replace(alike, nets=tuple(nets))
     rows = context_rows(first, scaled, learnt.beside, ACROSS)
-    around = shipped.Nets(*usual(rows), ())
+    around = shipped.NetEnsemble(*usual(rows), ())
     known = joined(np.log(np.maximum(first, LEAST)))
     corrected = [
         fit(joined(around.scaled(rows)), joined(learnt.belongs), 100 + seed, AMONG, known)
@@ -229,7 +229,7 @@ def document_of(fitted: Classifier) -> dict[str, Any]:
     }
 
 
-def nets_of(told: shipped.Nets) -> dict[str, Any]:
+def nets_of(told: shipped.NetEnsemble) -> dict[str, Any]:
     """Return nets as JSON has them."""
     return {
         "centre": rounded(told.centre, 4),

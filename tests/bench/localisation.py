@@ -23,7 +23,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.localisation import Localisation
-from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
+from tangy_hw.navigation.mapping import PlacedScan, map_of_scans, sparse
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
 from tangy_hw.navigation.scan_log import LoggedScan, read_log
@@ -68,7 +68,7 @@ def moments(log: Sequence[LoggedScan], *, restored: bool = True) -> list[Moment]
 def building(folder: str, part: int = 2) -> OccupancyMap:
     """Draw the map from every second scan."""
     every = logged(folder)[::part]
-    return map_of_scans(sparse(Placed(one.scan, one.pose) for one in every))
+    return map_of_scans(sparse(PlacedScan(one.scan, one.pose) for one in every))
 
 
 def errors(

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tangy_hw.device_protocols import Pose, Twist
-from tangy_hw.navigation.mapping import Placed, sparse
+from tangy_hw.navigation.mapping import PlacedScan, sparse
 from tangy_hw.navigation.poses import compose
 from tests.hw.raycast import Segments, Wheels, driven, look, sides, tour
 
@@ -61,7 +61,7 @@ def cluttered(side: float, width: float, seed: int) -> tuple[Segments, Way]:
     return np.vstack((walls, sides(*boxes))), way
 
 
-def logged(walls: Segments, way: Way, seed: int, slip: Slip | None = None) -> list[Placed]:
+def logged(walls: Segments, way: Way, seed: int, slip: Slip | None = None) -> list[PlacedScan]:
     """Drive along a way; return the scans at the poses that the wheels counted."""
     return [one for one, _ in driven_log(walls, way, seed, slip)]
 
@@ -74,7 +74,7 @@ def driven_log(
     *,
     scale: float = 1.01,
     noise: float = 0.03,
-) -> list[tuple[Placed, Pose]]:
+) -> list[tuple[PlacedScan, Pose]]:
     """Drive along a way; return scans at the poses that the wheels counted, and the true ones."""
     rng = np.random.default_rng(seed)
     pose = start = Pose(*way[0], 0.0)
@@ -85,6 +85,6 @@ def driven_log(
         slips = slip is not None and slip.begins <= at < slip.begins + slip.lasts
         counted = wheels.turn(Twist(0.0, twist.turn) if slips else twist, 0.1)
         if number % 6 == 0:
-            scans.append(Placed(look(walls, pose, rng), compose(start, counted)))
+            scans.append(PlacedScan(look(walls, pose, rng), compose(start, counted)))
             true[id(scans[-1])] = pose
     return [(one, true[id(one)]) for one in sparse(scans)]

@@ -13,7 +13,7 @@ import pytest
 from tangy_hw.device_protocols import STILL, Odometry, Pose, Twist
 from tangy_hw.navigation.limits import MotionLimits, laser_of
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.navigation.people_guard import Around, limit_near_people, outside
+from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people, outside
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.poses import Floats, compose, transform_points
 from tangy_profiles.body import BodyProfile
@@ -80,8 +80,8 @@ CORNERS = ((0.4, 0.3), (-0.4, 0.3), (-0.4, -0.3), (0.4, -0.3))
 LARGE = replace(MotionLimits(), radius=0.5, corners=CORNERS)
 
 
-def person(x: float, y: float) -> Around:
-    return Around((Track(x, y, 0, 0, 0.22, 3.0, 2.0, True, False),), np.zeros((0, 2)))
+def person(x: float, y: float) -> NearbyPeople:
+    return NearbyPeople((Track(x, y, 0, 0, 0.22, 3.0, 2.0, True, False),), np.zeros((0, 2)))
 
 
 class TestGuard:

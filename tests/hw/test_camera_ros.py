@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tangy_hw.drivers.camera_grabber import Gone, make_grabber
+from tangy_hw.drivers.camera_grabber import NoFrame, make_grabber
 from tangy_hw.drivers.camera_ros import RosPictures, decoded
 from tangy_hw.drivers.camera_source import CameraError, find_camera
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
@@ -46,13 +46,13 @@ class TestPictures:
             assert image.shape == (48, 64, 3) and abs(int(image.mean()) - brightness) < 4
             await asyncio.sleep(0.07)  # pictures are asked for no more often
         await server.close()
-        with pytest.raises(Gone):
+        with pytest.raises(NoFrame):
             await asyncio.to_thread(grabber.read)
         grabber.close()
 
     def test_where_nobody_answers_it_has_gone(self) -> None:
         grabber = RosPictures(find_camera(f"ros://127.0.0.1:1{TOPIC}"))
-        with pytest.raises(Gone):
+        with pytest.raises(NoFrame):
             grabber.open()
 
     def test_bytes_come_as_base64_or_as_numbers(self) -> None:

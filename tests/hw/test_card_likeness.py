@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from tangy_hw.perception.cards.features import NAMES, Measured
+from tangy_hw.perception.cards.features import NAMES, CellFeatures
 from tangy_hw.perception.cards.likeness import MUDDLED, unlike_others
 from tangy_hw.perception.cards.reader import CardReader
 from tangy_profiles.activity import Activity
@@ -42,7 +42,7 @@ def doubted(
     for cell, part in (others or {}).items():
         parts[cell] = part
     told = (parts[:, :2].max(1) > 0.9) & (parts[:, 2] < 0.1)
-    found = unlike_others(Measured(rows, rows[:, :2], rows[:, 0]), parts, told, 5)
+    found = unlike_others(CellFeatures(rows, rows[:, :2], rows[:, 0]), parts, told, 5)
     return {int(cell) for cell in np.flatnonzero(found)}
 
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tangy_hw.perception.cards.card_detection import find_cards
-from tangy_hw.perception.cards.rectification import Flat, flatten
+from tangy_hw.perception.cards.rectification import RectifiedGrid, flatten
 from tangy_hw.perception.cards.synthesis import NAMES, compared
 from tangy_profiles.activity import load_activity
 from tangy_sim.rendering.card_chips import Chip
@@ -31,7 +31,7 @@ def camera() -> CardCamera:
 
 
 @cache
-def seen(clear: float | None = None, tone: tuple[float, float, float] = RED) -> Flat:
+def seen(clear: float | None = None, tone: tuple[float, float, float] = RED) -> RectifiedGrid:
     """See card 17 straight on, with a chip on cell 6 that so much light goes through, or none."""
     random = np.random.default_rng(4)
     chips = {}
@@ -46,7 +46,7 @@ def seen(clear: float | None = None, tone: tuple[float, float, float] = RED) -> 
     return flat
 
 
-def column(flat: Flat, name: str) -> NDArray[Any]:
+def column(flat: RectifiedGrid, name: str) -> NDArray[Any]:
     expected = cv2.GaussianBlur(flat.expected, (0, 0), 0.55 / flat.scale).astype(np.float32) / 255
     told: NDArray[Any] = compared(flat, expected)[:, NAMES.index(name)]
     return told

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tangy_hw.device_protocols import STILL, Pose, Twist
 from tangy_hw.navigation.clearance import REACH, limit_by_clearance, room_ahead, speed_in
 from tangy_hw.navigation.limits import MotionLimits
-from tangy_hw.navigation.people_guard import Around, limit_near_people
+from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.poses import Floats, relative_pose
 from tests.hw.raycast import driven
@@ -21,7 +21,7 @@ from tests.hw.raycast import driven
 LIMITS = MotionLimits()
 TORSO = 0.15  # metres that a body may reach out beyond a return
 CLOSE = LIMITS.radius + TORSO
-NOBODY = Around((), np.zeros((0, 2)))
+NOBODY = NearbyPeople((), np.zeros((0, 2)))
 
 
 def at(*points: tuple[float, float]) -> Floats:
@@ -29,7 +29,7 @@ def at(*points: tuple[float, float]) -> Floats:
 
 
 def by_hand(twist: Twist, *points: tuple[float, float]) -> Twist:
-    return limit_by_clearance(twist, at(*points), Around((), at(*points)), LIMITS)
+    return limit_by_clearance(twist, at(*points), NearbyPeople((), at(*points)), LIMITS)
 
 
 def person(x: float, y: float, vx: float = 0.0, vy: float = 0.0, age: float = 3.0) -> Track:
@@ -38,7 +38,7 @@ def person(x: float, y: float, vx: float = 0.0, vy: float = 0.0, age: float = 3.
 
 
 def past(twist: Twist, *people: Track) -> Twist:
-    return limit_near_people(twist, Around(people, np.zeros((0, 2))), LIMITS)
+    return limit_near_people(twist, NearbyPeople(people, np.zeros((0, 2))), LIMITS)
 
 
 class TestRoom:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import STILL, DeviceError, Odometry, Pose, Scan
 from tangy_hw.navigation.dead_reckoning import DeadReckoning
-from tangy_hw.navigation.mapping import Placed, map_of_scans
+from tangy_hw.navigation.mapping import PlacedScan, map_of_scans
 from tangy_hw.navigation.occupancy import OCCUPIED
 from tangy_hw.navigation.poses import IDENTITY, compose
 from tangy_hw.navigation.scan_log import read_log
@@ -99,7 +99,7 @@ def test_a_map_from_the_recording_has_the_walls_where_they_are(tmp_path: Path) -
         assert driven == STILL
         assert np.allclose(navigator.estimate.pose, truth)
     recorder.close()
-    scans = [Placed(one.scan, one.odometry) for one in read_log(tmp_path / "a.log")]
+    scans = [PlacedScan(one.scan, one.odometry) for one in read_log(tmp_path / "a.log")]
     drawn = map_of_scans(scans, 0.05)
     occupied = np.argwhere(drawn.cells == OCCUPIED)
     assert len(scans) == 12 and len(occupied)

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, FactObservation
 from tangy_profiles.declared.activity import DeclaredActivity, read_declared
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
@@ -283,7 +283,7 @@ def test_the_same_observations_give_the_same_facts_as_in_the_simulated_room(
             act: Act = data.draw(st.sampled_from(could), "act")
             said = raw(game, game.declaration.facts[act.fact], act.value)
             game.observe(act.fact, act.who, said)
-            world.take(Observed(TypedObservation(act.fact, act.who, said), 1.0, "staff"))
+            world.take(FactObservation(TypedObservation(act.fact, act.who, said), 1.0, "staff"))
         world.observe()
         assert (world.game.values, world.game.seen()) == (game.values, game.seen())
         assert (world.game.queue, world.game.here) == (game.queue, game.here)

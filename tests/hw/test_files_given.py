@@ -15,7 +15,7 @@ import pytest
 from PIL import Image
 
 from tangy_hw.audio.wav import read_wav, seconds_cut_off
-from tangy_hw.drivers.camera_grabber import Folder, Over
+from tangy_hw.drivers.camera_grabber import Folder, StreamEnded
 from tangy_hw.drivers.camera_source import CameraSource
 from tangy_hw.navigation import scan_log
 from tangy_hw.navigation.map_files import read_map
@@ -88,7 +88,7 @@ def test_a_pipe_in_a_folder_of_pictures_is_left_out(tmp_path: Path) -> None:
     given = pipe_at(tmp_path / "a.png")
     folder = Folder(CameraSource("a.png", "folder", str(given), 5.0, False, True))
     folder.open()
-    with pytest.raises(Over):
+    with pytest.raises(StreamEnded):
         folder.read()
 
 

@@ -18,7 +18,7 @@ from tangy_hw.navigation.agreement import TORN, contradicted
 from tangy_hw.navigation.alignment import aligned
 from tangy_hw.navigation.map_drawing import map_lines
 from tangy_hw.navigation.map_files import MapFileError, read_map, write_map
-from tangy_hw.navigation.mapping import MapError, Placed, map_of_scans, sparse
+from tangy_hw.navigation.mapping import MapError, PlacedScan, map_of_scans, sparse
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyMap, map_of_room
 from tangy_hw.navigation.poses import compose, relative_pose
 from tangy_hw.navigation.scan_log import LogError, read_log
@@ -148,7 +148,7 @@ class TestFiles:
             read_map(tmp_path / "room.yaml")
 
 
-def scans_of_a_tour(scale: float, noise: float) -> tuple[list[Placed], list[Pose]]:
+def scans_of_a_tour(scale: float, noise: float) -> tuple[list[PlacedScan], list[Pose]]:
     """Drive through the room; return scans at the poses that wheels counted, and the true ones."""
     rng = np.random.default_rng(3)
     sides, pose, wheels = room_sides(ROOM), Pose(5.0, 1.2, 0.0), Wheels(rng, scale, noise)
@@ -156,7 +156,7 @@ def scans_of_a_tour(scale: float, noise: float) -> tuple[list[Placed], list[Pose
     for number, twist in enumerate(tour([(5, 1.2), (8, 4), (2, 4), (1, 7), (9, 7), (8, 1)])):
         pose, odometry = driven(pose, twist, 0.1), wheels.turn(twist, 0.1)
         if number % 4 == 0:
-            counted.append(Placed(look(sides, pose, rng), compose(start, odometry)))
+            counted.append(PlacedScan(look(sides, pose, rng), compose(start, odometry)))
             truth.append(pose)
     return counted, truth
 
@@ -164,7 +164,7 @@ def scans_of_a_tour(scale: float, noise: float) -> tuple[list[Placed], list[Pose
 class TestScans:
     def test_scans_of_a_room_make_its_map(self) -> None:
         counted, truth = scans_of_a_tour(1.0, 0.0)
-        scans = sparse(Placed(one.scan, pose) for one, pose in zip(counted, truth, strict=True))
+        scans = sparse(PlacedScan(one.scan, pose) for one, pose in zip(counted, truth, strict=True))
         made, drawn = map_of_scans(scans), map_of_room(ROOM)
         seen = made.free_points()
         rows, columns = drawn.cells_of(seen)
@@ -192,20 +192,22 @@ class TestScans:
         assert contradicted(found, map_of_scans(found)) < TORN / 3
         assert contradicted(counted, map_of_scans(counted)) > TORN
         half = len(found) // 2
-        away = [Placed(one.scan, compose(Pose(0.6, 0.3, 0.0), one.pose)) for one in found[half:]]
+        away = [
+            PlacedScan(one.scan, compose(Pose(0.6, 0.3, 0.0), one.pose)) for one in found[half:]
+        ]
         torn = [*found[:half], *away]
         assert contradicted(torn, map_of_scans(torn)) > TORN
 
     def test_of_nothing_nothing_is_contradicted(self) -> None:
-        empty = Placed(Scan(0.0, 0.1, np.array([np.inf, np.inf]), 30.0), Pose(0, 0, 0))
-        wall = Placed(Scan(0.0, 0.1, np.array([2.0, 2.1]), 30.0), Pose(0, 0, 0))
+        empty = PlacedScan(Scan(0.0, 0.1, np.array([np.inf, np.inf]), 30.0), Pose(0, 0, 0))
+        wall = PlacedScan(Scan(0.0, 0.1, np.array([2.0, 2.1]), 30.0), Pose(0, 0, 0))
         made = map_of_scans([wall])
         assert contradicted([], made) == contradicted([empty], made) == 0.0
 
     def test_a_map_that_would_be_too_large_is_refused(self) -> None:
         scan = Scan(0.0, 0.1, np.array([5.0, 6.0]), 30.0)
         with pytest.raises(MapError, match="coarser"):
-            map_of_scans([Placed(scan, Pose(0, 0, 0)), Placed(scan, Pose(9e5, 0, 0))])
+            map_of_scans([PlacedScan(scan, Pose(0, 0, 0)), PlacedScan(scan, Pose(9e5, 0, 0))])
 
     def test_a_map_can_be_looked_at_in_ascii(self) -> None:
         lines = map_lines(map_of_room(ROOM), 60, ascii_only=True)

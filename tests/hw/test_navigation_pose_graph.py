@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.alignment import aligned
-from tangy_hw.navigation.mapping import Placed
+from tangy_hw.navigation.mapping import PlacedScan
 from tangy_hw.navigation.matched_map import JudgedMap, judged, with_loops_closed
 from tangy_hw.navigation.pose_graph import close_loops
 from tangy_hw.navigation.poses import compose, relative_pose
-from tangy_hw.navigation.revisits import Loop
+from tangy_hw.navigation.revisits import LoopClosure
 from tests.hw.corridors import Slip, cluttered, driven_log, logged, ring
 
 NOTHING = Scan(0.0, 0.01, np.zeros(0), 10.0)
@@ -29,7 +29,7 @@ def circle(number: int, radius: float) -> list[Pose]:
     return [Pose(radius * np.sin(t), radius * (1 - np.cos(t)), float(t)) for t in turns]
 
 
-def drifting(poses: list[Pose], turn: float, scale: float) -> list[Placed]:
+def drifting(poses: list[Pose], turn: float, scale: float) -> list[PlacedScan]:
     """Return scans at the poses that wheels count which err by so much a step."""
     counted = [poses[0]]
     for start, end in pairwise(poses):
@@ -37,7 +37,7 @@ def drifting(poses: list[Pose], turn: float, scale: float) -> list[Placed]:
         counted.append(
             compose(counted[-1], Pose(step.x * scale, step.y * scale, step.heading + turn))
         )
-    return [Placed(NOTHING, pose) for pose in counted]
+    return [PlacedScan(NOTHING, pose) for pose in counted]
 
 
 @settings(max_examples=30, deadline=None)
@@ -47,7 +47,7 @@ def test_a_loop_that_drifts_is_closed_and_its_shape_comes_back(
 ) -> None:
     true = circle(number, 4.0)
     scans = drifting(true, turn, scale)
-    found = close_loops(scans, [Loop(0, number - 1, relative_pose(true[0], true[-1]), 0.0)])
+    found = close_loops(scans, [LoopClosure(0, number - 1, relative_pose(true[0], true[-1]), 0.0)])
     assert found[0].pose == scans[0].pose
     apart = relative_pose(found[0].pose, found[-1].pose)
     assert hypot(apart.x, apart.y) < 0.1
@@ -59,8 +59,8 @@ def test_a_loop_that_drifts_is_closed_and_its_shape_comes_back(
 def test_a_loop_with_what_only_looks_alike_is_left_out() -> None:
     true = circle(80, 4.0)
     scans = drifting(true, 0.001, 1.0)
-    right = [Loop(n, 79 - n, relative_pose(true[n], true[79 - n]), 0.0) for n in range(4)]
-    alike = Loop(10, 45, Pose(0.0, 0.0, 0.0), 6.0)
+    right = [LoopClosure(n, 79 - n, relative_pose(true[n], true[79 - n]), 0.0) for n in range(4)]
+    alike = LoopClosure(10, 45, Pose(0.0, 0.0, 0.0), 6.0)
     found = close_loops(scans, [*right, alike])
     off = [hypot(f.pose.x - t.x, f.pose.y - t.y) for f, t in zip(found, true, strict=True)]
     assert max(off) < 0.5
@@ -69,11 +69,11 @@ def test_a_loop_with_what_only_looks_alike_is_left_out() -> None:
 def test_without_loops_or_steps_nothing_moves() -> None:
     scans = drifting(circle(5, 1.0), 0.1, 1.0)
     assert close_loops(scans, []) == scans
-    assert close_loops(scans[:1], [Loop(0, 0, Pose(0, 0, 0), 0.0)]) == scans[:1]
+    assert close_loops(scans[:1], [LoopClosure(0, 0, Pose(0, 0, 0), 0.0)]) == scans[:1]
     assert close_loops([], []) == []
 
 
-def matched(scans: list[Placed]) -> tuple[JudgedMap, JudgedMap]:
+def matched(scans: list[PlacedScan]) -> tuple[JudgedMap, JudgedMap]:
     drawn = judged(aligned(scans), 0.1)
     return drawn, with_loops_closed(drawn, 0.1)
 
@@ -111,7 +111,7 @@ def test_wheels_that_slipped_are_refused_as_before(seed: int) -> None:
     assert before.closes == after.closes == "torn" and not after.by_graph
 
 
-def best_fit(scans: Sequence[Placed], true: list[Pose]) -> float:
+def best_fit(scans: Sequence[PlacedScan], true: list[Pose]) -> float:
     """Return how far poses are from the true ones, in m (root mean square, best fit)."""
     found = np.array([one.pose[:2] for one in scans])
     wanted = np.array([pose[:2] for pose in true])

@@ -6,14 +6,14 @@ import pytest
 
 from tangy_hw.navigation.agreement import TORN, contradicted, verdict
 from tangy_hw.navigation.alignment import aligned
-from tangy_hw.navigation.mapping import Placed, map_of_scans
+from tangy_hw.navigation.mapping import PlacedScan, map_of_scans
 from tangy_hw.navigation.revisits import Revisits, revisits
 from tests.hw.corridors import Slip, logged, ring, two_rings
 
 SLIP = Slip(0.3, 0.06)
 
 
-def judged(scans: list[Placed]) -> tuple[float, Revisits]:
+def judged(scans: list[PlacedScan]) -> tuple[float, Revisits]:
     found = aligned(scans)
     return contradicted(found, map_of_scans(found, 0.1)), revisits(found)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.perception.requests.buttons import EVENT, ButtonBox, Events, find_boxes
+from tangy_hw.perception.requests.buttons import EVENT, ButtonBox, KeyEventParser, find_boxes
 from tangy_hw.perception.requests.help_request_source import RequestError, RequestSource
 from tangy_hw.perception.requests.mqtt import Topic
 from tangy_hw.perception.requests.sources import Keyboard, open_requests
@@ -66,12 +66,12 @@ PRESS_2 = events((4, 4, 0x7001F), (1, 3, 1), (0, 0, 0), (1, 3, 2), (0, 0, 0), (1
 class TestButtons:
     def test_a_press_counts_once_however_the_bytes_arrive(self) -> None:
         for size in (1, 7, EVENT.size, 1000):
-            read = Events()
+            read = KeyEventParser()
             parts = [PRESS_2[place : place + size] for place in range(0, len(PRESS_2), size)]
             assert [code for part in parts for code in read.pressed(part)] == [3]
 
     def test_what_was_lost_is_not_guessed(self) -> None:
-        read = Events()
+        read = KeyEventParser()
         content = events((0, 3, 0), (1, 2, 1), (0, 0, 0), (1, 4, 1), (0, 0, 0))
         assert read.pressed(content) == [4]
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tangy_hw.perception.requests.help_request_source import RequestError
-from tangy_hw.perception.requests.signs import Persistence, SignWatcher, TableView
+from tangy_hw.perception.requests.signs import Hysteresis, SignWatcher, TableView
 from tangy_hw.perception.requests.triangles import find_triangles
 from tangy_profiles.room import load_room
 from tests.hw.signs import CORNERS, OTHERS, SEATS, Things, in_picture, sequence
@@ -79,7 +79,7 @@ class TestTable:
 class TestPersistence:
     @staticmethod
     def believed(shown: str) -> str:
-        persistence = Persistence()
+        persistence = Hysteresis()
         return "".join(
             "x" if 1 in persistence.take({1: 0.9} if one == "x" else {}) else "." for one in shown
         )
@@ -98,7 +98,7 @@ class TestPersistence:
         assert self.believed(shown)[: len(shown)] == believed
 
     def test_how_sure_it_is_grows_with_what_was_seen(self) -> None:
-        persistence = Persistence()
+        persistence = Hysteresis()
         grown = [persistence.take({2: 1.0}).get(2, 0.0) for _ in range(6)]
         assert grown == sorted(grown) and grown[-1] == 1.0
 

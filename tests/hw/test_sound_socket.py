@@ -109,7 +109,7 @@ class TestPlace:
         monkeypatch.setattr(Path, "rename", watched)
         mask = os.umask(0)
         try:
-            place = socket_place.Place(tmp_path / "s")
+            place = socket_place.ListeningSocket(tmp_path / "s")
         finally:
             os.umask(mask)
         place.close()
@@ -148,7 +148,7 @@ class TestPlace:
     def test_sound_is_not_sent_to_another_user(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        place = socket_place.Place(tmp_path / "s")
+        place = socket_place.ListeningSocket(tmp_path / "s")
         monkeypatch.setattr(socket_place, "same_user", lambda connection: False)
         with pytest.raises(SoundError, match="another user listens there"):
             connect(place.path)

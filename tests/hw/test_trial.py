@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tangy_hw.robot_process.self_test import Trial, try_robot
+from tangy_hw.robot_process.self_test import SelfTestResult, try_robot
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import Robot, load_robot
 from tangy_sim.servers.scip_server import ScipServer
@@ -27,7 +27,7 @@ def driven(folder: Path, **drivers: str) -> Robot:
     return load_robot(str(path))
 
 
-async def tried(robot: Robot, seconds: float = SECONDS) -> dict[str, Trial]:
+async def tried(robot: Robot, seconds: float = SECONDS) -> dict[str, SelfTestResult]:
     """Return what is found, by device."""
     found = await try_robot(robot, load_activity("bingo"), {}, seconds)
     assert len({one.device for one in found}) == len(found)
@@ -59,8 +59,8 @@ async def test_each_device_is_told_in_a_sentence(tmp_path: Path) -> None:
     )
     with turning(server):
         found = await tried(robot)
-    assert found["laser"] == Trial("laser", True, f"scip at {server.url} works.")
-    assert found["base"] == Trial("base", False, "nobody answers at ws://127.0.0.1:9.")
+    assert found["laser"] == SelfTestResult("laser", True, f"scip at {server.url} works.")
+    assert found["base"] == SelfTestResult("base", False, "nobody answers at ws://127.0.0.1:9.")
     assert "did you mean 'rosbridge'?" in found["arms"].text
     assert found["stop_button"].absent
     assert "[drivers] in mine.toml" in found["stop_button"].text

@@ -25,7 +25,7 @@ from tangy_tui.learning.library import read_demonstrations, read_library
 from tangy_tui.learning.policies import (
     ASKS,
     GONE,
-    Change,
+    DecisionChange,
     NoPolicy,
     NotAsKept,
     changes,
@@ -198,7 +198,7 @@ def test_a_decision_that_changed_is_said_row_by_row(
     rows[0][3] = "juggle"
     with_kept(store, {"digest": "other", "rows": rows})
     _, notices = load_policy(store, activity)
-    assert notices == [NotAsKept(policy.name, (), (Change(where, "juggle", was),))]
+    assert notices == [NotAsKept(policy.name, (), (DecisionChange(where, "juggle", was),))]
     told = notice_words(notices)
     assert "its demonstrations have changed since" in told[0]
     assert f"{' / '.join(where)}: was juggle, is now {was}." in told
@@ -225,11 +225,13 @@ def test_policies_are_compared_by_what_they_do(
     assert changes(kept, policy) == []
     gone = LearntRow("nowhere", "AR", "odd", "joke", 1.0)
     (change,) = changes(replace(kept, rows=(*kept.rows, gone)), policy)
-    assert change == Change(Situation("nowhere", "AR", "odd"), "joke", GONE)
+    assert change == DecisionChange(Situation("nowhere", "AR", "odd"), "joke", GONE)
     start = activity.situations[0]
-    assert changes(replace(kept, asks=(start,)), policy) == [Change(start, ASKS, "greeting")]
+    assert changes(replace(kept, asks=(start,)), policy) == [
+        DecisionChange(start, ASKS, "greeting")
+    ]
     fewer = tuple(row for row in kept.rows if row.stage != "start")
-    assert changes(replace(kept, rows=fewer), policy) == [Change(start, ASKS, "greeting")]
+    assert changes(replace(kept, rows=fewer), policy) == [DecisionChange(start, ASKS, "greeting")]
     assert changes(replace(kept, asks=None), policy) == []
 
 
@@ -240,7 +242,7 @@ def test_a_row_that_becomes_contested_is_a_difference(
     first = shown[0].steps[0]
     stray = replace(shown[0], steps=(replace(first, behaviour="joke"), *shown[0].steps))
     now = learn_policy(activity, [stray, *shown[1:]], settings=FEW)
-    assert changes(kept, now) == [Change(first.state.situation, "greeting", ASKS)]
+    assert changes(kept, now) == [DecisionChange(first.state.situation, "greeting", ASKS)]
 
 
 def test_a_name_by_count_is_never_given_to_two_policies(

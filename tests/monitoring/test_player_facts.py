@@ -9,7 +9,7 @@ from typing import cast
 import pytest
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, Observed
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, FactObservation
 from tangy_profiles.declared.acts import raw
 from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.game_records import AnswerNotClear, GameBeginning, GameStep
@@ -47,7 +47,7 @@ class Quiz:
         world.execute(self.activity.action(self.activity.behaviours[name], whom, None))
         if answer:
             said = raw(world.game, world.game.declaration.facts["answer"], answer)
-            world.take(Observed(TypedObservation("answer", whom, said), 1.0, "staff"))
+            world.take(FactObservation(TypedObservation("answer", whom, said), 1.0, "staff"))
         self.store.append(
             GameStep(
                 game="g", behaviour=name, target=whom, state=state, after=world.observe(),

@@ -9,7 +9,7 @@ import pytest
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.explanation import Why
+from tangy_tui.learning.explanation import DecisionReasons
 from tangy_tui.learning.teaching_events import TeacherCommand, TeachingEvent
 from tangy_tui.ui import policy_preview
 from tangy_tui.ui.dialogs.why import WhyDialog
@@ -121,7 +121,7 @@ async def test_escape_while_tangy_thinks_stops_that_and_no_more(
     let_go = Event()
     grounds = policy_preview.grounds
 
-    def slow(workspace: Workspace, present: Demonstration, situation: Situation) -> Why:
+    def slow(workspace: Workspace, present: Demonstration, situation: Situation) -> DecisionReasons:
         let_go.wait(20)
         return grounds(workspace, present, situation)
 

@@ -14,7 +14,7 @@ from tangy_profiles.beliefs import Beta
 from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.persuasion import StrategyChoice
-from tangy_tui.learning.explanation import Why, explain
+from tangy_tui.learning.explanation import DecisionReasons, explain
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.ui.dialogs.why import WhyDialog
@@ -35,7 +35,7 @@ def data_folder(taught: Path) -> Path:
     return taught
 
 
-def why_of(workspace: Workspace, behaviour: str) -> Why:
+def why_of(workspace: Workspace, behaviour: str) -> DecisionReasons:
     """Return the grounds of the first situation in which something is done."""
     policy, _ = load_policy(workspace.store, workspace.activity)
     shown = read_library(workspace.store, workspace.activity.name).demonstrations
@@ -55,7 +55,11 @@ def a_choice(workspace: Workspace) -> StrategyChoice:
 
 
 def showing(
-    workspace: Workspace, why: Why, choice: StrategyChoice | None = None, *, ascii: bool = False
+    workspace: Workspace,
+    why: DecisionReasons,
+    choice: StrategyChoice | None = None,
+    *,
+    ascii: bool = False,
 ) -> Program:
     """Make the program with the dialog open."""
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tangy_hw.navigation.alignment import aligned
-from tangy_hw.navigation.mapping import Placed
+from tangy_hw.navigation.mapping import PlacedScan
 from tangy_hw.navigation.matched_map import judged
 from tangy_hw.navigation.occupancy import OCCUPIED
 from tangy_hw.navigation.scan_log import read_log
@@ -46,7 +46,7 @@ def test_a_drive_by_hand_is_recorded_and_its_map_has_the_rooms_walls(tmp_path: P
     finally:
         link.close()
         bench.close()
-    matched = aligned([Placed(one.scan, one.odometry) for one in read_log(log)])
+    matched = aligned([PlacedScan(one.scan, one.odometry) for one in read_log(log)])
     drawn = judged(matched, 0.05).map
     occupied = np.argwhere(drawn.cells == OCCUPIED)
     points = np.array([drawn.point(row, column) for row, column in occupied])

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tangy_hw.navigation.alignment import aligned
-from tangy_hw.navigation.mapping import Placed, sparse
+from tangy_hw.navigation.mapping import PlacedScan, sparse
 from tangy_hw.navigation.matched_map import judged, with_loops_closed
 from tangy_hw.navigation.scan_log import read_log
 
@@ -20,7 +20,7 @@ RESOLUTION = 0.05
 @pytest.mark.elsewhere
 @pytest.mark.skipif(not LOG.is_file(), reason="TANGY_LASER_LOG names no folder with the log")
 def test_a_building_that_matching_alone_tears_is_closed() -> None:
-    scans = sparse(Placed(one.scan, one.odometry) for one in read_log(LOG))
+    scans = sparse(PlacedScan(one.scan, one.odometry) for one in read_log(LOG))
     before = judged(aligned(scans), RESOLUTION)
     after = with_loops_closed(before, RESOLUTION)
     assert before.closes == "torn"

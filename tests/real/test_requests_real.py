@@ -11,7 +11,7 @@ import pytest
 
 from tangy_hw.perception.requests.help_request_source import RequestError, RequestSource
 from tangy_hw.perception.requests.mqtt import Topic
-from tangy_hw.perception.requests.signs import Signs
+from tangy_hw.perception.requests.signs import SignRequests
 from tangy_hw.perception.requests.sources import open_requests
 from tangy_profiles.health import OK, STALE
 from tangy_profiles.room import load_room
@@ -103,7 +103,7 @@ class TestSigns:
         self, pictures: Path
     ) -> None:
         source = open_requests(f"signs:{pictures}", load_room(), PEOPLE, corners=CORNERS, each=True)
-        assert isinstance(source, Signs)
+        assert isinstance(source, SignRequests)
         async with source:
             given = [[(ask.seat, ask.person) for ask in asks] async for asks in source]
         most = max(given, key=len)

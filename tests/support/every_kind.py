@@ -32,7 +32,7 @@ from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.interaction.game_worlds import GameWorlds
-from tangy_tui.learning.conflicts import Conflict, Shown
+from tangy_tui.learning.conflicts import Conflict, DemonstratedStep
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.own_phrases import OwnPhrases
 from tangy_tui.learning.policies import load_policy
@@ -87,7 +87,7 @@ def _edit(workspace: Workspace) -> None:
     editing.restore("4")
     shown = editing.library.finished[0]
     step = shown.steps[0]
-    there = (Shown(shown.id, shown.teacher, 1, step),)
+    there = (DemonstratedStep(shown.id, shown.teacher, 1, step),)
     editing.resolve(Conflict(step.state.situation, {step.behaviour: there}), step.behaviour)
 
 

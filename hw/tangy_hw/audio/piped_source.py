@@ -34,7 +34,7 @@ def open_standard_input(name: str, descriptor: int, *, convert: bool = True) -> 
     if stat.S_ISDIR(kind):
         raise SoundError(f"{name}: standard input is a folder; pipe sound into it.")
     if not stat.S_ISREG(kind):
-        return Piped(name, descriptor, convert=convert)
+        return PipedSource(name, descriptor, convert=convert)
     with os.fdopen(os.dup(descriptor), "rb") as file:
         content = file.read(LARGEST_WAV + 1)
     if len(content) > LARGEST_WAV:
@@ -45,7 +45,7 @@ def open_standard_input(name: str, descriptor: int, *, convert: bool = True) -> 
     return Recording(name, content[: len(content) // 2 * 2])
 
 
-class Piped(Source):
+class PipedSource(Source):
     """Sound from a pipe, as it arrives."""
 
     def __init__(self, name: str, descriptor: int, *, convert: bool = True) -> None:

@@ -25,7 +25,7 @@ LONGEST_ADDRESS = 103  # bytes that every system supports; Linux supports 107
 HALF_OPEN = 8  # backlog of pending connections
 
 
-class Place:
+class ListeningSocket:
     """A socket that listens at a path until it is closed."""
 
     def __init__(self, path: Path) -> None:

@@ -11,7 +11,7 @@ import contextlib
 import socket
 from pathlib import Path
 
-from tangy_hw.audio.socket_place import Place, same_user
+from tangy_hw.audio.socket_place import ListeningSocket, same_user
 from tangy_hw.audio.source import Chunks, Source, WholeSamples
 from tangy_hw.audio.wav import SoundError
 from tangy_profiles.reading import plain
@@ -38,7 +38,7 @@ class LaptopMicrophone(Source):
         except OSError as error:
             reason = error.strerror or "it is not possible"
             raise SoundError(plain(f"{path.parent}: cannot be made ({reason}).")) from None
-        self._place = Place(path)
+        self._place = ListeningSocket(path)
         self._heard: socket.socket | None = None
         self._next: socket.socket | None = None
         self._arrival = asyncio.Event()

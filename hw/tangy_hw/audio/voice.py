@@ -18,7 +18,7 @@ from tangy_profiles.voice import VoicePreference
 
 
 @dataclass(frozen=True, slots=True)
-class Rendered:
+class PrerenderedSpeech:
     """Texts synthesised in advance: their number, bytes and seconds."""
 
     texts: int
@@ -80,7 +80,7 @@ class SpeechVoice:
         self._speaking: asyncio.Task[bool] | None = None
         self._begun = False
         self._closed = False
-        self._preparing: set[asyncio.Task[Rendered]] = set()
+        self._preparing: set[asyncio.Task[PrerenderedSpeech]] = set()
 
     @property
     def speaking(self) -> bool:
@@ -143,7 +143,7 @@ class SpeechVoice:
         texts: Iterable[str],
         preference: VoicePreference | None = None,
         progress: Callable[[int, int], None] | None = None,
-    ) -> asyncio.Task[Rendered]:
+    ) -> asyncio.Task[PrerenderedSpeech]:
         """Synthesise texts in advance, in the background, one at a time.
 
         Args:
@@ -239,7 +239,7 @@ class SpeechVoice:
         texts: tuple[str, ...],
         preference: VoicePreference,
         progress: Callable[[int, int], None] | None,
-    ) -> Rendered:
+    ) -> PrerenderedSpeech:
         begun, size, done = time.monotonic(), 0, 0
         if self.silent:
             texts = ()
@@ -253,7 +253,7 @@ class SpeechVoice:
             done += 1
             if progress is not None:
                 progress(done, len(texts))
-        return Rendered(done, size, time.monotonic() - begun)
+        return PrerenderedSpeech(done, size, time.monotonic() - begun)
 
     def _begin(self) -> None:
         if not self._begun:

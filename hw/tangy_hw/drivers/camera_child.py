@@ -29,7 +29,7 @@ from contextlib import suppress
 from threading import Condition, Thread
 from typing import TYPE_CHECKING, Any
 
-from tangy_hw.drivers.camera_grabber import Gone, Grabber, Over, make_grabber
+from tangy_hw.drivers.camera_grabber import Grabber, NoFrame, StreamEnded, make_grabber
 from tangy_hw.drivers.camera_source import CameraSource
 from tangy_profiles.codec import InvalidValue, decode
 from tangy_profiles.process_log import log_to_stderr
@@ -149,14 +149,14 @@ class Child:
                 image = grabber.read()
                 stamp = time.monotonic()
                 self._do("")
-            except Gone as why:
+            except NoFrame as why:
                 self._do("")
                 opened = False
                 grabber.close()
                 self.write({"lost": str(why)})
                 time.sleep(AGAIN_SECONDS)
                 continue
-            except Over as why:
+            except StreamEnded as why:
                 if source.loop and not str(why):
                     opened = False
                     continue

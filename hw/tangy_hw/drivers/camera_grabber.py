@@ -24,11 +24,11 @@ ROS = ("ros://", "ros2://")
 UNUSABLE = "it holds no pictures that can be read"
 
 
-class Gone(Exception):
+class NoFrame(Exception):
     """No frame could be read, with the reason in a few words. The source is opened again."""
 
 
-class Over(Exception):
+class StreamEnded(Exception):
     """There are no more frames, with the reason in a few words; "" at a regular end."""
 
 
@@ -41,16 +41,16 @@ class Grabber(Protocol):
         """Open the source again.
 
         Raises:
-            Gone: it cannot be opened now.
-            Over: it can never be opened.
+            NoFrame: it cannot be opened now.
+            StreamEnded: it can never be opened.
         """
 
     def read(self) -> Image:
         """Return the next frame (BGR) as soon as there is one.
 
         Raises:
-            Gone: it delivers no more frames, and must be opened again.
-            Over: that was the last frame.
+            NoFrame: it delivers no more frames, and must be opened again.
+            StreamEnded: that was the last frame.
         """
 
     def close(self) -> None:
@@ -102,8 +102,8 @@ class Capture:
         if not self._capture.isOpened():
             self.close()
             if source.kind == "file":
-                raise Over("it is no video that can be read")
-            raise Gone(_why_not_open(source))
+                raise StreamEnded("it is no video that can be read")
+            raise NoFrame(_why_not_open(source))
         if source.kind == "file" and not self.rate:
             said = float(self._capture.get(cv2.CAP_PROP_FPS))
             self.rate = said if 0.1 <= said <= 240 else FILE_RATE
@@ -111,9 +111,9 @@ class Capture:
     def _open_device(self, cv2: Any) -> None:
         source = self._source
         if not Path(source.target).exists():
-            raise Gone("there is no such camera")
+            raise NoFrame("there is no such camera")
         if not os.access(source.target, os.R_OK | os.W_OK):
-            raise Gone("this user may not use it; join the group video")
+            raise NoFrame("this user may not use it; join the group video")
         self._capture = cv2.VideoCapture(source.target, cv2.CAP_V4L2)
         # Few cameras manage this size uncompressed; only the newest frame is of use.
         self._capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*"MJPG"))
@@ -132,7 +132,7 @@ class Capture:
     def _read(self) -> Image:
         source = self._source
         if source.kind == "device" and not Path(source.target).exists():
-            raise Gone("it is unplugged")  # read() may go on returning the last frame
+            raise NoFrame("it is unplugged")  # read() may go on returning the last frame
         began = time.monotonic()
         done, image = self._capture.read()
         late = source.kind == "stream" and time.monotonic() - began > 0.9 * READ_SECONDS
@@ -140,8 +140,8 @@ class Capture:
             self._first = False
             return image  # type: ignore[no-any-return]
         if source.kind == "file":
-            raise Over(UNUSABLE if self._first else "")
-        raise Gone("it stopped in the middle" if late else "it stopped sending")
+            raise StreamEnded(UNUSABLE if self._first else "")
+        raise NoFrame("it stopped in the middle" if late else "it stopped sending")
 
     def close(self) -> None:
         """Close the source."""
@@ -165,7 +165,7 @@ class Folder:
         try:
             self._left = pictures_in(Path(self._source.target))[::-1]
         except CameraError:
-            raise Over("the folder cannot be read any more") from None
+            raise StreamEnded("the folder cannot be read any more") from None
 
     def read(self) -> Image:
         """Return the next image (BGR)."""
@@ -174,7 +174,7 @@ class Folder:
             if image is not None:
                 self._given += 1
                 return image
-        raise Over("" if self._given else UNUSABLE)
+        raise StreamEnded("" if self._given else UNUSABLE)
 
     def close(self) -> None:
         """Close the source."""

@@ -19,7 +19,7 @@ from urllib.parse import urlsplit
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection, connect
 
-from tangy_hw.drivers.camera_grabber import MOST_PIXELS, OPEN_SECONDS, READ_SECONDS, Gone
+from tangy_hw.drivers.camera_grabber import MOST_PIXELS, OPEN_SECONDS, READ_SECONDS, NoFrame
 from tangy_hw.drivers.camera_source import CameraSource
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class RosPictures:
             self._link.send(json.dumps(asks))
         except (OSError, WebSocketException):
             self.close()
-            raise Gone("nobody answers there") from None
+            raise NoFrame("nobody answers there") from None
 
     def read(self) -> Image:
         """Return the newest frame (BGR) as soon as there is one."""
@@ -71,12 +71,12 @@ class RosPictures:
             image = decoded(text, self._topic)
             if image is not None:
                 return image
-        raise Gone("it sends no pictures")
+        raise NoFrame("it sends no pictures")
 
     def _newest(self, seconds: float) -> str | bytes | None:
         """Return the newest message; None after a timeout in s."""
         if self._link is None:
-            raise Gone("it is not open")
+            raise NoFrame("it is not open")
         newest: str | bytes | None = None
         try:
             newest = self._link.recv(timeout=max(seconds, 0.0))
@@ -85,7 +85,7 @@ class RosPictures:
         except TimeoutError:
             return newest
         except (OSError, WebSocketException):
-            raise Gone("it stopped sending") from None
+            raise NoFrame("it stopped sending") from None
 
     def close(self) -> None:
         """Close the connection."""

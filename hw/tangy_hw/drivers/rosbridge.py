@@ -21,7 +21,7 @@ from websockets.exceptions import WebSocketException
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge_parts import Fragments
-from tangy_hw.drivers.rosbridge_waiting import Goal, Waiting
+from tangy_hw.drivers.rosbridge_waiting import Goal, PendingRequests
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import OK, STALE, DeviceState, Reading
 from tangy_profiles.reading import plain
@@ -90,7 +90,7 @@ class Rosbridge:
         self.waiting: deque[str] = deque()
         self._wake = asyncio.Event()
         self._idle = asyncio.Event()
-        self._waiting = Waiting()
+        self._waiting = PendingRequests()
         self._fragments = Fragments()
 
     @property

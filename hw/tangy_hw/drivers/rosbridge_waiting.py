@@ -34,7 +34,7 @@ class Goal:
         self.over.add_done_callback(lambda over: over.cancelled() or over.exception())
 
 
-class Waiting:
+class PendingRequests:
     """Pending requests by their id."""
 
     def __init__(self) -> None:

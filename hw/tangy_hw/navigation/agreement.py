@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
-from tangy_hw.navigation.mapping import Placed
+from tangy_hw.navigation.mapping import PlacedScan
 from tangy_hw.navigation.occupancy import OCCUPIED, OccupancyMap
 from tangy_hw.navigation.poses import Floats, endpoints, transform_points
 from tangy_hw.navigation.revisits import Revisits
@@ -49,7 +49,7 @@ def verdict(share: float, found: Revisits) -> Verdict:
     return "unknown" if found.unconfirmed and share > UNSURE else "open"
 
 
-def contradicted(scans: Sequence[Placed], map_: OccupancyMap) -> float:
+def contradicted(scans: Sequence[PlacedScan], map_: OccupancyMap) -> float:
     """Return the share of beams that contradict a map, from 0 to 1.
 
     A beam contradicts the map if there is no wall within `NEAR` of its end, or if it crosses a

@@ -13,7 +13,7 @@ from math import hypot
 import numpy as np
 
 from tangy_hw.device_protocols import Pose
-from tangy_hw.navigation.mapping import Placed
+from tangy_hw.navigation.mapping import PlacedScan
 from tangy_hw.navigation.poses import compose, relative_pose, wrap
 from tangy_hw.navigation.scan_matching import Reference
 
@@ -24,14 +24,16 @@ TRIED = (-0.4, -0.2, 0.2, 0.4)  # radians, rotations of those guesses
 FARTHEST, TURNED = 0.5, 0.6  # metres and radians that a match may differ from odometry
 
 
-def aligned(scans: Sequence[Placed], tell: Callable[[int], None] | None = None) -> list[Placed]:
+def aligned(
+    scans: Sequence[PlacedScan], tell: Callable[[int], None] | None = None
+) -> list[PlacedScan]:
     """Return the scans at poses at which they match one another.
 
     Args:
         scans: the scans with odometry poses, some 10 cm apart.
         tell: called with the number of scans done so far.
     """
-    found: list[Placed] = []
+    found: list[PlacedScan] = []
     references: list[Reference] = []
     places = np.zeros((len(scans), 2))
     for number, one in enumerate(scans):
@@ -39,7 +41,7 @@ def aligned(scans: Sequence[Placed], tell: Callable[[int], None] | None = None) 
         if found:
             guess = compose(found[-1].pose, relative_pose(scans[number - 1].pose, one.pose))
             pose = _matched(one, guess, found, references, places[:number])
-        found.append(Placed(one.scan, pose))
+        found.append(PlacedScan(one.scan, pose))
         references.append(Reference(one.scan))
         places[number] = pose.x, pose.y
         if tell is not None:
@@ -48,9 +50,9 @@ def aligned(scans: Sequence[Placed], tell: Callable[[int], None] | None = None) 
 
 
 def _matched(
-    one: Placed,
+    one: PlacedScan,
     guess: Pose,
-    found: Sequence[Placed],
+    found: Sequence[PlacedScan],
     references: Sequence[Reference],
     places: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
 ) -> Pose:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import Twist
 from tangy_hw.navigation.limits import MotionLimits
-from tangy_hw.navigation.people_guard import Around, limit_near_people
+from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people
 from tangy_hw.navigation.poses import Floats, lengths
 
 REACH = 3.0  # metres beyond which obstacles are ignored
@@ -68,7 +68,9 @@ def speed_in(room: float, limits: MotionLimits) -> float:
     return sqrt(2 * limits.planned_braking * max(0.0, min(room, REACH)))
 
 
-def limit_by_clearance(twist: Twist, points: Floats, around: Around, limits: MotionLimits) -> Twist:
+def limit_by_clearance(
+    twist: Twist, points: Floats, around: NearbyPeople, limits: MotionLimits
+) -> Twist:
     """Return a twist reduced to the available clearance: on the same arc, or turning only.
 
     The robot slows down near obstacles and stops before close ones, but may still turn: a round

@@ -17,7 +17,7 @@ from tangy_hw.device_protocols import STILL, Odometry, OwnNavigation, Pose, Scan
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import SPIN, State
-from tangy_hw.navigation.people_guard import WALKS, Around, limit_near_people
+from tangy_hw.navigation.people_guard import WALKS, NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.poses import IDENTITY, Floats
 from tangy_hw.navigation.surroundings import Held
@@ -113,7 +113,7 @@ class ExternalNavigator:
             return  # go on after nobody has come for a moment
         walking = [one for one in self.tracks if one.speed > WALKS]
         meets = (
-            limit_near_people(odometry.twist, Around(walking, np.zeros((0, 2))), self._limits)
+            limit_near_people(odometry.twist, NearbyPeople(walking, np.zeros((0, 2))), self._limits)
             == STILL
         )
         self.lets = "walking" if self.drives and meets and odometry.twist != STILL else ""

@@ -29,16 +29,18 @@ class MapError(TangyError):
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedScan:
     """A scan and the pose of the laser."""
 
     scan: Scan
     pose: Pose
 
 
-def sparse(scans: Iterable[Placed], metres: float = 0.1, radians: float = 0.1) -> list[Placed]:
+def sparse(
+    scans: Iterable[PlacedScan], metres: float = 0.1, radians: float = 0.1
+) -> list[PlacedScan]:
     """Drop scans within `metres` m and `radians` rad of the last kept one."""
-    kept: list[Placed] = []
+    kept: list[PlacedScan] = []
     for one in scans:
         if kept:
             step = relative_pose(kept[-1].pose, one.pose)
@@ -112,7 +114,7 @@ class MapMaker:
         return OccupancyMap(cells, self.resolution, self.origin)
 
 
-def extent(scans: Sequence[Placed], margin: float = 0.5) -> tuple[float, float, float, float]:
+def extent(scans: Sequence[PlacedScan], margin: float = 0.5) -> tuple[float, float, float, float]:
     """Return left, near, right and far of everything that the scans saw, in m."""
     ends = [transform_points(endpoints(one.scan, REACH), one.pose) for one in scans]
     places = np.array([(one.pose.x, one.pose.y) for one in scans])
@@ -122,7 +124,7 @@ def extent(scans: Sequence[Placed], margin: float = 0.5) -> tuple[float, float, 
     return float(left), float(near), float(right), float(far)
 
 
-def map_of_scans(scans: Sequence[Placed], resolution: float = 0.05) -> OccupancyMap:
+def map_of_scans(scans: Sequence[PlacedScan], resolution: float = 0.05) -> OccupancyMap:
     """Draw the map of scans with known poses, with cells of `resolution` m.
 
     Raises:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tangy_hw.navigation.agreement import Verdict, contradicted, verdict
-from tangy_hw.navigation.mapping import Placed, map_of_scans
+from tangy_hw.navigation.mapping import PlacedScan, map_of_scans
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.pose_graph import close_loops
 from tangy_hw.navigation.revisits import Revisits, revisits
@@ -31,7 +31,7 @@ TRIES = 2
 class JudgedMap(NamedTuple):
     """A map and its scans, with the share of contradicted beams, the loops, and the verdict."""
 
-    scans: Sequence[Placed]
+    scans: Sequence[PlacedScan]
     map: OccupancyMap
     share: float
     found: Revisits
@@ -40,7 +40,7 @@ class JudgedMap(NamedTuple):
     """Whether a pose graph closed its loops."""
 
 
-def judged(scans: Sequence[Placed], resolution: float) -> JudgedMap:
+def judged(scans: Sequence[PlacedScan], resolution: float) -> JudgedMap:
     """Draw and judge the map of scans, with cells of `resolution` m."""
     map_ = map_of_scans(scans, resolution)
     share, found = contradicted(scans, map_), revisits(scans)

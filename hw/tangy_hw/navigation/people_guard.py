@@ -29,14 +29,14 @@ FRESH = 0.5  # seconds for which a new track is assumed to approach fast
 END = 0.15  # metres of a body beyond a return without a track
 
 
-class Around(NamedTuple):
+class NearbyPeople(NamedTuple):
     """People around, in the robot's frame: tracks, and returns (n, 2) that are not on the map."""
 
     tracks: Sequence[Track]
     ends: Floats
 
 
-def limit_near_people(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
+def limit_near_people(twist: Twist, around: NearbyPeople, limits: MotionLimits) -> Twist:
     """Return the part of a twist that is safe near people, on the same arc: all, less, or none.
 
     A round robot may always turn on the spot; a robot with corners only if they stay clear of
@@ -56,7 +56,7 @@ def limit_near_people(twist: Twist, around: Around, limits: MotionLimits) -> Twi
     return STILL
 
 
-def _slower_before_followers(twist: Twist, around: Around, limits: MotionLimits) -> Twist:
+def _slower_before_followers(twist: Twist, around: NearbyPeople, limits: MotionLimits) -> Twist:
     """Return a twist limited to `people_speed` while a walker is hidden behind the robot.
 
     The walker may overtake the robot, or approach where the scanner does not see.
@@ -87,7 +87,7 @@ class _Bodies(NamedTuple):
     turned: Floats
 
 
-def _bodies(around: Around, limits: MotionLimits) -> _Bodies:
+def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
     tracks = [one for one in around.tracks if np.hypot(one.x, one.y) < REACH]
     ends = around.ends[lengths(around.ends) < REACH]
     rows = [

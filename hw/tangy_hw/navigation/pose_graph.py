@@ -17,9 +17,9 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from tangy_hw.device_protocols import Pose
-from tangy_hw.navigation.mapping import Placed
+from tangy_hw.navigation.mapping import PlacedScan
 from tangy_hw.navigation.poses import Floats, relative_pose, wrap
-from tangy_hw.navigation.revisits import Loop
+from tangy_hw.navigation.revisits import LoopClosure
 
 STEP = (0.02, 0.02, 0.005)
 """Standard deviations (m, m, rad) of a matched step between successive scans."""
@@ -36,7 +36,7 @@ Ends: TypeAlias = NDArray[np.intp]
 """Numbers (n, 2) of the scans that edges join."""
 
 
-def close_loops(scans: Sequence[Placed], loops: Sequence[Loop]) -> list[Placed]:
+def close_loops(scans: Sequence[PlacedScan], loops: Sequence[LoopClosure]) -> list[PlacedScan]:
     """Return the scans at the poses at which their steps and loops agree best.
 
     The first scan stays where it is.
@@ -64,7 +64,7 @@ def close_loops(scans: Sequence[Placed], loops: Sequence[Loop]) -> list[Placed]:
             break
         kept = fits
     return [
-        Placed(one.scan, Pose(float(x), float(y), float(wrap(heading))))
+        PlacedScan(one.scan, Pose(float(x), float(y), float(wrap(heading))))
         for one, (x, y, heading) in zip(scans, poses, strict=True)
     ]
 

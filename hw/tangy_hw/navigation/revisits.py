@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tangy_hw.device_protocols import Pose
-from tangy_hw.navigation.mapping import Placed
+from tangy_hw.navigation.mapping import PlacedScan
 from tangy_hw.navigation.poses import Floats, compose, relative_pose
 from tangy_hw.navigation.scan_matching import Reference
 
@@ -39,7 +39,7 @@ MOST, NEAREST, CANDIDATES = 400, 12, 40  # checked scans; older candidates for e
 SURE = 2  # torn places after the last closed one that make the map torn
 
 
-class Loop(NamedTuple):
+class LoopClosure(NamedTuple):
     """A revisited place: two scans by number, and the step between them.
 
     `step` is the result of matching, `off` its distance in m from the later scan's pose.
@@ -65,7 +65,7 @@ class Revisits:
     off: float = 0.0
     last: int = 0
     crossed: int = 0
-    loops: tuple[Loop, ...] = ()
+    loops: tuple[LoopClosure, ...] = ()
 
     @property
     def tears(self) -> bool:
@@ -82,14 +82,14 @@ class Revisits:
         return not self.closed and self.crossed >= SURE
 
 
-def revisits(scans: Sequence[Placed]) -> Revisits:
+def revisits(scans: Sequence[PlacedScan]) -> Revisits:
     """Check every place that the robot may have revisited."""
     places = np.array([(one.pose.x, one.pose.y) for one in scans]).reshape(-1, 2)
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))))
     chosen = _every(way[: len(scans)])
     references = {i: Reference(scans[i].scan) for i in chosen}
     closed, last, crossed, offs = 0, 0, 0, list[float]()
-    loops: list[Loop] = []
+    loops: list[LoopClosure] = []
     for later in chosen[:: 1 + len(chosen) // MOST]:
         loop = _loop(scans, places, way, references, later, chosen)
         off = None if loop is None else loop.off
@@ -115,15 +115,15 @@ def _every(way: Floats) -> list[int]:
 
 
 def _loop(
-    scans: Sequence[Placed],
+    scans: Sequence[PlacedScan],
     places: Floats,
     way: Floats,
     references: dict[int, Reference],
     later: int,
     chosen: Sequence[int],
-) -> Loop | None:
+) -> LoopClosure | None:
     """Return the loop that a scan closes with an older one; None if there is none."""
-    best: tuple[float, Loop] | None = None
+    best: tuple[float, LoopClosure] | None = None
     one = scans[later]
     driven = way[later] - way[chosen]
     apart = np.hypot(*(places[chosen] - places[later]).T)
@@ -142,7 +142,7 @@ def _loop(
                 continue  # the match is at another place
             found = compose(scans[earlier].pose, match.pose)
             off = hypot(found.x - one.pose.x, found.y - one.pose.y)
-            loop = Loop(earlier, later, match.pose, off)
+            loop = LoopClosure(earlier, later, match.pose, off)
             if off <= AGREES:
                 return loop
             if best is None or match.fits > best[0]:

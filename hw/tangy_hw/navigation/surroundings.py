@@ -13,7 +13,7 @@ from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.people_guard import Around, limit_near_people
+from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints, lengths, transform_points
 
@@ -93,7 +93,7 @@ class Surroundings:
 
     def limited(self, twist: Twist) -> Twist:
         """Return the part of a command that may be driven near the people around."""
-        return limit_near_people(twist, Around(self._tracks, self._ends), self._limits)
+        return limit_near_people(twist, NearbyPeople(self._tracks, self._ends), self._limits)
 
     def held(self, twist: Twist) -> Held:
         """Return the kind of person who blocks a command; "" if it is not blocked."""
@@ -102,7 +102,7 @@ class Surroundings:
         walkers = self._walkers
         standing = [one for one in self._tracks if one not in walkers]
         ends = self._ends[~_near(self._ends, walkers)]
-        without = limit_near_people(twist, Around(standing, ends), self._limits)
+        without = limit_near_people(twist, NearbyPeople(standing, ends), self._limits)
         return "standing" if without == STILL else "walking"
 
     @property

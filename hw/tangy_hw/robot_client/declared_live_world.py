@@ -47,7 +47,7 @@ LOOK_SECONDS = 0.5  # between two observations of people
 PATIENCES = 2.0  # windows of patience after which a person counts as not complying
 
 
-class Observed(NamedTuple):
+class FactObservation(NamedTuple):
     """An observation of a person: the fact, its certainty, and its source."""
 
     told: TypedObservation
@@ -65,8 +65,8 @@ class DeclaredLiveWorld(LiveWorld):
 
     def __init__(self, activity: DeclaredActivity, *both: Any, **named: Any) -> None:
         """Create the world of a robot that is switched on, as `LiveWorld` does."""
-        self._told: deque[Observed] = deque()
-        self.unsure: Observed | None = None
+        self._told: deque[FactObservation] = deque()
+        self.unsure: FactObservation | None = None
         """Latest observation too uncertain to be judged: the person is asked again."""
         super().__init__(activity, *both, **named)
 
@@ -151,10 +151,10 @@ class DeclaredLiveWorld(LiveWorld):
         found = None if self.over else meant(self.game, who, said)
         if found is None:
             return False
-        self.take(Observed(found, certainty, source))
+        self.take(FactObservation(found, certainty, source))
         return True
 
-    def take(self, observed: Observed) -> None:
+    def take(self, observed: FactObservation) -> None:
         """Add an observation of a fact; it takes effect at the next `observe`."""
         self._told.append(observed)
 
@@ -186,7 +186,7 @@ class DeclaredLiveWorld(LiveWorld):
             found = meant(self.game, self.people[seat - 1], letter)
             fact = None if found is None else self.game.declaration.facts[found.fact]
             if found is not None and fact is not None and SIGN in fact.sources:
-                self.take(Observed(found, sure, SIGN))
+                self.take(FactObservation(found, sure, SIGN))
 
     def _take_in(self) -> None:
         """Apply the observations since the last look, each with its certainty."""

@@ -19,7 +19,7 @@ from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.navigation.odometry_history import OdometryHistory
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
-from tangy_hw.perception.requests.help_request_source import Ask, RequestSource, ShownLetter
+from tangy_hw.perception.requests.help_request_source import HelpRequest, RequestSource, ShownLetter
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.control_loop import ControlLoop
@@ -168,7 +168,7 @@ class LiveRobot:
         return Pose(0.0, 0.0, 0.0) if estimate is None else estimate.pose
 
     @property
-    def asking(self) -> tuple[Ask, ...]:
+    def asking(self) -> tuple[HelpRequest, ...]:
         """Requests for help, the longest waiting first."""
         return () if self.requests is None else self.requests.asking
 

@@ -11,7 +11,7 @@ import numpy as np
 from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import REACH, limit_by_clearance
 from tangy_hw.navigation.limits import MotionLimits
-from tangy_hw.navigation.people_guard import Around
+from tangy_hw.navigation.people_guard import NearbyPeople
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints
 
@@ -79,7 +79,7 @@ class HandDrive:
             self.held = "overridden"
             return self._told
         points = endpoints(scan, REACH, self._laser)
-        around = Around(tracks, points)
+        around = NearbyPeople(tracks, points)
         if unseen is not None and len(unseen):
             points = np.vstack((points, unseen))
         twist = limit_by_clearance(self._told, points, around, self._limits)

@@ -21,7 +21,7 @@ from tangy_profiles.worker_lines import Asked
 LARGEST_PICTURE = 400  # columns or rows: terminals show no more, and heartbeats queue behind it
 
 
-class Looks:
+class CameraRequests:
     """Handles requests to the robot's cameras, and keeps the last card reading.
 
     Each raises DeviceError if the robot has no cameras.

@@ -28,7 +28,7 @@ from tangy_hw.device_protocols import Twist
 from tangy_hw.robot_process.assembly import RobotRuntime, assemble
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import beat_of
-from tangy_hw.robot_process.looks import Looks
+from tangy_hw.robot_process.looks import CameraRequests
 from tangy_hw.robot_process.program_pipe import AnswerPipe, end_with
 from tangy_hw.robot_process.protocol import (
     calls_of,
@@ -75,7 +75,7 @@ class RobotProcess:
         self._heard = time.monotonic()
         self._doing: dict[int | str, asyncio.Task[None]] = {}
         self._broken = ""  # reason for the last abort
-        self._looks = Looks(self.robot)
+        self._looks = CameraRequests(self.robot)
         self.robot.alone = self._why_alone
         self.robot.left = self._break_off
 

@@ -27,7 +27,7 @@ SEATED = ("1", "2", "3", "4")  # the people do not matter here
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
+class SelfTestResult:
     """Result for one device: whether it works, and a sentence.
 
     `absent`: something is missing rather than broken: a driver, or a tablet for the screen.
@@ -46,7 +46,7 @@ async def try_robot(
     seconds: float = SECONDS,
     *,
     pairing: Mapping[str, str] = MappingProxyType({}),
-) -> list[Trial]:
+) -> list[SelfTestResult]:
     """Open every driver and camera of a robot's profile, and check their data.
 
     Args:
@@ -60,7 +60,7 @@ async def try_robot(
         The results, in the order of the profile.
     """
     wiring = Wiring(robot, activity, MachineClock(), pairing=pairing)
-    found: dict[str, Trial] = {}
+    found: dict[str, SelfTestResult] = {}
     opened: dict[str, Device | Camera] = {
         name: Camera(source, device=name) for name, source in cameras.items()
     }
@@ -70,7 +70,7 @@ async def try_robot(
         try:
             opened[name] = open_device(wiring, name, {"kind": driver.kind, **driver.settings})
         except DeviceError as error:
-            found[name] = Trial(name, False, str(error))
+            found[name] = SelfTestResult(name, False, str(error))
     shared: Sequence[Any] = (*wiring.links.values(), *wiring.diagnosing.values())
     started: list[Any] = []
     try:
@@ -92,17 +92,17 @@ async def try_robot(
     for name, device in robot.devices.items():
         if device.looks_at and name not in found:
             what = "nothing says where its pictures come from; name its source in"
-            found[name] = Trial(name, False, f"{what} {robot.file.name}.", absent=True)
+            found[name] = SelfTestResult(name, False, f"{what} {robot.file.name}.", absent=True)
     driven = {device for driver in known_drivers().values() for device in driver.devices}
     for name in driven - {"navigator"}:  # Tangy's own navigator replaces a missing one
         if name in robot.devices and name not in found:
             what = f"nothing drives it; say what does under [drivers] in {robot.file.name}."
-            found[name] = Trial(name, False, what, absent=True)
+            found[name] = SelfTestResult(name, False, what, absent=True)
     return [found[name] for name in (*robot.devices, *(set(found) - set(robot.devices)))
             if name in found]  # fmt: skip
 
 
-async def _try_requests(robot: Robot, seconds: float) -> Trial:
+async def _try_requests(robot: Robot, seconds: float) -> SelfTestResult:
     """Open the source of requests, and check that it works."""
     from tangy_hw.perception.requests.sources import open_requests
 
@@ -110,10 +110,10 @@ async def _try_requests(robot: Robot, seconds: float) -> Trial:
         name, corners = requests_named(robot)
         if not name:
             what = "nothing tells who asks; name a source under [drivers] in"
-            return Trial(REQUESTS, False, f"{what} {robot.file.name}.", absent=True)
+            return SelfTestResult(REQUESTS, False, f"{what} {robot.file.name}.", absent=True)
         opened = open_requests(name, load_room(), SEATED, corners=corners)
     except TangyError as error:
-        return Trial(REQUESTS, False, str(error))
+        return SelfTestResult(REQUESTS, False, str(error))
     async with opened:
         until = time.monotonic() + seconds
         while time.monotonic() < until:
@@ -122,30 +122,30 @@ async def _try_requests(robot: Robot, seconds: float) -> Trial:
             await asyncio.sleep(TICK_SECONDS)
         works = opened.reading().state == OK
     text = f"{name} works." if works else f"{name} cannot be reached, or tells nothing."
-    return Trial(REQUESTS, works, text)
+    return SelfTestResult(REQUESTS, works, text)
 
 
 def _tried(
     robot: Robot, name: str, device: Device | Camera, wiring: Wiring, seconds: float
-) -> Trial:
+) -> SelfTestResult:
     where = _where(robot, name, device)
     reading = device.reading()
     if reading.state == OK:
-        return Trial(name, True, f"{where} works.")
+        return SelfTestResult(name, True, f"{where} works.")
     if isinstance(device, Camera):
-        return Trial(name, False, device.sight.why or f"{where} gives no pictures.")
+        return SelfTestResult(name, False, device.sight.why or f"{where} gives no pictures.")
     why = str(getattr(device, "why", ""))
     if why:  # without the device's name; a screen that waits for a tablet is not broken
         said = why.removeprefix(f"{name}: ")
-        return Trial(name, False, said, absent=reading.state == WARN)
+        return SelfTestResult(name, False, said, absent=reading.state == WARN)
     link = wiring.links.get(str(robot.drivers[name].settings.get("at", "")))
     if link is not None and not link.connected:
-        return Trial(name, False, f"nobody answers at {link.url}.")
+        return SelfTestResult(name, False, f"nobody answers at {link.url}.")
     if reading.state == ERROR:
-        return Trial(name, False, f"{where} reports an error.")
+        return SelfTestResult(name, False, f"{where} reports an error.")
     if reading.state == WARN:
-        return Trial(name, False, f"{where} warns that something is wrong with it.")
-    return Trial(name, False, f"{where} has sent nothing within {seconds:g} s.")
+        return SelfTestResult(name, False, f"{where} warns that something is wrong with it.")
+    return SelfTestResult(name, False, f"{where} has sent nothing within {seconds:g} s.")
 
 
 def _where(robot: Robot, name: str, device: Device | Camera) -> str:

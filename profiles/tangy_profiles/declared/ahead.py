@@ -22,7 +22,7 @@ FEW_PLAYERS = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
+class EventPathStep:
     """An event in a state, as visited by the search."""
 
     key: Hashable
@@ -30,11 +30,11 @@ class Leg:
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class EventPath:
     """A path of events from one of several start states to a situation."""
 
     start: int
-    legs: tuple[Leg, ...]
+    legs: tuple[EventPathStep, ...]
     situation: Situation
 
 
@@ -47,18 +47,18 @@ class _Step:
     start: int
     before: _Step | None
 
-    def way(self, situation: Situation) -> Way:
-        legs, step = list[Leg](), self
+    def way(self, situation: Situation) -> EventPath:
+        legs, step = list[EventPathStep](), self
         while True:
-            legs.append(Leg(moment_key(step.game), step.event))
+            legs.append(EventPathStep(moment_key(step.game), step.event))
             if step.before is None:
-                return Way(self.start, tuple(reversed(legs)), situation)
+                return EventPath(self.start, tuple(reversed(legs)), situation)
             step = step.before
 
 
 def nearest_way(
     moments: Sequence[DeclaredGame], taught: DemonstratedMoves, most: int | None = None
-) -> Way | None:
+) -> EventPath | None:
     """Return a shortest path, along demonstrated moves, to a situation not shown yet.
 
     Events that end a game are only tried if there is no path without them. Players whom no selector
@@ -98,7 +98,7 @@ class _Search:
         self.soon: deque[_Step] = deque()
         self.late: deque[_Step] = deque()
 
-    def run(self, steps: deque[_Step]) -> Way | None:
+    def run(self, steps: deque[_Step]) -> EventPath | None:
         """Expand steps until one reaches a situation not shown; return None at the limit."""
         looked = tried = 0
         while steps and looked < self._most and tried < MOST_TRIED * self._most:

@@ -14,7 +14,7 @@ from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.search import Cut, Limit, SearchResult, explore
 from tangy_profiles.declared.search_way import Counterexample
 from tangy_profiles.declared.speech import empty_slots
-from tangy_profiles.declared.state_keys import Share
+from tangy_profiles.declared.state_keys import StateFactor
 from tangy_profiles.state import EVERYBODY
 
 Flaw = Literal[
@@ -66,7 +66,7 @@ class SearchedGames:
     states: int
     cut: Cut
     as_expected: bool = False
-    shares: tuple[Share, ...] = ()
+    shares: tuple[StateFactor, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

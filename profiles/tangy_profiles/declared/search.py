@@ -17,7 +17,7 @@ from tangy_profiles.declared.demonstrated_moves import UNDECIDED, DemonstratedMo
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.model import Declaration
 from tangy_profiles.declared.search_way import Arrival, Counterexample, Event, Node, way_to
-from tangy_profiles.declared.state_keys import Share, shares, state_key
+from tangy_profiles.declared.state_keys import StateFactor, shares, state_key
 from tangy_profiles.declared.vocabulary import ASKING
 from tangy_profiles.state import Situation
 
@@ -105,7 +105,7 @@ class SearchResult:
     lost: Counterexample | None = None
     loop: Counterexample | None = None
     idle: Counterexample | None = None
-    shares: tuple[Share, ...] = ()
+    shares: tuple[StateFactor, ...] = ()
     played: dict[str, int] = field(default_factory=dict)
 
     @property

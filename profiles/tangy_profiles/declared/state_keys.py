@@ -105,14 +105,16 @@ def state_key(game: DeclaredGame) -> Hashable:
 
 
 @dataclass(frozen=True, slots=True)
-class Share:
+class StateFactor:
     """The factor by which one fact (or part of `PARTS`) multiplies the number of states."""
 
     name: str
     times: float
 
 
-def shares(declaration: Declaration, keys: Sequence[Hashable], players: int) -> tuple[Share, ...]:
+def shares(
+    declaration: Declaration, keys: Sequence[Hashable], players: int
+) -> tuple[StateFactor, ...]:
     """Return what multiplies the states most, the largest factor first.
 
     Args:
@@ -120,13 +122,13 @@ def shares(declaration: Declaration, keys: Sequence[Hashable], players: int) -> 
         keys: distinct keys, as returned by `state_key`.
         players: the number of players.
     """
-    found: list[Share] = []
+    found: list[StateFactor] = []
     flat = [(*key[0], *key[1:-1]) for key in keys if isinstance(key, tuple)]
     begin = 0
     widths = [(fact.name, players if fact.per_player else 1) for fact, _ in declaration.looked_at]
     for name, width in (*widths, *((part, 1) for part in PARTS)):
         without = {(*one[:begin], *one[begin + width :]) for one in flat}
-        found.append(Share(name, len(flat) / max(1, len(without))))
+        found.append(StateFactor(name, len(flat) / max(1, len(without))))
         begin += width
     found.sort(key=lambda one: -one.times)
     return tuple(one for one in found if one.times >= TELLING)

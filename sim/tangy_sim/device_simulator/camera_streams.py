@@ -21,7 +21,7 @@ SIGNS_PAUSE = 0.05  # s, for the infrared camera
 CLOSE_UP = ("card", "face")
 
 
-class Film:
+class CameraStreams:
     """Streams the cameras of a world."""
 
     def __init__(self, world: BenchWorld, faces: Mapping[str, int], *, seed: int) -> None:

@@ -22,7 +22,7 @@ from tangy_profiles.person import Person
 from tangy_sim.device_simulator.faults import Faults
 from tangy_sim.device_simulator.people import CLEAR, TURNS_DOWN, People, Sitter
 from tangy_sim.device_simulator.signs import LETTERS
-from tangy_sim.device_simulator.speech_reception import Heard
+from tangy_sim.device_simulator.speech_reception import HeardLine
 from tangy_sim.worlds.clarity import UNCLEAR, Clarity
 from tangy_sim.worlds.compliance import respond
 from tangy_sim.worlds.users import SimulatedUser
@@ -79,7 +79,7 @@ class DeclaredPeople(People):
         self.known.now = now - self._began
         super().step(now)
 
-    def hear(self, heard: Heard) -> None:
+    def hear(self, heard: HeardLine) -> None:
         """React to a sentence that the robot has finished."""
         if heard.fault:
             self._asked_to_help(heard)

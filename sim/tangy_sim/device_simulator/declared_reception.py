@@ -16,7 +16,7 @@ from tangy_profiles.declared.vocabulary import SLOT
 from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.person import Person
 from tangy_profiles.room import SEAT
-from tangy_sim.device_simulator.speech_reception import Heard, called
+from tangy_sim.device_simulator.speech_reception import HeardLine, called
 
 
 class _Sentence(NamedTuple):
@@ -56,7 +56,7 @@ class DeclaredReception:
         ]
         self._sentences = sorted(sentences, key=lambda one: -one.letters)
 
-    def hear(self, text: str) -> Heard | None:
+    def hear(self, text: str) -> HeardLine | None:
         """Parse a sentence; return None if it is unknown."""
         plain = _plain(text)
         for one in self._sentences:
@@ -67,14 +67,16 @@ class DeclaredReception:
             if one.columns and not rows:
                 continue
             person = self._people.get(found.groupdict().get("name") or "", "")
-            return Heard(one.behaviour, one.strategy, person, rows=tuple(rows))
+            return HeardLine(one.behaviour, one.strategy, person, rows=tuple(rows))
         asked = next((found for one in self._again if (found := one.fullmatch(plain))), None)
         asked = asked or next(
             (found for one in self._hints if (found := one.pattern.fullmatch(plain))), None
         )
         if asked is None:
             return None
-        return Heard(person=self._people.get(asked.groupdict().get("name") or "", ""), again=True)
+        return HeardLine(
+            person=self._people.get(asked.groupdict().get("name") or "", ""), again=True
+        )
 
     def _rows(self, columns: tuple[str, ...], said: Mapping[str, str]) -> list[int]:
         """Return the rows of the items whose columns match the spoken texts."""

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from tangy_sim.device_simulator import messages
-from tangy_sim.device_simulator.camera_streams import Film
+from tangy_sim.device_simulator.camera_streams import CameraStreams
 from tangy_sim.device_simulator.house_rules import tell
 from tangy_sim.device_simulator.lidar import Lidar
 from tangy_sim.device_simulator.world import BenchWorld
@@ -51,7 +51,7 @@ class DeviceServers:
         world.lidar = Lidar(SCANNER.beams, SCANNER.first, SCANNER.step)
         self.ros = RosbridgeServer(clock=lambda: world.now)
         self.scip = ScipServer(SCANNER)
-        self.film = Film(world, faces, seed=seed)
+        self.film = CameraStreams(world, faces, seed=seed)
         self._relays = LinkRelays(link or LinkQuality(), seed)
         self._due = dict.fromkeys(EVERY, 0.0)
         self._turn = asyncio.Lock()

@@ -22,7 +22,7 @@ from tangy_profiles.person import Person
 from tangy_profiles.state import FRONT, Response
 from tangy_sim.device_simulator.agenda import Agenda
 from tangy_sim.device_simulator.faults import Faults
-from tangy_sim.device_simulator.speech_reception import Heard
+from tangy_sim.device_simulator.speech_reception import HeardLine
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.worlds.faulty_world import HELPS
 from tangy_sim.worlds.users import SimulatedUser, UserModel, load_users, waiting_calls, waiting_time
@@ -174,7 +174,7 @@ class People:
         if fault is not None and fault.person == sitter.id:
             self._after((1.0, 3.0), partial(self._turn_down, sitter))  # the person has given up
 
-    def hear(self, heard: Heard) -> None:
+    def hear(self, heard: HeardLine) -> None:
         """React to a sentence that the robot has finished."""
         if heard.fault:
             self._asked_to_help(heard)
@@ -281,7 +281,7 @@ class People:
 
     # -------------------------------------------------------------- what people are asked
 
-    def _persuaded(self, sitter: Sitter, behaviour: Behaviour, heard: Heard) -> None:
+    def _persuaded(self, sitter: Sitter, behaviour: Behaviour, heard: HeardLine) -> None:
         """Let a person respond to a request: in time, late, or not at all."""
         patience = self.activity.patience
         response = respond(self.preferences, sitter.id, heard.strategy, patience, self._compliance)
@@ -303,7 +303,7 @@ class People:
         if sitter.refused >= GIVES_UP:
             self._agenda.at(self.now + 2 * patience - CLEAR, partial(self._turn_down, sitter))
 
-    def _does(self, sitter: Sitter, behaviour: Behaviour, heard: Heard, vain: bool) -> None:
+    def _does(self, sitter: Sitter, behaviour: Behaviour, heard: HeardLine, vain: bool) -> None:
         """Carry out a request; in vain if another cell gets the same error."""
         player, before = sitter.player, sitter.player.marked
         judged = self.judged(sitter.id)
@@ -369,7 +369,7 @@ class People:
         elif kind == "request-stuck":
             self._turn_down(sitter)
 
-    def _asked_to_help(self, heard: Heard) -> None:
+    def _asked_to_help(self, heard: HeardLine) -> None:
         """Let people help, most of the time, after the robot has asked for it."""
         if heard.fault == "requests-silent":
             self._speak = True

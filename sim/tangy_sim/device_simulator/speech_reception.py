@@ -23,7 +23,7 @@ BEGINS, EACH = 1.0, 0.06  # s before the first word, and per letter
 
 
 @dataclass(frozen=True)
-class Heard:
+class HeardLine:
     """A sentence that was understood.
 
     For a behaviour: its `strategy`, the person (an id, "" if none is named), and the numbers. For a
@@ -84,7 +84,7 @@ class SpeechReception:
             for text in filter(None, (rule.aloud, rule.aloud_again)):
                 self._patterns.append(_Pattern(_pattern(text, slots), None, "", rule.code))
 
-    def hear(self, text: str) -> Heard | None:
+    def hear(self, text: str) -> HeardLine | None:
         """Parse a sentence; return None if it is unknown."""
         plain = _plain(text)
         for one in self._patterns:
@@ -93,7 +93,7 @@ class SpeechReception:
                 continue
             groups = found.groupdict()
             said = groups.get("numbers") or groups.get("call") or ""
-            return Heard(
+            return HeardLine(
                 one.behaviour,
                 one.strategy,
                 self._people.get(groups.get("name") or "", ""),

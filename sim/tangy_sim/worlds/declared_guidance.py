@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.declared.ahead import Leg, moment_key, nearest_way
+from tangy_profiles.declared.ahead import EventPathStep, moment_key, nearest_way
 from tangy_profiles.declared.demonstrated_moves import DemonstratedMoves
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.search_way import Event
@@ -48,7 +48,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
         self.coming: ArrangedSituation | None = None
         """The coming situation, None if it is left to chance."""
         self._moments: list[DeclaredGame] = []
-        self._legs: list[Leg] = []
+        self._legs: list[EventPathStep] = []
         self._went_back = 0
         return super().begin()
 

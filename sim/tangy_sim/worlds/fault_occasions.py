@@ -12,7 +12,7 @@ from tangy_sim.worlds.world import SimulatedWorld
 
 
 @dataclass
-class Present:
+class PresentFault:
     """An active fault: its start (s), the person it concerns, and whether it has shown."""
 
     kind: Kind
@@ -24,7 +24,7 @@ class Present:
 class OccasionWorld(SimulatedWorld):
     """A simulated world that knows when each of its faults can show."""
 
-    present: dict[str, Present]
+    present: dict[str, PresentFault]
     """Active faults by kind."""
 
     def can_show(self, kind: Kind, action: Action) -> bool:

@@ -18,7 +18,7 @@ from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_sim.worlds import injection
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.devices import readings
-from tangy_sim.worlds.fault_occasions import OccasionWorld, Present
+from tangy_sim.worlds.fault_occasions import OccasionWorld, PresentFault
 from tangy_sim.worlds.injection import KINDS, Injection, Kind, silencing
 from tangy_sim.worlds.injection_log import InjectionLog
 from tangy_sim.worlds.pending_injections import ToCome
@@ -98,7 +98,7 @@ class FaultyWorld(OccasionWorld):
             self._hear()
 
     def _set_in(self, kind: Kind, since: float) -> None:
-        self.present[kind.name] = Present(kind, since, self._whom(kind))
+        self.present[kind.name] = PresentFault(kind, since, self._whom(kind))
         self.came.append((self.tracker.step + 1, kind.name))
         self.injection_log.came(kind, self.tracker.step + 1, self.seconds)
 

@@ -15,7 +15,7 @@ from typing import TypeVar
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.cards import CardState
-from tangy_profiles.scene import Arranged
+from tangy_profiles.scene import ArrangedCard
 from tangy_profiles.state import FRONT, ActivityState, Outcome
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.guided_plan import FEWEST, LINE, Cue, GuidedPlan
@@ -65,12 +65,12 @@ class GuidedWorld(SimulatedWorld):
         return state
 
     @property
-    def coming(self) -> Arranged | None:
+    def coming(self) -> ArrangedCard | None:
         """The coming situation, until the person has asked."""
         cue = self.cue
         if cue is None or cue.asked:
             return None
-        return Arranged(cue.person, cue.shows.name, cue.hidden and self.plan.lacks_hidden)
+        return ArrangedCard(cue.person, cue.shows.name, cue.hidden and self.plan.lacks_hidden)
 
     def execute(self, action: Action) -> Outcome:
         """Execute an action of the robot, and let people follow the plan."""

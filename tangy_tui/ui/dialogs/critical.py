@@ -43,7 +43,7 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 ACTIONS = ("acknowledge", "expert", "reached", "accept", "back")
 
 
-class Desk(Protocol):
+class HaltedRobot(Protocol):
     """What staff can do about the fault that halts the robot."""
 
     supervision: Supervision
@@ -105,7 +105,7 @@ class CriticalDialog(Dialog[None]):
     )
 
     def __init__(
-        self, desk: Desk, fault: Fault, robot: Robot, *, clock: Clock | None = None
+        self, desk: HaltedRobot, fault: Fault, robot: Robot, *, clock: Clock | None = None
     ) -> None:
         super().__init__(None)
         self._desk = desk

@@ -12,7 +12,7 @@ from textual.containers import Vertical
 from textual.content import Content
 
 from tangy_profiles.activity import Activity
-from tangy_tui.learning.policies import Change
+from tangy_tui.learning.policies import DecisionChange
 from tangy_tui.text.policies import NOT_AS_KEPT, OTHER_DECISIONS, SAME_DECISIONS, change_words
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -47,7 +47,7 @@ class DifferenceDialog(Dialog[Use]):
         self,
         activity: Activity,
         notice: str,
-        changes: Sequence[Change],
+        changes: Sequence[DecisionChange],
         *,
         clock: Clock | None = None,
     ) -> None:

@@ -15,8 +15,8 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beta
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.persuasion import StrategyChoice
-from tangy_tui.learning.conflicts import Shown
-from tangy_tui.learning.explanation import Why
+from tangy_tui.learning.conflicts import DemonstratedStep
+from tangy_tui.learning.explanation import DecisionReasons
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE
 from tangy_tui.text.decisions import VOTES, WHY_HEADINGS, chosen_words, strategy_title, why_words
@@ -56,7 +56,7 @@ class WhyDialog(Dialog[None]):
     def __init__(
         self,
         workspace: Workspace,
-        why: Why,
+        why: DecisionReasons,
         choice: StrategyChoice | None = None,
         *,
         title: str = "Why this?",
@@ -81,7 +81,7 @@ class WhyDialog(Dialog[None]):
         self._numbers = {id: n for n, id in enumerate(library.entries, 1)}
 
     @property
-    def why(self) -> Why:
+    def why(self) -> DecisionReasons:
         """The explanation shown."""
         return self._why
 
@@ -129,7 +129,7 @@ class WhyDialog(Dialog[None]):
                 number += 1
         return lines
 
-    def _step(self, shown: Shown, elsewhere: bool, width: int) -> tuple[Span, ...]:
+    def _step(self, shown: DemonstratedStep, elsewhere: bool, width: int) -> tuple[Span, ...]:
         """Format a step: behaviour, demonstration, teacher; for a similar situation, that too."""
         number = self._numbers.get(shown.demonstration)
         where = f"demonstration {number}" if number else shown.demonstration
@@ -146,7 +146,7 @@ class WhyDialog(Dialog[None]):
         )
 
 
-def vote_lines(activity: Activity, why: Why, width: int) -> list[PageLine]:
+def vote_lines(activity: Activity, why: DecisionReasons, width: int) -> list[PageLine]:
     """Draw the votes as bars, the largest first."""
     votes = why.decision.votes
     names = [clean(activity.behaviour_words(behaviour)) for behaviour, _ in votes]

@@ -17,7 +17,7 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import key_line
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import Row, draw, fit, shorten
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
@@ -58,7 +58,7 @@ States = Callable[[], Mapping[str, str]]
 """Returns the progress of each choice, by its id: {"teach": "2 demonstrations"}."""
 
 
-class Menu(Inked, can_focus=True):
+class Menu(InkedWidget, can_focus=True):
     """The choices, one line each, with empty lines between if there is room."""
 
     ALLOW_MAXIMIZE = False  # there is nothing beside them

@@ -18,7 +18,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.language.phrase_list import list_phrases
 from tangy_tui.learning.own_phrases import own_phrases, personal_activity
 from tangy_tui.text import phrases as text
-from tangy_tui.text.phrases import NONE_FOUND, Item, items
+from tangy_tui.text.phrases import NONE_FOUND, PhraseItem, items
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -83,7 +83,7 @@ class PhrasesScreen(TangyScreen[None]):
         super().__init__()
         self._workspace = workspace
         self._aloud = say
-        self._items: tuple[Item, ...] = ()
+        self._items: tuple[PhraseItem, ...] = ()
 
     def compose(self) -> ComposeResult:
         """Lay out the list and the search line."""
@@ -167,7 +167,7 @@ class PhrasesScreen(TangyScreen[None]):
         return self.query_one("#phrases", ChoiceList)
 
     @property
-    def _chosen(self) -> Item | None:
+    def _chosen(self) -> PhraseItem | None:
         """The entry at the cursor."""
         at = self._list.chosen
         return self._items[at] if isinstance(at, int) and at < len(self._items) else None
@@ -198,7 +198,7 @@ class PhrasesScreen(TangyScreen[None]):
         self.app.notify(clean(sentence), severity=severity, markup=False)  # type: ignore[arg-type]
 
 
-def phrase_lines(entries: tuple[Item, ...], wanted: str, width: int) -> list[ChoiceLine]:
+def phrase_lines(entries: tuple[PhraseItem, ...], wanted: str, width: int) -> list[ChoiceLine]:
     """Format the entries that match a search, with headings; their keys are indices."""
     about = min(ABOUT, width // 3)
     lines: list[ChoiceLine] = []

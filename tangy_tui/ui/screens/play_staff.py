@@ -44,7 +44,7 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.line import CommandDialog
 from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.screens.play_panels import PlayPanels
-from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, wanted
+from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer, wanted
 
 PACE_SECONDS = 1.0
 """The delay after the last change of pace before the new pace is shown."""
@@ -236,12 +236,12 @@ class PlayStaff(PlayPanels):
             with suppress(Exception):  # the screen may be closing
                 await asking.remove()
         match answer:
-            case Instead.WITHDRAWN:
+            case NoAnswer.WITHDRAWN:
                 if wanted(question) and self._supervision.question is question:
                     self._do(GiveBack())
-            case Instead.GIVE_UP:
+            case NoAnswer.GIVE_UP:
                 self._tell(self.control.give_up(), True)
-            case Instead.ACCEPT:
+            case NoAnswer.ACCEPT:
                 self._do(Accept())
             case Verified():
                 self._take(await self._learn(answer))

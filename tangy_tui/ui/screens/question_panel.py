@@ -64,7 +64,7 @@ OWN_KEYS = ("why", "command:answer", "pause", "back:let Tangy go on by itself")
 """The keys available while the line does not have the focus."""
 
 
-class Instead(Enum):
+class NoAnswer(Enum):
     """Outcomes other than an answer."""
 
     GIVE_UP = "give up"
@@ -120,7 +120,7 @@ class AskingPanel(Vertical):
         self._question = question
         self._phrasebook = workspace.phrasebook()
         self._acceptable = control.supervision.acceptable
-        self._answer: asyncio.Future[Verified | Instead]
+        self._answer: asyncio.Future[Verified | NoAnswer]
         self._answer = asyncio.get_running_loop().create_future()
         self._dialog: Dialog[Any] | None = None
         self._held = False
@@ -187,13 +187,13 @@ class AskingPanel(Vertical):
         else:
             self.query_one(CommandBar).focus_input()
 
-    async def answer(self) -> Verified | Instead:
+    async def answer(self) -> Verified | NoAnswer:
         """Wait for a verified answer, or another outcome."""
         return await self._answer
 
     def withdraw(self) -> None:
         """Close the question, which an event has made obsolete."""
-        self._settle(Instead.WITHDRAWN)
+        self._settle(NoAnswer.WITHDRAWN)
         if (dialog := self._dialog) is not None:
             self._close(dialog)
             self.screen.run_worker(self._take_away(dialog), group="take away")
@@ -217,7 +217,7 @@ class AskingPanel(Vertical):
         if self._acceptable and self._held:
             self.say(text.STOPPED_FIRST)
         elif self._acceptable:
-            self._settle(Instead.ACCEPT)
+            self._settle(NoAnswer.ACCEPT)
         return self._acceptable
 
     def ask_to_give_up(self) -> None:
@@ -235,7 +235,7 @@ class AskingPanel(Vertical):
             no="go on",
         )
         if await self._put(dialog):
-            self._settle(Instead.GIVE_UP)
+            self._settle(NoAnswer.GIVE_UP)
 
     async def _put(self, dialog: Dialog[ResultT]) -> ResultT:
         """Show a dialog, which closes if the question is withdrawn.
@@ -248,7 +248,7 @@ class AskingPanel(Vertical):
         finally:
             self._dialog = None
 
-    def _settle(self, answer: Verified | Instead) -> None:
+    def _settle(self, answer: Verified | NoAnswer) -> None:
         if not self._answer.done():
             self._answer.set_result(answer)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from textual.message import Message
 
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.library_entries import Library
 from tangy_tui.text.conflicts import ANSWER_HELP
 from tangy_tui.text.numbers import counted
@@ -25,7 +25,7 @@ class AnswerSteps(ChoiceList):
     class Chosen(Message):
         """A step was chosen with Enter."""
 
-        def __init__(self, answer: AnswerSteps, shown: Shown) -> None:
+        def __init__(self, answer: AnswerSteps, shown: DemonstratedStep) -> None:
             super().__init__()
             self.answer = answer
             self.shown = shown
@@ -41,7 +41,7 @@ class AnswerSteps(ChoiceList):
         library: Library,
         number: int,
         behaviour: str,
-        steps: Sequence[Shown],
+        steps: Sequence[DemonstratedStep],
     ) -> None:
         super().__init__(
             f"{number} {clean(workspace.activity.behaviour_words(behaviour))}",
@@ -67,7 +67,7 @@ class AnswerSteps(ChoiceList):
                 lines.append(ChoiceLine(((shorten(self._followed(shown), width), "dim"),), index))
         return lines
 
-    def _followed(self, shown: Shown) -> str:
+    def _followed(self, shown: DemonstratedStep) -> str:
         """Describe the person the step was for, and the situation that followed."""
         step = shown.step
         whom = f"for {self._workspace.name(step.target)}, " if step.target else ""

@@ -12,7 +12,7 @@ from textual import events
 from textual.geometry import Region
 from textual.strip import Strip
 
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import draw
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -47,7 +47,7 @@ class Pixels(Protocol):
         ...
 
 
-class BlockPicture(Inked, can_focus=True):
+class BlockPicture(InkedWidget, can_focus=True):
     """Shows a picture made to `fit`, centred; redraws only the cells that changed."""
 
     HELP: ClassVar[str] = ""

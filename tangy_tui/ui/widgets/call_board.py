@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from textual.strip import Strip
 
 from tangy_profiles.cards import Column, Deck
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import Row, Span, draw
 
 LETTER = "B "
@@ -15,7 +15,7 @@ CELL = 3
 """Width of a number in cells."""
 
 
-class CallBoard(Inked):
+class CallBoard(InkedWidget):
     """One line for each column of the deck; if not all numbers fit, only the called ones."""
 
     DEFAULT_CSS = """

@@ -9,7 +9,7 @@ from textual.strip import Strip
 from textual.suggester import Suggester
 
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 Sayable = Callable[[], tuple[str, ...]]
@@ -37,7 +37,7 @@ def goes_on(value: str, match: str) -> bool:
     return len(match) > len(value) and match.lower().startswith(value.lower())
 
 
-class CommandMatches(Inked):
+class CommandMatches(InkedWidget):
     """One line with the commands that match the typed text, or with the available keys."""
 
     DEFAULT_CSS = """

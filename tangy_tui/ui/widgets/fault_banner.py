@@ -12,7 +12,7 @@ from textual import events
 from textual.strip import Strip
 
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import draw, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -23,7 +23,7 @@ MOST_LINES = 4
 """From this number of lines on, the screen gives the banner no more room."""
 
 
-class FaultBanner(Inked):
+class FaultBanner(InkedWidget):
     """Tells the fault and its recovery, with the key that acknowledges it.
 
     Its screen gets the class `-banner-2` while the banner has two lines, and so on.

@@ -9,7 +9,7 @@ SHAPES = ("curve",)
 """Inks of text that forms a picture."""
 
 
-class Inked(Widget):
+class InkedWidget(Widget):
     """A widget that draws with inks, which are component classes of its screen.
 
     Textual recomputes the style of each component class of each widget whenever a class changes: as

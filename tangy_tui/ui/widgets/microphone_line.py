@@ -11,7 +11,7 @@ from textual.timer import Timer
 
 from tangy_tui.text.mic_check import trouble_words
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class Microphone(Protocol):
         """The level meter."""
 
 
-class MicrophoneLine(Inked):
+class MicrophoneLine(InkedWidget):
     """One line; costs nothing while the microphone is closed.
 
     Call `look` when the state or the words may have changed. Level and trouble are polled at most

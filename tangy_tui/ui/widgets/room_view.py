@@ -20,7 +20,7 @@ from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, clock_of
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.room_drawing import draw_room
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPlan, plan
 from tangy_tui.ui.widgets.rows import Row, draw
@@ -35,7 +35,7 @@ Mark = tuple[Point, str, str]
 EMPTY = Scene(FRONT, (), {}, (), None)
 
 
-class RoomView(Inked):
+class RoomView(InkedWidget):
     """Robot and people in the activity room, seen from behind the people.
 
     `show` draws a scene at once; `drive` animates the robot to its destination, and `hold` freezes

@@ -10,7 +10,7 @@ from textual.geometry import Region, Size
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 
 Span = tuple[str, str]
 """A piece of text and its ink."""
@@ -35,7 +35,7 @@ def shorten(text: str, width: int) -> str:
     return set_cell_size(text, width - 1).rstrip() + "…" if width > 0 else ""
 
 
-def draw(widget: Inked, row: Row, width: int, over: str = "") -> Strip:
+def draw(widget: InkedWidget, row: Row, width: int, over: str = "") -> Strip:
     """Draw one line over the whole width of a widget."""
     segments = [
         Segment(text, widget.ink("blank" if text.isspace() else name, over))
@@ -129,7 +129,7 @@ class Rows:
             self._widget.scroll_to(y=index - height + 1, animate=False, force=True)
 
 
-class RowView(ScrollView, Inked):
+class RowView(ScrollView, InkedWidget):
     """A scrollable widget made of rows: `_rows.put` sets them, and redraws the changed ones."""
 
     DEFAULT_CSS = """

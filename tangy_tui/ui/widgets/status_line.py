@@ -8,7 +8,7 @@ from rich.cells import cell_len
 from textual.strip import Strip
 
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.inks import Inked
+from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 STOP = "^x STOP"
@@ -35,7 +35,7 @@ class Status:
     seen: str = ""
 
 
-class StatusLine(Inked):
+class StatusLine(InkedWidget):
     """One line, at the top of every screen."""
 
     DEFAULT_CSS = """

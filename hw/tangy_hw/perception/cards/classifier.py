@@ -27,7 +27,7 @@ Net = tuple[tuple["Real", "Real"], ...]
 
 
 @dataclass(frozen=True)
-class Nets:
+class NetEnsemble:
     """An ensemble of networks, each a list of layers; features are standardised first."""
 
     centre: Real
@@ -53,8 +53,8 @@ class Classifier:
     a hand, and for other marked ones. A finger may look like a chip, but comes with its hand.
     """
 
-    alone: Nets
-    among: Nets
+    alone: NetEnsemble
+    among: NetEnsemble
     temperature: float
     sure: float
     doubt: tuple[float, float, float]
@@ -187,11 +187,11 @@ def read_classifier(told: dict[str, Any]) -> Classifier:
     )
 
 
-def _nets(told: dict[str, Any]) -> Nets:
+def _nets(told: dict[str, Any]) -> NetEnsemble:
     import numpy as np
 
     real = np.float32
-    return Nets(
+    return NetEnsemble(
         np.array(told["centre"], real),
         np.array(told["spread"], real),
         tuple(

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards import extent, synthesis
-from tangy_hw.perception.cards.rectification import RIM, SIDE, Flat
+from tangy_hw.perception.cards.rectification import RIM, SIDE, RectifiedGrid
 from tangy_profiles.card_face import CardLayout
 from tangy_profiles.card_picture import draw_number
 
@@ -52,7 +52,7 @@ the most chip-like place in the cell.
 
 
 @dataclass(frozen=True)
-class Measured:
+class CellFeatures:
     """Features of a card's cells: a row for each, with `NAMES` and then the spots of `SEEN`.
 
     `read` has the correlation with the card's own number, and the best with another number of the
@@ -70,7 +70,7 @@ class Measured:
         return column
 
 
-def features_of(flat: Flat, face: CardLayout, numbers: tuple[int, ...]) -> Measured:
+def features_of(flat: RectifiedGrid, face: CardLayout, numbers: tuple[int, ...]) -> CellFeatures:
     """Measure the cells of a card."""
     import cv2
     import numpy as np
@@ -163,7 +163,7 @@ def features_of(flat: Flat, face: CardLayout, numbers: tuple[int, ...]) -> Measu
     bare = expected > 0.9
     strange = (full_tint > STRANGE * np.maximum(full_light, 0.05)) | (full_light < DARK)
     beside = _beside(np.where(bare, strange, False), bare, rows, columns)
-    return Measured(np.hstack([named, spots]), read[:, :2], beside)
+    return CellFeatures(np.hstack([named, spots]), read[:, :2], beside)
 
 
 def _beside(strange: Real, bare: Real, rows: int, columns: int) -> Real:

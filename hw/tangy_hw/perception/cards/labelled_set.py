@@ -33,7 +33,7 @@ class CardLabel:
 
 
 @dataclass
-class Counted:
+class ReadingCounts:
     """Counts of correct and wrong readings of labelled images."""
 
     pictures: int = 0
@@ -143,13 +143,15 @@ def _mask(places: Any, deck: Deck) -> int:
     return mask
 
 
-def count_labelled(labels: list[CardLabel], read: Callable[[NDArray[Any]], CardReading]) -> Counted:
+def count_labelled(
+    labels: list[CardLabel], read: Callable[[NDArray[Any]], CardReading]
+) -> ReadingCounts:
     """Read each image (BGR) and compare it with its label.
 
     Raises:
         PictureError: an image cannot be read.
     """
-    counted = Counted()
+    counted = ReadingCounts()
     for label in labels:
         reading = read(read_picture(label.path))
         counted.pictures += 1

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards.classifier import HIDDEN, MARKED, UNMARKED
-from tangy_hw.perception.cards.features import Measured
+from tangy_hw.perception.cards.features import CellFeatures
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,7 +41,7 @@ BESIDE = 0.3
 """Probability of hidden cells beside which a finger may end."""
 
 
-def unlike_others(measured: Measured, parts: Real, told: Real, across: int) -> Real:
+def unlike_others(measured: CellFeatures, parts: Real, told: Real, across: int) -> Real:
     """Return which marks differ so much from the others that they may be false.
 
     Args:
@@ -67,7 +67,7 @@ def unlike_others(measured: Measured, parts: Real, told: Real, across: int) -> R
     return doubted
 
 
-def _fingers(measured: Measured, parts: Real, coloured: Real, across: int) -> Real:
+def _fingers(measured: CellFeatures, parts: Real, coloured: Real, across: int) -> Real:
     """Return which cells may show the end of a finger."""
     import numpy as np
 

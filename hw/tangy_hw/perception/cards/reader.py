@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards.card_detection import Sighting, find_cards
 from tangy_hw.perception.cards.classifier import HIDDEN, MARKED, UNMARKED, load_classifier
-from tangy_hw.perception.cards.features import Measured, features_of
+from tangy_hw.perception.cards.features import CellFeatures, features_of
 from tangy_hw.perception.cards.likeness import unlike_others
 from tangy_hw.perception.cards.rectification import flatten
 from tangy_profiles.card_face import USUAL_SEED, CardLayout, called_cells, numbers_of
@@ -80,7 +80,7 @@ def _count(number: int) -> str:
     return words[number] if number < len(words) else str(number)
 
 
-def _reconsidered(parts: Real, measured: Measured, across: int) -> Real:
+def _reconsidered(parts: Real, measured: CellFeatures, across: int) -> Real:
     """Make cells uncertain: unmarked ones with a pale number, and marks unlike the others.
 
     Objects on a number reduce its contrast, however clear or pale they are; light does not.

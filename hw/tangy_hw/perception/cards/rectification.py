@@ -25,7 +25,7 @@ FEWEST = 12  # crossings that must match
 
 
 @dataclass(frozen=True)
-class Flat:
+class RectifiedGrid:
     """A rectified grid, `SIDE` pixels per cell, with a rim.
 
     `scale` is image pixels per rectified pixel, `crossings` the correlation of each crossing with
@@ -74,7 +74,7 @@ def _to_flat(face: CardLayout) -> Plane:
     )
 
 
-def flatten(picture: Picture, seen: Sighting, face: CardLayout, seed: int) -> Flat | None:
+def flatten(picture: Picture, seen: Sighting, face: CardLayout, seed: int) -> RectifiedGrid | None:
     """Return a card's rectified grid (rows, columns, 3); None if too few crossings match."""
     import cv2
     import numpy as np
@@ -106,7 +106,7 @@ def flatten(picture: Picture, seen: Sighting, face: CardLayout, seed: int) -> Fl
         if moved < 0.5 or (step and moved < 1):
             break
         reach = 4
-    return Flat(flat, expected, scale, scores, matched, plane)
+    return RectifiedGrid(flat, expected, scale, scores, matched, plane)
 
 
 def _corners(face: CardLayout) -> Plane:

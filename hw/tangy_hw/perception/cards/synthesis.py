@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from tangy_hw.perception.cards.rectification import RIM, SIDE, Flat
+from tangy_hw.perception.cards.rectification import RIM, SIDE, RectifiedGrid
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +33,7 @@ NAMES = (
 """Names of the columns, in order."""
 
 
-def compared(flat: Flat, expected: Real) -> Real:
+def compared(flat: RectifiedGrid, expected: Real) -> Real:
     """Compare cells with their print; return a row of `NAMES` for each.
 
     `expected` (rows, columns) is the print, blurred as the image is, 0 to 1.

@@ -40,7 +40,7 @@ DEVICES = Path("/dev/input")
 LISTED = Path("/sys/class/input")
 
 
-class Events:
+class KeyEventParser:
     """Parses a device's bytes into events, and returns the pressed keys."""
 
     def __init__(self) -> None:
@@ -140,7 +140,7 @@ class ButtonBox(RequestSource):
 
         with contextlib.suppress(OSError):
             fcntl.ioctl(descriptor, GRAB, 1)
-        loop, ready, events = asyncio.get_running_loop(), asyncio.Event(), Events()
+        loop, ready, events = asyncio.get_running_loop(), asyncio.Event(), KeyEventParser()
         loop.add_reader(descriptor, ready.set)
         try:
             while True:

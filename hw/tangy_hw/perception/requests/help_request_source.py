@@ -18,7 +18,7 @@ class RequestError(TangyError):
     """A source of requests cannot be used; one sentence that names it."""
 
 
-class Ask(NamedTuple):
+class HelpRequest(NamedTuple):
     """A request: its seat (from 1), and the person there ("" if unknown).
 
     `since` is of the monotonic clock, in s; `sure` is a probability from 0 to 1.
@@ -66,7 +66,7 @@ class RequestSource:
         self.agreed = 0
         """Number of consecutive frames that showed exactly the current requests."""
         self._people = tuple(people)
-        self._asks: dict[int, Ask] = {}
+        self._asks: dict[int, HelpRequest] = {}
         self._shown: dict[int, ShownLetter] = {}
         self._changed = asyncio.Event()
         self._closed = False
@@ -80,7 +80,7 @@ class RequestSource:
         await self.close()
 
     @property
-    def asking(self) -> tuple[Ask, ...]:
+    def asking(self) -> tuple[HelpRequest, ...]:
         """Current requests, the longest waiting first."""
         return tuple(sorted(self._asks.values(), key=lambda ask: ask.since))
 
@@ -105,7 +105,7 @@ class RequestSource:
         self._closed = True
         self._changed.set()
 
-    async def __aiter__(self) -> AsyncIterator[tuple[Ask, ...]]:
+    async def __aiter__(self) -> AsyncIterator[tuple[HelpRequest, ...]]:
         """Yield the current requests at each change.
 
         Raises:
@@ -130,7 +130,7 @@ class RequestSource:
         ask = self._asks.get(seat)
         if ask is None:
             began = time.monotonic() if since is None else since
-            self._asks[seat] = Ask(seat, self._person(seat), began, sure)
+            self._asks[seat] = HelpRequest(seat, self._person(seat), began, sure)
             self._changed.set()
         else:
             self._asks[seat] = ask._replace(sure=sure)

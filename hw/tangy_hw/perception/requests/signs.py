@@ -84,7 +84,7 @@ class TableView:
         return distances.index(least) + 1 if least <= FAR else 0
 
 
-class Persistence:
+class Hysteresis:
     """Hysteresis over frames: on at three of five, off at one of five or fewer."""
 
     def __init__(self) -> None:
@@ -113,7 +113,7 @@ class SignWatcher:
     def __init__(self, view: TableView, limits: TriangleLimits = USUAL) -> None:
         self._view = view
         self._limits = limits
-        self._persistence = Persistence()
+        self._persistence = Hysteresis()
         self._answers = AnswerPersistence(view.seat)
         self.found: dict[int, float] = {}
         """Signs of the last frame alone: seat to probability."""
@@ -138,7 +138,7 @@ class SignWatcher:
         return shown == self._answers.found
 
 
-class Signs(RequestSource):
+class SignRequests(RequestSource):
     """Requests by signs before a camera."""
 
     def __init__(

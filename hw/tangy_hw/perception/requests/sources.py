@@ -67,7 +67,7 @@ def open_requests(
         return ButtonBox(name, rest, seats, people)
     if kind == "signs":
         from tangy_hw.drivers.camera_source import find_camera
-        from tangy_hw.perception.requests.signs import Signs, TableView
+        from tangy_hw.perception.requests.signs import SignRequests, TableView
 
         if not rest:
             raise RequestError("signs: names no camera; give signs:0 or signs:http://...")
@@ -78,5 +78,5 @@ def open_requests(
             )
         near_left, near_right, far_right, far_left = corners
         view = TableView((near_left, near_right, far_right, far_left), room, seats)
-        return Signs(find_camera(rest, each=each), view, seats, people)
+        return SignRequests(find_camera(rest, each=each), view, seats, people)
     raise RequestError(plain(f"{name[:60]!r} is no source of requests: {nearest(name, KINDS)}"))
