@@ -135,11 +135,12 @@ def main() -> None:
     parser.add_argument("--loss", type=float, action="append")
     parser.add_argument("--delay", type=float, default=0.0)
     parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--newest", action="store_true", help="match scans with newest odometry")
     given = parser.parse_args()
     for loss in given.loss or [0.0, 0.03, 0.1]:
         kept, quality = Kept(), LinkQuality(given.delay, loss)
-        for seed in range(given.seeds):
+        for seed in range(given.first_seed, given.first_seed + given.seeds):
             robot = LateRobot(quality, seed, matched=not given.newest)
             for goal in (*(at_seat(n) for n in range(4)), FRONT):
                 robot.navigator.go(goal)
@@ -147,7 +148,7 @@ def main() -> None:
         print(
             f"loss {loss:.0%}: {kept.drives} drives, {kept.arrived} arrived, {kept.lost} lost, "
             f"{kept.spins * TICK:.0f} s of turning to find its place;\n  off by "
-            f"m {spread(kept.metres)}; rad {spread(kept.radians)}",
+            f"{spread(kept.metres, 'm')}; {spread(kept.radians, 'rad')}",
             flush=True,
         )
 

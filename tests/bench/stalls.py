@@ -200,13 +200,13 @@ class StalledGames:
         return one
 
 
-def spread(found: Sequence[float | None]) -> str:
-    """Return how many there are, their median, 95th percentile, and most, in s."""
+def spread(found: Sequence[float | None], unit: str = "s") -> str:
+    """Return how many there are, their median, 95th percentile, and most."""
     there = sorted(one for one in found if one is not None)
     if len(there) < 2:
-        return f"{there} s"
+        return f"{there} {unit}"
     cuts = quantiles(there, n=20, method="inclusive")
-    return f"p50 {cuts[9]:.2f} p95 {cuts[18]:.2f} most {there[-1]:.2f} s ({len(there)} times)"
+    return f"p50 {cuts[9]:.2f} p95 {cuts[18]:.2f} most {there[-1]:.2f} {unit} ({len(there)} times)"
 
 
 def main() -> None:
