@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from random import Random
 
 import pytest
 
 from tangy_profiles.activity import load_activity
-from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.codec import decode, encode
+from tangy_profiles.declared.activity import DeclaredActivity, read_declared
 from tangy_profiles.declared.checking import expected_moves
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.joint_state import joint_state
+from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.model import FactCondition
-from tangy_profiles.declared.speech import filled
+from tangy_profiles.declared.speech import filled, media, words
 from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_sim.worlds.declared_world import DeclaredWorld
 from tests.support.declared import DECLARED, declared
+from tests.support.media import guess_the_sound
 
 PLAYERS = ("ann", "ben", "cat")
 
@@ -145,6 +149,39 @@ def test_nobody_who_is_away_asks_answers_or_counts(game: DeclaredGame) -> None:
         assert not game.holds(every, None)
         game.observe("answer", one, "eight")
     assert game.holds(every, None)
+
+
+def test_the_screen_keeps_a_question_until_it_shows_something_else(
+    trivia: DeclaredActivity,
+) -> None:
+    game = DeclaredGame(trivia.declaration, PLAYERS)
+
+    def shown(behaviour: str, whom: str | None = None) -> str:
+        before = game.copy()
+        game.execute(behaviour, whom)
+        return words(game, before, behaviour, "plain", whom)[1]
+
+    question = shown("ask question", "ann")
+    assert question.startswith("Which")
+    assert shown("allow time") == shown("give hint", "ann") == question
+    logged = decode(GameMemory, encode(memory_of(game)))
+    again = game_from(game.declaration, PLAYERS, logged)
+    assert again is not None and again.screen == game.screen == ("ask question", "ann")
+    assert shown("confirm answer", "ann") == shown("allow time") != question
+    assert "\x02ben\x03 0" in shown("tell scores")
+    assert shown("close quiz") == game.declaration.title
+
+
+def test_the_next_item_takes_the_old_one_off_the_screen(tmp_path: Path) -> None:
+    activity = read_declared(guess_the_sound(tmp_path))
+    game = DeclaredGame(activity.declaration, PLAYERS)
+    game.execute("play a sound", "ann")
+    assert game.screen is None
+    game.execute("show what it was", "ann")
+    picture, sound = media(game, "let them listen")
+    assert picture is not None and sound is None
+    game.execute("play a sound", "ben")
+    assert media(game, "play a sound")[0] is None
 
 
 def test_the_last_player_cannot_leave(game: DeclaredGame) -> None:

@@ -156,6 +156,29 @@ async def test_whatever_is_said_is_all_on_the_screen(
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
+async def test_each_option_of_a_question_has_a_line_of_its_own(
+    screen: WebChestScreen, browser: Browser, size: tuple[int, int]
+) -> None:
+    tab = await opened(browser, screen, size)
+    lines = ["Which one has black and white keys?", "A the violin", "B the piano", "C the horn"]
+    await screen.show(Picture("  ".join(lines), asks="Reds"))
+    assert await outside(tab) == ""
+    found = await tab.value(
+        """(function () {
+          var spans = document.querySelectorAll("#text span"), lines = {}, i, top;
+          for (i = 0; i < spans.length; i += 1) {
+            top = Math.round(spans[i].getBoundingClientRect().top);
+            lines[top] = (lines[top] ? lines[top] + " " : "") + spans[i].textContent;
+          }
+          return Object.keys(lines).sort(function (a, b) { return a - b; }).map(
+            function (top) { return lines[top]; });
+        }())"""
+    )
+    assert found[-3:] == lines[1:]
+    assert " ".join(found[:-3]) == lines[0]
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
 @pytest.mark.parametrize("shape", [(300, 900), (900, 300)])
 async def test_a_picture_is_large_and_its_line_is_under_it(
     screen: WebChestScreen,

@@ -20,15 +20,20 @@
     return found ? [found[1], found[2]] : ["", called];
   }
 
-  // Insert a line word by word, so that it only breaks between words: never within "N-40".
-  function putWords(id, line) {
-    var words = line.split(/\s+/), i, span;
+  // Insert a text word by word, so that it only breaks between words: never within "N-40". After two
+  // spaces a new line begins.
+  function putWords(id, text) {
+    var lines = text.split(/\s{2,}/), words, i, j, span;
     put(id, "");
-    for (i = 0; i < words.length; i += 1) {
-      span = document.createElement("span");
-      span.textContent = words[i];
-      get(id).appendChild(span);
-      get(id).appendChild(document.createTextNode(" "));
+    for (i = 0; i < lines.length; i += 1) {
+      words = lines[i].split(" ");
+      if (i) { get(id).appendChild(document.createElement("br")); }
+      for (j = 0; j < words.length; j += 1) {
+        span = document.createElement("span");
+        span.textContent = words[j];
+        get(id).appendChild(span);
+        get(id).appendChild(document.createTextNode(" "));
+      }
     }
   }
 

@@ -198,7 +198,7 @@ def _behaviour(declaration: Declaration, one: DeclaredBehaviour) -> Behaviour:
         effect=effect,
         place="here",
         posture=one.posture,
-        image=one.image,
+        image=one.image or ("" if one.picture else declaration.title),
         speech=MappingProxyType({s: texts.get(s, first) for s in declaration.strategies}),
         persuades=one.invites,
         closes="always" if "close request" in does else "never",

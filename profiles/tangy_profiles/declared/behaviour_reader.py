@@ -45,7 +45,6 @@ def read_behaviours(
     plain: str,
     folder: Path,
     columns: Sequence[str],
-    title: str,
 ) -> dict[str, DeclaredBehaviour]:
     """Read all behaviours of a file, and the CSV file of their speech if it names one.
 
@@ -56,7 +55,6 @@ def read_behaviours(
         plain: the strategy for behaviours that ask nobody to do anything.
         folder: the folder of the CSV files.
         columns: the columns of the items.
-        title: the default text of the chest screen.
     """
     slots = known_slots(phrasing.facts, columns)
     spoken = _read_speech(top, folder, strategies, slots)
@@ -77,7 +75,7 @@ def read_behaviours(
             _read_phrases(one, name, said),
             one.text("question", name),
             one.text("posture", POSTURE),
-            _text(one, "image", one.text("image", "" if "picture" in one else title), slots),
+            _text(one, "image", one.text("image", ""), slots),
             _read_wordings(one, name, said),
             tuple(_text(one, "again", text, slots) for text in one.texts("again", single=True)),
             one.text("picture", ""),

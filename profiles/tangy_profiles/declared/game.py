@@ -69,6 +69,11 @@ class DeclaredGame:
         """The time in this game, in s."""
         self.step = 0
         self.closed: str | None = None
+        self.screen: tuple[str, str | None] | None = None
+        """The behaviour and the person whose text or picture the chest screen shows.
+
+        It stays until another one has its own, the next item comes, or the game is over.
+        """
         self.over = False
         self.executed: dict[str, int] = {}
 
@@ -287,6 +292,8 @@ class DeclaredGame:
         for effect in behaviour.effects:
             if all(self.holds(one, person) for one in effect.conditions):
                 self._change(effect, whom, invited)
+        if behaviour.image or behaviour.picture:
+            self.screen = name, whom
         return Execution(True, tuple(invited))
 
     def failed(self) -> None:
@@ -305,6 +312,7 @@ class DeclaredGame:
                     self._assign(effect, fact, key)
             case "next item":
                 self.round = min(self.round + 1, len(self.order))
+                self.screen = None
             case "next turn":
                 self.turn = self._next_here(self.turn)
             case "go to front":
@@ -320,6 +328,7 @@ class DeclaredGame:
                 invited.append((whom or "", effect.fact, effect.value))
             case "finish":
                 self.over = True
+                self.screen = None
 
     def _assign_value(self, key: Key, value: str) -> None:
         """Set a value, and move it to the end of the order of changes."""

@@ -42,6 +42,8 @@ class GameMemory:
     """How often each behaviour was executed."""
     away: Sparse[tuple[str, ...]] = ()
     """The players who have left."""
+    screen: Sparse[tuple[str, ...]] = ()
+    """The behaviour whose text or picture is on the screen, and its person ("": the group)."""
 
 
 def memory_of(game: DeclaredGame) -> GameMemory:
@@ -62,6 +64,7 @@ def memory_of(game: DeclaredGame) -> GameMemory:
         closed=game.closed,
         executed=tuple(sorted(game.executed.items())),
         away=tuple(one for one in game.players if one not in game.here),
+        screen=() if game.screen is None else (game.screen[0], game.screen[1] or ""),
     )
 
 
@@ -83,6 +86,8 @@ def game_from(
     game.now, game.step, game.closed = memory.now, memory.step, memory.closed
     game.executed = dict(memory.executed)
     game.here = tuple(one for one in players if one not in memory.away)
+    if memory.screen:
+        game.screen = memory.screen[0], memory.screen[1] or None
     return game
 
 
@@ -104,4 +109,5 @@ def _fits(declaration: Declaration, players: tuple[str, ...], memory: GameMemory
         )
         and all(fact in facts and whose in own for fact, whose, _ in memory.counts)
         and all(name in declaration.behaviours for name, _ in memory.executed)
+        and (not memory.screen or memory.screen[0] in declaration.behaviours)
     )

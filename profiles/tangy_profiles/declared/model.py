@@ -107,6 +107,7 @@ class DeclaredBehaviour:
     question: str
     posture: str
     image: str
+    """The text of the chest screen ("": it stays as it is, see `DeclaredGame.screen`)."""
     wordings: tuple[str, ...] = ()
     """Other wordings: training data for understanding, but not for speech recognition."""
     again: tuple[str, ...] = ()

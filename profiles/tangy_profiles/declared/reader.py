@@ -79,7 +79,7 @@ def _read(top: Section, path: Path) -> Declaration:
     strategies = strategies or {PLAIN: PLAIN}
     plain_strategy = top.word("plain_strategy", strategies, next(iter(strategies)))
     behaviours = read_behaviours(
-        top, phrasing, tuple(strategies), plain_strategy, path.parent, items.columns, title
+        top, phrasing, tuple(strategies), plain_strategy, path.parent, items.columns
     )
     stages = _read_stages(top, phrasing)
     expected = _read_expected(top, phrasing, stages, behaviours)

@@ -55,18 +55,26 @@ def words(
     times = before.executed.get(behaviour, 0)
     in_turn = [texts[(times + n) % len(texts)] for n in range(len(texts))]
     spoken = (filled(game, text, whom) for text in in_turn)
-    return next((text for text in spoken if text), ""), filled(game, declared.image, whom)
+    return next((text for text in spoken if text), ""), _image(game, behaviour, whom)
+
+
+def _image(game: DeclaredGame, behaviour: str, whom: str | None) -> str:
+    """Return the screen text after a behaviour: its own, the one that stays, or the title."""
+    name, person = game.screen or (behaviour, whom)
+    declared = game.declaration.behaviours[name]
+    if declared.image or declared.picture:
+        return filled(game, declared.image, person)
+    return game.declaration.title
 
 
 def media(game: DeclaredGame, behaviour: str) -> tuple[MediaFile | None, MediaFile | None]:
-    """Return the picture and the sound of a behaviour, by the facts after it."""
+    """Return the picture on the screen and the sound after a behaviour, by the facts then."""
     declaration = game.declaration
-    declared = declaration.behaviours[behaviour]
-    names = (
-        file_name(text, declaration.items, game.row) for text in (declared.picture, declared.sound)
-    )
-    picture, sound = (declaration.media.get(name) for name in names)
-    return picture, sound
+    name, _ = game.screen or (behaviour, None)
+    picture, sound = declaration.behaviours[name].picture, declaration.behaviours[behaviour].sound
+    names = (file_name(text, declaration.items, game.row) for text in (picture, sound))
+    shown, heard = (declaration.media.get(name) for name in names)
+    return shown, heard
 
 
 def again(game: DeclaredGame, behaviour: str, whom: str) -> list[str]:
