@@ -76,16 +76,22 @@ def stops(text: str, game: Collection[str] = ()) -> bool:
         text: the sentence.
         game: the words of the activity's title, in lower case, which mean the game.
     """
-    whole = _joined(words_of(text))
-    parts = (_joined(words_of(part)) for part in _PAUSES.split(text[:LONGEST_TEXT]))
-    clauses = dict.fromkeys((*parts, whole))
-    aimed = any(_is_aimed(_mended(clause, game)) for clause in clauses if clause)
-    if aimed or whole.replace(" ", "") in _run_together():
+    if stops_by_rules(text, game):
         return True
+    whole = _joined(words_of(text))
     judged_by_rules = _VERB.search(whole) or len(whole.split(" ")) < FEWEST
     if judged_by_rules or steering_of(text) is not None or yes_or_no(text) is not None:
         return False
     return likelihood(text, game) >= LIKELY
+
+
+def stops_by_rules(text: str, game: Collection[str] = ()) -> bool:
+    """Return whether a sentence stops the robot by the rules alone, without what was learnt."""
+    whole = _joined(words_of(text))
+    parts = (_joined(words_of(part)) for part in _PAUSES.split(text[:LONGEST_TEXT]))
+    clauses = dict.fromkeys((*parts, whole))
+    aimed = any(_is_aimed(_mended(clause, game)) for clause in clauses if clause)
+    return aimed or whole.replace(" ", "") in _run_together()
 
 
 def prepare() -> None:

@@ -1,15 +1,16 @@
 """The stop decoder: it decodes every utterance, whatever else is expected.
 
 An n-gram model covers sentences that stop a robot or a game and others, with everyday words in
-between. If its best path stops the robot, it is sure. If the mean likelihood of the next best
-sentences is high, it is not, and a command that the other decoders hear has priority: a synthetic
-or foreign voice is often recognised as "tell the robot" before "stop the robot".
+between. An utterance stops the robot if its best path does by the rules, or its best sentences are
+likely to; the longer it is, the likelier they must be, because a long sentence that is misheard has
+words of stopping somewhere. If the best path does not stop by the rules, the stop is in doubt, and
+a command that the other decoders hear has priority: a synthetic or foreign voice is often
+recognised as "tell the robot" before "stop the robot".
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import islice
 from typing import Any, NamedTuple
 
 from tangy_tui.language.stop_sentence import likelihood, prepare, stops
@@ -18,9 +19,11 @@ from tangy_tui.speech.noise_reduction import cleared
 from tangy_tui.speech.pocketsphinx_search import add_model, best_path, make_search, next_best
 
 SHARE = 0.05  # of everyday words
-GUESSES = 5  # n-best sentences to judge
-SEGMENTATIONS = 60  # n-best paths to search for them
-LIKELY = 0.5  # mean likelihood of these sentences from which it is a stop
+GUESSES = 20  # n-best sentences to judge
+SEGMENTATIONS = 200  # n-best paths to search for them
+BY_RULES = 0.33  # what the rules add to the mean likelihood of these sentences
+EACH_WORD = 0.088  # likelihood that a stop needs for each word of the best path
+FEWEST, MOST = 3, 8  # words that count
 ACTIVE = 1500
 ACCENTS = {
     "stop": ("S T AO P", "S T AH P"),
@@ -40,7 +43,7 @@ class HeardStop(NamedTuple):
 
 
 class StopDecoder:
-    """Finds stops. Its limit was tuned on `stop_sentences.toml`, leaving one set out at a time."""
+    """Finds stops. Its limits were fitted on the set `everyday`, with each voice left out once."""
 
     def __init__(
         self,
@@ -75,11 +78,17 @@ class StopDecoder:
         if self._search is None:
             return HeardStop()
         words, _, _ = best_path(self._search, cleared(pcm), "all")
-        if stops(words, self._game):
-            return HeardStop(words, sure=True)
-        guesses = dict.fromkeys((words, *next_best(self._search, SEGMENTATIONS)))
-        judged = [likelihood(guess, self._game) for guess in islice(guesses, GUESSES)]
-        return HeardStop(words) if sum(judged) >= LIKELY * len(judged) else HeardStop()
+        if not words:
+            return HeardStop()
+        guesses = {words}
+        for guess in next_best(self._search, SEGMENTATIONS):
+            guesses.add(guess)
+            if len(guesses) == GUESSES:
+                break
+        likely = sum(likelihood(guess, self._game) for guess in guesses) / len(guesses)
+        certain = stops(words, self._game)
+        needed = EACH_WORD * min(max(len(words.split()), FEWEST), MOST)
+        return HeardStop(words, certain) if likely + certain * BY_RULES >= needed else HeardStop()
 
 
 def _sayable(texts: Sequence[str], known: Known) -> list[str]:

@@ -24,7 +24,7 @@ from tangy_tui.language.steering import (
     steering_texts,
 )
 from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
-from tangy_tui.language.stop_sentence import STOPS, stops
+from tangy_tui.language.stop_sentence import STOPS, stops, stops_by_rules
 from tangy_tui.language.words import clean
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import AcousticEvidence, EvidenceSettings, Wanted
@@ -106,7 +106,7 @@ def understand(
             return StopCommand(evidence.words)
         return _as_in_the_paper(evidence, phrasebook)
     text, margin = best_words(evidence, phrasebook)
-    if stops(text, phrasebook.game):
+    if _stops(text, evidence, phrasebook.game):
         return StopCommand(text)
     steers = text not in phrasebook.phrases and _steers(text, evidence, settings, WHILE_TEACHING)
     if steers and (not evidence.stop or steering_of(evidence.phrase) == steering_of(text)):
@@ -131,6 +131,14 @@ def understand(
     named = {c.behaviour: c for c in (*reversed(learnt), *reversed(near))}
     rest = [c for c in (*near, *learnt) if c is named[c.behaviour]]
     return _said(text, confidence, rest[:MOST_ALTERNATIVES], least)
+
+
+def _stops(text: str, evidence: AcousticEvidence, game: Collection[str] = ()) -> bool:
+    """Return whether words stop the robot; those that are perhaps misheard, by the rules alone.
+
+    The stop decoder has judged the sound by what was learnt.
+    """
+    return stops_by_rules(text, game) if evidence.margin < DOUBTED else stops(text, game)
 
 
 def _steers(
@@ -240,7 +248,7 @@ def answer(
     other speech, so it recognises no answers.
     """
     said = evidence.words
-    if stops(said):
+    if _stops(said, evidence):
         return StopCommand(said)
     if settings.mode == "paper":
         return None

@@ -62,6 +62,21 @@ def test_a_stop_that_was_found_stops_whatever_the_words_were(words: str) -> None
     assert said == StopCommand("hey stop")
 
 
+@pytest.mark.parametrize(
+    ("words", "margin", "stops"),
+    [
+        ("that's far enough now dear", 0.2, True),
+        ("return we want it", -0.9, False),  # espeak's "greet everyone", spoken slowly
+        ("stop the robot", -0.9, True),  # the rules are certain
+    ],
+)
+def test_words_that_are_perhaps_misheard_stop_by_the_rules_alone(
+    words: str, margin: float, stops: bool
+) -> None:
+    said = understand(heard(words, "", margin), BOOK, USUAL)
+    assert isinstance(said, StopCommand) == stops
+
+
 def test_a_phrase_that_was_heard_well_is_no_stop() -> None:
     said = understand(heard("call number", "don't come closer"), BOOK, USUAL)
     assert isinstance(said, Say)
@@ -133,7 +148,7 @@ def test_the_likeliest_words_stop_beyond_doubt(monkeypatch: pytest.MonkeyPatch) 
 
 @pytest.mark.parametrize(
     ("likely", "stops"),
-    [((0.3, 0.7, 0.6), True), ((0.6, 0.2, 0.2), False), ((0, 0, 0, 0, 0, 1, 1, 1, 1, 1), False)],
+    [((0.3, 0.7, 0.6), True), ((0.6, 0, 0, 0), False), ((0,) * 20 + (1,) * 20, False)],
 )
 def test_what_is_likely_to_stop_on_the_average_stops_in_doubt(
     monkeypatch: pytest.MonkeyPatch, likely: tuple[float, ...], stops: bool
@@ -143,6 +158,15 @@ def test_what_is_likely_to_stop_on_the_average_stops_in_doubt(
     twice = [guess for guess in guesses for _ in range(2)]  # cut at other places
     heard = GuessingSearch(monkeypatch, *twice).hear()
     assert heard == (HeardStop("dog 0") if stops else HeardStop())
+
+
+@pytest.mark.parametrize(("words", "stops"), [(3, True), (7, False)])
+def test_a_long_sentence_has_to_be_likelier(
+    monkeypatch: pytest.MonkeyPatch, words: int, stops: bool
+) -> None:
+    said = " ".join(["dog"] * words)
+    monkeypatch.setattr(stop_decoder, "likelihood", lambda *_: 0.5)
+    assert GuessingSearch(monkeypatch, said).hear() == HeardStop(said if stops else "")
 
 
 class TwoAnswers:
