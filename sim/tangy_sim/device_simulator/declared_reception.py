@@ -16,7 +16,7 @@ from tangy_profiles.declared.vocabulary import SLOT
 from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.person import Person
 from tangy_profiles.room import SEAT
-from tangy_sim.device_simulator.speech_reception import HeardLine, called
+from tangy_sim.device_simulator.speech_reception import HeardLine, called, simplified
 
 
 class _Sentence(NamedTuple):
@@ -46,7 +46,9 @@ class DeclaredReception:
             for text in texts
         ]
         self._again = [
-            re.compile(re.escape(_plain(text)).replace(re.escape("{name}"), f"(?P<name>{names})"))
+            re.compile(
+                re.escape(simplified(text)).replace(re.escape("{name}"), f"(?P<name>{names})")
+            )
             for text in ASK_AGAIN
         ]
         self._hints = [
@@ -58,7 +60,7 @@ class DeclaredReception:
 
     def hear(self, text: str) -> HeardLine | None:
         """Parse a sentence; return None if it is unknown."""
-        plain = _plain(text)
+        plain = simplified(text)
         for one in self._sentences:
             found = one.pattern.fullmatch(plain)
             if found is None:
@@ -84,19 +86,15 @@ class DeclaredReception:
             row
             for row in range(len(self._items.rows) if columns else 0)
             if all(
-                _plain(self._items.value(row, column).split("|")[0]) == said[f"s{place}"]
+                simplified(self._items.value(row, column).split("|")[0]) == said[f"s{place}"]
                 for place, column in enumerate(columns)
             )
         ]
 
 
-def _plain(text: str) -> str:
-    return " ".join(text.casefold().split())
-
-
 def _cells(items: Items, column: str) -> str:
     """Return a pattern of the texts of a column, the longest first."""
-    said = {_plain(items.value(row, column).split("|")[0]) for row in range(len(items.rows))}
+    said = {simplified(items.value(row, column).split("|")[0]) for row in range(len(items.rows))}
     return "|".join(re.escape(one) for one in sorted(said, key=len, reverse=True) if one)
 
 
@@ -104,7 +102,7 @@ def _sentence(
     text: str, names: str, cells: Mapping[str, str], behaviour: Behaviour, strategy: str
 ) -> _Sentence:
     pattern, used, letters, begin, named = "", list[str](), 0, 0, False
-    plain = _plain(text)
+    plain = simplified(text)
     for slot in SLOT.finditer(plain):
         between = plain[begin : slot.start()]
         pattern += re.escape(between)

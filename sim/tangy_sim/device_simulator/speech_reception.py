@@ -65,7 +65,7 @@ class SpeechReception:
     ) -> None:
         self._people = called(people, seat)
         deck = activity.deck
-        self._numbers = {_plain(deck.label(number)): number for number in deck.numbers}
+        self._numbers = {simplified(deck.label(number)): number for number in deck.numbers}
         label = "|".join(re.escape(one) for one in sorted(self._numbers, key=len, reverse=True))
         names = "|".join(re.escape(one) for one in sorted(self._people, key=len, reverse=True))
         more = _pattern(activity.rules.more_numbers, {"numbers": "", "count": r"(?P<more>\d+)"})
@@ -73,7 +73,7 @@ class SpeechReception:
             "name": f"(?P<name>{names})",
             "call": f"(?P<call>{label})",
             "numbers": f"(?P<numbers>(?:{label})(?:, (?:{label}))*)(?:{more.pattern})?",
-            "object": re.escape(_plain(activity.object)),
+            "object": re.escape(simplified(activity.object)),
             "why": ".*",
         }
         self._patterns: list[_Pattern] = []
@@ -86,7 +86,7 @@ class SpeechReception:
 
     def hear(self, text: str) -> HeardLine | None:
         """Parse a sentence; return None if it is unknown."""
-        plain = _plain(text)
+        plain = simplified(text)
         for one in self._patterns:
             found = one.pattern.fullmatch(plain)
             if found is None:
@@ -106,8 +106,8 @@ class SpeechReception:
 
 def called(people: Sequence[Person], seat: str) -> dict[str, str]:
     """Return people's ids by their names and seats, as on screens."""
-    seats = {f"{_plain(seat)} {number}": one.id for number, one in enumerate(people, 1)}
-    return seats | {_plain(one.name): one.id for one in reversed(people)}
+    seats = {f"{simplified(seat)} {number}": one.id for number, one in enumerate(people, 1)}
+    return seats | {simplified(one.name): one.id for one in reversed(people)}
 
 
 def speaking_seconds(text: str) -> float:
@@ -115,7 +115,8 @@ def speaking_seconds(text: str) -> float:
     return BEGINS + EACH * len(text)
 
 
-def _plain(text: str) -> str:
+def simplified(text: str) -> str:
+    """Return a text in small letters with single spaces."""
     return " ".join(text.casefold().split())
 
 
@@ -123,7 +124,7 @@ def _pattern(template: str, slots: dict[str, str]) -> re.Pattern[str]:
     """Compile the pattern of a sentence with slots; repeated slots must have equal text."""
     parts: list[str] = []
     known: set[str] = set()
-    for words, slot, _, _ in Formatter().parse(_plain(template)):
+    for words, slot, _, _ in Formatter().parse(simplified(template)):
         parts.append(re.escape(words))
         if slot is None:
             continue
