@@ -11,7 +11,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.people_records import MicrophoneChecked, MicrophoneForgotten
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Store
-from tangy_tui.speech.calibration import SHIFTS, Chosen
+from tangy_tui.speech.calibration import SHIFTS, CalibrationResult
 from tangy_tui.speech.evidence import MODES, USUAL, EvidenceSettings
 
 
@@ -28,7 +28,7 @@ def microphone(source: str) -> str:
     return f"{'socket' if kind == 'socket' else 'file'} {digest}"
 
 
-def keep(store: Store, source: str, chosen: Chosen) -> None:
+def keep(store: Store, source: str, chosen: CalibrationResult) -> None:
     """Store the calibration of a microphone."""
     settings = {"garbage": chosen.settings.garbage, "shift": chosen.settings.shift}
     figures = asdict(chosen.figures)

@@ -15,7 +15,7 @@ from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
 from tangy_tui.language.answers import PLAIN
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.language.lexicon import Alike, Lexicon, distinct_word
+from tangy_tui.language.lexicon import Lexicon, SoundAlike, distinct_word
 from tangy_tui.language.phrasebook import Phrase
 from tangy_tui.language.pronunciation import can_look_up
 from tangy_tui.language.stop_sentence import stops
@@ -168,7 +168,7 @@ def _fillers(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
             other = first.setdefault(" ".join(phrase.bare), phrase)
             if other.behaviour != phrase.behaviour:
                 little = "only small words tell it from"
-                yield _collision(activity, phrasebook, Alike(phrase, other), little)
+                yield _collision(activity, phrasebook, SoundAlike(phrase, other), little)
 
 
 def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
@@ -197,7 +197,7 @@ def _near(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
                 yield _collision(activity, phrasebook, alike, "one sound alone tells it from")
 
 
-def _collision(activity: Activity, phrasebook: Phrasebook, alike: Alike, how: str) -> str:
+def _collision(activity: Activity, phrasebook: Phrasebook, alike: SoundAlike, how: str) -> str:
     """Return a sentence about two confusable phrases, with their places and a suggestion."""
     phrase, other = alike.phrase, alike.other
     word = distinct_word(phrasebook, phrase.behaviour, phrase)

@@ -24,7 +24,7 @@ WordSource: TypeAlias = Literal["activity", "person", "dictionary", "suggested",
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class PronouncedWord:
     """A word with its pronunciations and their source.
 
     `source` is "activity", "person", "dictionary", "suggested" (a guess, which is not recognised),
@@ -42,7 +42,7 @@ class Said:
 
 
 @dataclass(frozen=True, slots=True)
-class Alike:
+class SoundAlike:
     """A phrase that sounds (nearly) like an earlier one with another meaning."""
 
     phrase: Phrase
@@ -55,9 +55,9 @@ class Lexicon:
     It reads the pronouncing dictionary: some 30 ms for the words of an activity.
     """
 
-    words: Mapping[str, Said]
+    words: Mapping[str, PronouncedWord]
     """Every word that can be spoken or typed, with its pronunciations."""
-    alike: tuple[Alike, ...]
+    alike: tuple[SoundAlike, ...]
     """Phrases that sound like earlier ones and are not recognised; the earlier ones are."""
     phrases: tuple[Phrase, ...]
     """The phrases to recognise, if possible."""
@@ -81,7 +81,7 @@ class Lexicon:
         self.alike = tuple(self._find_alike())
 
     @property
-    def unknown(self) -> tuple[Said, ...]:
+    def unknown(self) -> tuple[PronouncedWord, ...]:
         """The words of phrases without a pronunciation, with suggestions."""
         words = dict.fromkeys(word for phrase in self.phrases for word in phrase.said.split())
         return tuple(self.words[word] for word in words if not self.words[word].heard)
@@ -93,21 +93,21 @@ class Lexicon:
             dict.fromkeys(p.said for p in self.phrases if self._known(p) and p.said not in out)
         )
 
-    def confusable_phrases(self) -> tuple[Alike, ...]:
+    def confusable_phrases(self) -> tuple[SoundAlike, ...]:
         """Return phrases of different behaviours that differ in one phone.
 
         They can be recognised, but are easily confused; all pronunciations are compared.
         """
         out = {one.phrase.said for one in self.alike}
         first: dict[Words, list[Phrase]] = defaultdict(list)
-        found: dict[tuple[str, str], Alike] = {}
+        found: dict[tuple[str, str], SoundAlike] = {}
         for phrase in self.phrases:
             if phrase.said in out or not self._known(phrase):
                 continue
             forms = {form for way in self._ways(phrase) for form in _one_less(way.split())}
             for other in (other for form in forms for other in first[form]):
                 if other.behaviour != phrase.behaviour:
-                    found.setdefault((phrase.said, other.said), Alike(phrase, other))
+                    found.setdefault((phrase.said, other.said), SoundAlike(phrase, other))
             for form in forms:
                 first[form].append(phrase)
         return tuple(found.values())
@@ -121,26 +121,30 @@ class Lexicon:
                 reasons[phrase.said] = f"no pronunciation of {', '.join(map(repr, lacks))}"
         return reasons
 
-    def _look_up(self, word: str) -> Said:
+    def _look_up(self, word: str) -> PronouncedWord:
         if word in self._table.pronunciations:
-            return Said(word, self._table.pronunciations[word], self._table.sources[word])
+            return PronouncedWord(word, self._table.pronunciations[word], self._table.sources[word])
         known = self._pronounce(word)
         if known:
-            return Said(word, known, "dictionary")
+            return PronouncedWord(word, known, "dictionary")
         guessed = self._suggest(word)
-        return Said(word, (guessed,), "suggested") if guessed else Said(word, (), "")
+        return (
+            PronouncedWord(word, (guessed,), "suggested")
+            if guessed
+            else PronouncedWord(word, (), "")
+        )
 
     def _known(self, phrase: Phrase) -> bool:
         return all(self.words[word].heard for word in phrase.said.split())
 
-    def _find_alike(self) -> Iterator[Alike]:
+    def _find_alike(self) -> Iterator[SoundAlike]:
         """Yield phrases with different meanings and the same phones."""
         first: dict[str, Phrase] = {}
         for phrase in filter(self._known, self.phrases):
             ways = set(self._ways(phrase))
             other = next((first[way] for way in ways if _differ(first.get(way), phrase)), None)
             if other is not None:
-                yield Alike(phrase, other)
+                yield SoundAlike(phrase, other)
             else:
                 for way in ways:
                     first.setdefault(way, phrase)

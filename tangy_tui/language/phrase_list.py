@@ -9,12 +9,12 @@ from typing import Any
 from tangy_profiles.activity import Activity
 from tangy_profiles.person import Person
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.language.lexicon import Lexicon, Said
+from tangy_tui.language.lexicon import Lexicon, PronouncedWord
 from tangy_tui.language.name_pronunciation import HowSaid, how_said
 
 
 @dataclass(frozen=True, slots=True)
-class Ways:
+class BehaviourPhrases:
     """The phrases of a behaviour; `to_people`: any of them can be combined with a person."""
 
     behaviour: str
@@ -25,7 +25,7 @@ class Ways:
 
 
 @dataclass(frozen=True, slots=True)
-class Called:
+class PersonNames:
     """The ways to refer to a person in a command, and the name's pronunciation."""
 
     person: Person
@@ -38,9 +38,9 @@ class PhraseList:
     """Everything that can be said in an activity with these people."""
 
     title: str
-    behaviours: tuple[Ways, ...]
-    people: tuple[Called, ...]
-    words: tuple[Said, ...]
+    behaviours: tuple[BehaviourPhrases, ...]
+    people: tuple[PersonNames, ...]
+    words: tuple[PronouncedWord, ...]
     left_out: Mapping[str, str]
     """Phrases that can only be typed, with the reason."""
     own: Mapping[str, str]
@@ -100,10 +100,10 @@ def list_phrases(
     )
 
 
-def _ways(phrasebook: Phrasebook, activity: Activity) -> Iterator[Ways]:
+def _ways(phrasebook: Phrasebook, activity: Activity) -> Iterator[BehaviourPhrases]:
     own = [p for p in phrasebook.table.all() if p.user is None and p.heard]
     for behaviour in activity.behaviours.values():
-        yield Ways(
+        yield BehaviourPhrases(
             behaviour.name,
             behaviour.question,
             tuple(p.shown for p in own if p.behaviour == behaviour.name),
@@ -112,11 +112,11 @@ def _ways(phrasebook: Phrasebook, activity: Activity) -> Iterator[Ways]:
         )
 
 
-def _called(phrasebook: Phrasebook, people: Sequence[Person]) -> Iterator[Called]:
+def _called(phrasebook: Phrasebook, people: Sequence[Person]) -> Iterator[PersonNames]:
     table = phrasebook.table
     nouns = dict.fromkeys(phrasebook.nouns.values())
     for person in people:
         number = next((n for n, id in table.numbers.items() if id == person.id), "")
         name = next((" ".join(words) for words, id in table.names.items() if id == person.id), "")
         ways = (*(f"{noun} {number}" for noun in nouns if number), name, *person.seats)
-        yield Called(person, tuple(dict.fromkeys(filter(None, ways))), how_said(person))
+        yield PersonNames(person, tuple(dict.fromkeys(filter(None, ways))), how_said(person))

@@ -38,7 +38,7 @@ class CalibrationPrompt:
 
 
 @dataclass(frozen=True, slots=True)
-class Figures:
+class SeparationCounts:
     """How well commands and other sentences are separated: counts of the prompts."""
 
     commands: int
@@ -71,12 +71,12 @@ class Figures:
 
 
 @dataclass(frozen=True, slots=True)
-class Chosen:
+class CalibrationResult:
     """The chosen settings, and their figures and those of the defaults."""
 
     settings: EvidenceSettings
-    figures: Figures
-    usual: Figures
+    figures: SeparationCounts
+    usual: SeparationCounts
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +108,7 @@ def score(
     return CalibrationScore(max(-FAR, min(FAR, told)), asked, label == asked.meant)
 
 
-def choose(scores: Mapping[float, Sequence[CalibrationScore]]) -> Chosen:
+def choose(scores: Mapping[float, Sequence[CalibrationScore]]) -> CalibrationResult:
     """Choose the weight and the shift that separate commands from the rest best.
 
     Args:
@@ -116,15 +116,15 @@ def choose(scores: Mapping[float, Sequence[CalibrationScore]]) -> Chosen:
     """
     usual = _figures(scores[USUAL.garbage], 0.0)
     if spare(scores[USUAL.garbage]):
-        return Chosen(USUAL, usual, usual)
+        return CalibrationResult(USUAL, usual, usual)
     weight, shift = max(
         ((weight, shift) for weight in scores for shift in SHIFTS),
         key=lambda way: (_worth(scores[way[0]], *way), way),
     )
     found = _figures(scores[weight], shift)
     if found.gain < usual.gain + WORTH_IT:
-        return Chosen(USUAL, usual, usual)
-    return Chosen(replace(USUAL, garbage=weight, shift=shift), found, usual)
+        return CalibrationResult(USUAL, usual, usual)
+    return CalibrationResult(replace(USUAL, garbage=weight, shift=shift), found, usual)
 
 
 def spare(scores: Sequence[CalibrationScore]) -> bool:
@@ -151,10 +151,10 @@ def _log_chance(margin: float) -> float:
     return -math.log1p(math.exp(-margin))
 
 
-def _figures(scores: Sequence[CalibrationScore], shift: float) -> Figures:
+def _figures(scores: Sequence[CalibrationScore], shift: float) -> SeparationCounts:
     commands = [s for s in scores if s.asked.meant]
     others = [s for s in scores if not s.asked.meant]
     surely = sum(s.right and s.told - shift >= SURELY for s in commands)
     known = sum(s.right and s.told - shift >= PERHAPS for s in commands)
     taken = sum(s.told - shift >= PERHAPS for s in others)
-    return Figures(len(commands), surely, known - surely, len(others), taken)
+    return SeparationCounts(len(commands), surely, known - surely, len(others), taken)

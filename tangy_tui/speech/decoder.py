@@ -16,7 +16,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from tangy_tui.speech.evidence import RATE, AcousticEvidence, Expecting, Wanted
+from tangy_tui.speech.evidence import RATE, AcousticEvidence, DecoderVocabulary, Expecting
 from tangy_tui.speech.forked_worker import ForkedWorker
 from tangy_tui.speech.language import (
     EVERYDAY,
@@ -43,7 +43,7 @@ WORDS_MIDDLE, WORDS_WEIGHT = -17.9, 0.157
 OFFSET = 5.23
 
 
-class Unspeakable(ValueError):
+class NoPronunciation(ValueError):
     """No phrase has a pronunciation."""
 
 
@@ -66,11 +66,11 @@ class Decoder(Protocol):
         """End its child processes."""
 
 
-def make_decoder(wanted: Wanted) -> Decoder:
+def make_decoder(wanted: DecoderVocabulary) -> Decoder:
     """Build the decoder for a vocabulary.
 
     Raises:
-        Unspeakable: no phrase can be recognised.
+        NoPronunciation: no phrase can be recognised.
     """
     return PaperDecoder(wanted) if wanted.settings.mode == "paper" else TwoDecoders(wanted)
 
@@ -112,7 +112,7 @@ class _Streaming:
 class TwoDecoders(_Streaming):
     """The usual mode: words by an open n-gram model, and a grammar with a garbage branch."""
 
-    def __init__(self, wanted: Wanted) -> None:
+    def __init__(self, wanted: DecoderVocabulary) -> None:
         everyday = everyday_words(EVERYDAY)
         known = _pronunciations(
             words_of((*wanted.phrases, *wanted.answers, *wanted.stops, *wanted.no_stops))
@@ -171,7 +171,7 @@ class TwoDecoders(_Streaming):
 class PaperDecoder(_Streaming):
     """The paper's mode: the sequence of words by an n-gram model of the phrases alone."""
 
-    def __init__(self, wanted: Wanted) -> None:
+    def __init__(self, wanted: DecoderVocabulary) -> None:
         known = _pronunciations(
             {*words_of(wanted.phrases), *words_of(wanted.answers)}, wanted.pronunciations
         )
@@ -243,5 +243,5 @@ def _heard(
     unknown = words_of(phrases) - set(known)
     heard = [p for p in dict.fromkeys(phrases) if p and not unknown.intersection(p.split())]
     if phrases and not heard:
-        raise Unspeakable("None of the phrases can be pronounced with the English dictionary.")
+        raise NoPronunciation("None of the phrases can be pronounced with the English dictionary.")
     return tuple(sorted(unknown)), heard

@@ -14,9 +14,9 @@ __all__ = [
     "RATE",
     "USUAL",
     "AcousticEvidence",
+    "DecoderVocabulary",
     "EvidenceSettings",
     "Expecting",
-    "Wanted",
 ]
 
 Expecting = Literal["commands", "answers"]
@@ -45,7 +45,7 @@ USUAL = EvidenceSettings()
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class DecoderVocabulary:
     """The vocabulary: commands, answers, and the pronunciation of their words (ARPAbet).
 
     `urgent` phrases end an utterance as soon as they are heard. `stops` are sentences that stop the

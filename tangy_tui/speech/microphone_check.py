@@ -24,8 +24,8 @@ from tangy_tui.language.stop_sentence import stops
 from tangy_tui.speech.calibration import (
     WEIGHTS,
     CalibrationPrompt,
+    CalibrationResult,
     CalibrationScore,
-    Chosen,
     choose,
     score,
     spare,
@@ -34,9 +34,9 @@ from tangy_tui.speech.evidence import (
     RATE,
     USUAL,
     AcousticEvidence,
+    DecoderVocabulary,
     EvidenceSettings,
     Expecting,
-    Wanted,
 )
 from tangy_tui.speech.loudness import LOUD, SILENT, SoundAdvice, advice, loudness
 from tangy_tui.speech.understanding import wanted
@@ -92,7 +92,7 @@ class CheckRecogniser(Protocol):
     said: bytes
     speaking: Callable[[], None]
 
-    async def start(self, wanted: Wanted) -> None:
+    async def start(self, wanted: DecoderVocabulary) -> None:
         """Set the vocabulary."""
 
     async def hear(
@@ -118,7 +118,7 @@ class CheckResult:
     room: float
     voice: float
     heard: tuple[tuple[CalibrationPrompt, str | None], ...]
-    chosen: Chosen
+    chosen: CalibrationResult
     parted: bool
     advice: tuple[SoundAdvice, ...]
 

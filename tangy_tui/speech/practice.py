@@ -21,9 +21,9 @@ from tangy_tui.speech.evidence import (
     LONGEST,
     RATE,
     AcousticEvidence,
+    DecoderVocabulary,
     EvidenceSettings,
     Expecting,
-    Wanted,
 )
 from tangy_tui.speech.recogniser import SpeechUnavailable, cpu_seconds
 from tangy_tui.speech.transcription import tier_of
@@ -41,7 +41,7 @@ class PracticeRecogniser(Protocol):
     def pid(self) -> int | None:
         """The id of the decoding process."""
 
-    async def start(self, wanted: Wanted) -> None:
+    async def start(self, wanted: DecoderVocabulary) -> None:
         """Set the vocabulary."""
 
     async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:

@@ -18,7 +18,7 @@ from typing import Any
 from tangy_hw.worker_process import WorkerError, WorkerProcess
 from tangy_profiles.codec import encode
 from tangy_profiles.errors import TangyError
-from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
+from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, DecoderVocabulary, Expecting
 
 WORKER = (sys.executable, "-P", "-m", "tangy_tui.speech.worker")
 START_SECONDS = 30.0  # timeout for loading the models: 0.8 s on an idle machine
@@ -65,7 +65,7 @@ class Recogniser:
         """Called when the beginning of an utterance was detected."""
         self._log = log
         self._notify = notify
-        self._wanted: Wanted | None = None
+        self._wanted: DecoderVocabulary | None = None
         self._worker: WorkerProcess | None = None
         self._hearing = 0  # the id of the current utterance
         self._turn = asyncio.Lock()
@@ -80,7 +80,7 @@ class Recogniser:
         """The id of the worker process, or None."""
         return None if self._worker is None else self._worker.pid
 
-    async def start(self, wanted: Wanted) -> None:
+    async def start(self, wanted: DecoderVocabulary) -> None:
         """Start the worker, or change its vocabulary.
 
         Raises:

@@ -27,7 +27,7 @@ from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
 from tangy_tui.language.stop_sentence import STOPS, stops, stops_by_rules
 from tangy_tui.language.words import clean
 from tangy_tui.learning.verification import Reply, Say, StopCommand
-from tangy_tui.speech.evidence import AcousticEvidence, EvidenceSettings, Wanted
+from tangy_tui.speech.evidence import AcousticEvidence, DecoderVocabulary, EvidenceSettings
 from tangy_tui.speech.hearing_notes import HearingKind
 
 # Probability that words are the nearest command: a logistic regression over the phrasebook's
@@ -65,7 +65,7 @@ SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "e
 
 def wanted(
     phrasebook: Phrasebook, settings: EvidenceSettings, phrases: Sequence[str] | None = None
-) -> Wanted:
+) -> DecoderVocabulary:
     """Return the vocabulary: phrases, stop commands, and answers.
 
     Args:
@@ -80,7 +80,7 @@ def wanted(
     given = tuple(phrasebook.table.answers) if learnt else ()
     answers = (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions)
     said = tuple(phrasebook.spoken() if phrases is None else phrases)
-    return Wanted(
+    return DecoderVocabulary(
         (*said, *STOPS, *teaching),
         (*answers, *STOPS, *games, *given),
         STOPS,

@@ -2,7 +2,7 @@
 
 Run as `python -m tangy_tui.speech.worker`, with one JSON object per line:
 
-    {"id": 1, "wanted": {...}}                   the vocabulary (`evidence.Wanted`)
+    {"id": 1, "wanted": {...}}                   the vocabulary (`evidence.DecoderVocabulary`)
     {"id": 1, "ready": true, "left_out": []}     words without a pronunciation
     {"id": 2, "begin": "commands"}               an utterance begins, or the answer to a question;
                                                  with "endpoint": true it is detected
@@ -35,7 +35,7 @@ from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.worker_lines import AnswerWriter, requests
 from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
 from tangy_tui.speech.endpointing import Endpoints, Pauses, pieces
-from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
+from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, DecoderVocabulary, Expecting
 
 _LOG = logging.getLogger("tangy_tui.speech.worker")  # __name__ is __main__ in the process
 
@@ -107,14 +107,14 @@ class Worker:
                 raise RequestRefused("A request must hold wanted, begin, pcm, end or pieces.")
 
     def _build(self, wanted: dict[str, Any]) -> list[str]:
-        from tangy_tui.speech.decoder import Unspeakable, make_decoder
+        from tangy_tui.speech.decoder import NoPronunciation, make_decoder
 
         try:
-            read = codec.decode(Wanted, wanted)
+            read = codec.decode(DecoderVocabulary, wanted)
             if self.decoder is not None:
                 self.decoder.close()
             self.decoder = make_decoder(read)
-        except Unspeakable as reason:
+        except NoPronunciation as reason:
             raise RequestRefused(str(reason)) from None
         except InvalidValue as why:
             raise RequestRefused(f"What is wanted cannot be read: it {why}.") from None

@@ -12,7 +12,7 @@ from typing import Any
 
 from tangy_hw.audio.wav import RATE
 from tangy_tui.language.answers import NO, YES
-from tangy_tui.speech.evidence import AcousticEvidence, Expecting, Wanted
+from tangy_tui.speech.evidence import AcousticEvidence, DecoderVocabulary, Expecting
 
 PATIENCE = 10.0
 
@@ -81,13 +81,13 @@ class FakeRecogniser:
         self.said = self.left = b""
         self.heard: list[tuple[bytes, Expecting]] = []
         self.failures: list[Exception] = []
-        self.wanted: Wanted | None = None
+        self.wanted: DecoderVocabulary | None = None
         self.closed = False
         self.decoding = asyncio.Event()  # cleared, it takes as long as the test likes
         self.decoding.set()
         self.made.append(self)
 
-    async def start(self, wanted: Wanted) -> None:
+    async def start(self, wanted: DecoderVocabulary) -> None:
         self.wanted = wanted
 
     async def close(self) -> None:

@@ -28,12 +28,18 @@ from tangy_tui.speech.calibration import (
     SURELY,
     WEIGHTS,
     CalibrationPrompt,
+    CalibrationResult,
     CalibrationScore,
-    Chosen,
-    Figures,
+    SeparationCounts,
     choose,
 )
-from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings, Expecting, Wanted
+from tangy_tui.speech.evidence import (
+    USUAL,
+    AcousticEvidence,
+    DecoderVocabulary,
+    EvidenceSettings,
+    Expecting,
+)
 from tangy_tui.speech.microphone_check import (
     CheckNews,
     CheckResult,
@@ -64,15 +70,15 @@ class TestChoosing:
     def test_nothing_changes_where_the_usual_settings_part_all(self) -> None:
         chosen = choose(everywhere(scores([3.5, 3.0, 2.5], [-6, -4, -3])))
         assert chosen.settings == USUAL
-        assert chosen.figures == chosen.usual == Figures(3, 3, 0, 3, 0)
+        assert chosen.figures == chosen.usual == SeparationCounts(3, 3, 0, 3, 0)
         assert chosen.figures.perfect
 
     def test_a_shy_voice_is_met_half_way(self) -> None:
         shy = [SURELY - short for short in (0.3, 0.4, 0.2, 0.5, 0.3, 0.4)]
         chosen = choose(everywhere(scores(shy, [-6, -6, -6])))
-        assert chosen.usual == Figures(6, 0, 6, 3, 0)
+        assert chosen.usual == SeparationCounts(6, 0, 6, 3, 0)
         assert chosen.settings.shift < 0
-        assert chosen.figures == Figures(6, 6, 0, 3, 0)
+        assert chosen.figures == SeparationCounts(6, 6, 0, 3, 0)
 
     def test_other_speech_that_sounds_like_commands_makes_it_stricter(self) -> None:
         chosen = choose(everywhere(scores([4.0] * 6, [0.2, 0.0, -0.4])))
@@ -117,8 +123,10 @@ class TestChoosing:
 
 
 class TestStore:
-    CHOSEN = Chosen(
-        EvidenceSettings("tiers", 0.9, -0.5), Figures(6, 6, 0, 3, 0), Figures(6, 4, 1, 3, 1)
+    CHOSEN = CalibrationResult(
+        EvidenceSettings("tiers", 0.9, -0.5),
+        SeparationCounts(6, 6, 0, 3, 0),
+        SeparationCounts(6, 4, 1, 3, 1),
     )
 
     def test_settings_are_kept_for_each_microphone(self, store: Store) -> None:
@@ -129,7 +137,13 @@ class TestStore:
 
     def test_the_last_check_counts_and_can_be_forgotten(self, store: Store) -> None:
         keep(store, "socket", self.CHOSEN)
-        keep(store, "socket", Chosen(USUAL, Figures(6, 6, 0, 3, 0), Figures(6, 6, 0, 3, 0)))
+        keep(
+            store,
+            "socket",
+            CalibrationResult(
+                USUAL, SeparationCounts(6, 6, 0, 3, 0), SeparationCounts(6, 6, 0, 3, 0)
+            ),
+        )
         assert settings_for(store, "socket") == USUAL
         keep(store, "socket", self.CHOSEN)
         assert forget(store, "socket")
@@ -167,7 +181,7 @@ class Hears:
         self.speaking: Callable[[], None] = lambda: None
         self.weights: list[float] = []
 
-    async def start(self, wanted: Wanted) -> None:
+    async def start(self, wanted: DecoderVocabulary) -> None:
         self.weights.append(wanted.settings.garbage)
 
     async def hear(
@@ -313,7 +327,7 @@ class TestChecking:
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         checked = await self.check(Recording("a.wav", b"\1\0\2\0"), activity, people, asked)
-        assert checked.chosen.figures == Figures(6, 2, 0, 0, 0)
+        assert checked.chosen.figures == SeparationCounts(6, 2, 0, 0, 0)
         assert not checked.parted
         assert checked.advice
 
@@ -368,16 +382,16 @@ class TestChecking:
     @pytest.mark.parametrize(
         ("figures", "why"),
         [
-            (Figures(6, 5, 0, 3, 1), ""),
-            (Figures(6, 0, 0, 3, 0), "none of 6 commands were understood"),
-            (Figures(6, 2, 2, 3, 0), "only 4 of 6 commands were understood"),
-            (Figures(6, 6, 0, 0, 0), "Tangy heard none of the other sentences"),
-            (Figures(6, 6, 0, 3, 2), "2 of 3 other sentences were taken for a command"),
-            (Figures(6, 6, 0, 1, 1), "1 of 1 other sentences was taken for a command"),
+            (SeparationCounts(6, 5, 0, 3, 1), ""),
+            (SeparationCounts(6, 0, 0, 3, 0), "none of 6 commands were understood"),
+            (SeparationCounts(6, 2, 2, 3, 0), "only 4 of 6 commands were understood"),
+            (SeparationCounts(6, 6, 0, 0, 0), "Tangy heard none of the other sentences"),
+            (SeparationCounts(6, 6, 0, 3, 2), "2 of 3 other sentences were taken for a command"),
+            (SeparationCounts(6, 6, 0, 1, 1), "1 of 1 other sentences was taken for a command"),
         ],
     )
-    def test_why_nothing_is_stored_is_a_sentence(self, figures: Figures, why: str) -> None:
-        chosen = Chosen(USUAL, figures, figures)
+    def test_why_nothing_is_stored_is_a_sentence(self, figures: SeparationCounts, why: str) -> None:
+        chosen = CalibrationResult(USUAL, figures, figures)
         checked = CheckResult(-60, -30, (), chosen, figures.parted and figures.others > 0, ())
         assert checked.parted is (not why)
         assert reason_words(checked) == (f"Nothing was stored: {why}." if why else "")

@@ -13,7 +13,13 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.labels import STOP, Labels, UtteranceLabel
-from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings, Expecting, Wanted
+from tangy_tui.speech.evidence import (
+    USUAL,
+    AcousticEvidence,
+    DecoderVocabulary,
+    EvidenceSettings,
+    Expecting,
+)
 from tangy_tui.speech.practice import Practice, practise
 from tangy_tui.speech.recogniser import SpeechUnavailable
 from tangy_tui.text.practice import practice_lines
@@ -44,7 +50,7 @@ class Hears:
         self.words = words
         self.settings: list[EvidenceSettings] = []
 
-    async def start(self, wanted: Wanted) -> None:
+    async def start(self, wanted: DecoderVocabulary) -> None:
         self.settings.append(wanted.settings)
 
     async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:

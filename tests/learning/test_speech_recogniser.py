@@ -16,7 +16,7 @@ import pytest
 from tangy_hw.audio.wav import RATE
 from tangy_profiles.worker_log import KEPT, MOST
 from tangy_tui.speech import recogniser as room
-from tangy_tui.speech.evidence import LONGEST, AcousticEvidence, Wanted
+from tangy_tui.speech.evidence import LONGEST, AcousticEvidence, DecoderVocabulary
 from tangy_tui.speech.recogniser import (
     END_SECONDS,
     Recogniser,
@@ -25,7 +25,7 @@ from tangy_tui.speech.recogniser import (
 )
 from tests.learning.speech_fakes import PATIENCE, Workers, soon
 
-WANTED = Wanted(("call number",))
+WANTED = DecoderVocabulary(("call number",))
 CHUNKS = [bytes([number]) * 640 for number in range(1, 9)]
 WHOLE = b"".join(CHUNKS)
 

@@ -33,9 +33,9 @@ from tangy_tui.speech.evidence import (
     RATE,
     USUAL,
     AcousticEvidence,
+    DecoderVocabulary,
     EvidenceSettings,
     Expecting,
-    Wanted,
 )
 from tangy_tui.speech.language import dictionary, grammar, open_model, phrase_model
 from tangy_tui.speech.understanding import (
@@ -135,7 +135,7 @@ class TestLanguage:
     @pytest.mark.slow
     @given(
         st.builds(
-            Wanted,
+            DecoderVocabulary,
             PHRASES.map(tuple),
             PHRASES.map(tuple),
             PHRASES.map(tuple),
@@ -145,8 +145,8 @@ class TestLanguage:
             ),
         )
     )
-    def test_what_is_wanted_goes_to_the_worker_and_back(self, one: Wanted) -> None:
-        assert decode(Wanted, json.loads(json.dumps(encode(one)))) == one
+    def test_what_is_wanted_goes_to_the_worker_and_back(self, one: DecoderVocabulary) -> None:
+        assert decode(DecoderVocabulary, json.loads(json.dumps(encode(one)))) == one
 
     def test_nothing_heavy_is_imported_with_these_rooms(self) -> None:
         code = (

@@ -18,7 +18,7 @@ from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import decoder as speech_decoder
 from tangy_tui.speech import stop_decoder
-from tangy_tui.speech.evidence import USUAL, AcousticEvidence, Wanted
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence, DecoderVocabulary
 from tangy_tui.speech.stop_decoder import HeardStop, StopDecoder
 from tangy_tui.speech.understanding import answer, commanded, replied, understand, wanted
 
@@ -201,7 +201,7 @@ def test_a_stop_beyond_doubt_waits_for_no_other_words_one_in_doubt_does(
     monkeypatch.setattr(TwoAnswers, "found", HeardStop("hey stop", sure))
     monkeypatch.setattr(TwoAnswers, "words", words)
     monkeypatch.setattr(TwoAnswers, "asked", [])
-    decoder = speech_decoder.make_decoder(Wanted(("call number",), ("yes",)))
+    decoder = speech_decoder.make_decoder(DecoderVocabulary(("call number",), ("yes",)))
     evidence = decoder.decode(bytes(2 * RATE), "commands")
     assert evidence.stop == "hey stop"
     assert evidence.words == ("hey stop" if sure else words)

@@ -16,8 +16,8 @@ from tangy_hw.audio.meter import NO_SOUND_SECONDS
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace, data_folder
 from tangy_tui.speech import transcription
-from tangy_tui.speech.calibration import Chosen, Figures
-from tangy_tui.speech.evidence import RATE, EvidenceSettings, Wanted
+from tangy_tui.speech.calibration import CalibrationResult, SeparationCounts
+from tangy_tui.speech.evidence import RATE, DecoderVocabulary, EvidenceSettings
 from tangy_tui.speech.loudness import LOUD, loudness
 from tangy_tui.speech.microphone_check import PATIENCE, CheckResult, MicrophoneCheck
 from tangy_tui.speech.recogniser import Recogniser
@@ -98,7 +98,7 @@ def test_an_empty_folder_says_how_to_name_recordings(tangy: Tangy, tmp_path: Pat
 def test_a_folder_of_which_nothing_can_be_heard_is_refused(
     files: list[str], says: str, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async def start(self: Recogniser, wanted: Wanted) -> None:
+    async def start(self: Recogniser, wanted: DecoderVocabulary) -> None:
         """Start nothing: there is nothing to decode."""
 
     monkeypatch.setattr(Recogniser, "start", start)
@@ -305,8 +305,8 @@ class TestCheckingAMicrophone:
         tmp_path: Path,
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
-        figures = Figures(6, understood, 0, 3, 0)
-        chosen = Chosen(EvidenceSettings(garbage=0.9), figures, figures)
+        figures = SeparationCounts(6, understood, 0, 3, 0)
+        chosen = CalibrationResult(EvidenceSettings(garbage=0.9), figures, figures)
 
         async def run(check: MicrophoneCheck) -> CheckResult:
             return CheckResult(-60.0, -30.0, (), chosen, figures.parted, ())
@@ -330,7 +330,9 @@ class TestCheckingAMicrophone:
     def test_what_was_not_measured_is_not_put_in_figures(
         self, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        chosen = Chosen(EvidenceSettings(), Figures(6, 5, 0, 0, 0), Figures(6, 5, 0, 0, 0))
+        chosen = CalibrationResult(
+            EvidenceSettings(), SeparationCounts(6, 5, 0, 0, 0), SeparationCounts(6, 5, 0, 0, 0)
+        )
         room = loudness(bytes(2 * RATE), LOUD)  # zeros alone
 
         async def run(check: MicrophoneCheck) -> CheckResult:

@@ -27,7 +27,13 @@ from tangy_profiles.codec import encode
 from tangy_profiles.person import Person, load_people
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.verification import Say, StopCommand
-from tangy_tui.speech.evidence import LONGEST, USUAL, AcousticEvidence, EvidenceSettings, Wanted
+from tangy_tui.speech.evidence import (
+    LONGEST,
+    USUAL,
+    AcousticEvidence,
+    DecoderVocabulary,
+    EvidenceSettings,
+)
 from tangy_tui.speech.input import SpeechInput
 from tangy_tui.speech.recogniser import WORKER, Recogniser, SpeechUnavailable
 from tangy_tui.speech.transcription import listen, tier_of
@@ -47,7 +53,7 @@ T = TypeVar("T")
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
 WANTED = wanted(BOOK, USUAL)
-FEW = Wanted(("call number", "tell a joke", "go to the front"))
+FEW = DecoderVocabulary(("call number", "tell a joke", "go to the front"))
 PIECE = 1_600  # bytes, 50 ms
 
 KNOWN = [
@@ -406,7 +412,7 @@ class TestWorker:
             assert said.commands[0].arguments == {"user": "user2"}
             pid = studio.recogniser.pid
             with pytest.raises(SpeechUnavailable, match="pronounced"):
-                studio.run(studio.recogniser.start(Wanted(("xhqzr qqq",))))
+                studio.run(studio.recogniser.start(DecoderVocabulary(("xhqzr qqq",))))
             studio.run(studio.recogniser.start(FEW))
             assert studio.recogniser.pid == pid
             assert studio.decode(voices.say("tell a joke", "kal16")).words == "tell a joke"
@@ -439,8 +445,8 @@ class TestWorker:
             {"pcm": "not base64!"},
             {"id": 5, "begin": "answers"},
             {"id": 5, "end": True},
-            {"id": 6, "wanted": encode(Wanted(("<s> (", "\\end\\", "a\nb", "/1/ a;")))},
-            {"id": 7, "wanted": encode(Wanted(("a",), pronunciations={"a": ("QQ",)}))},
+            {"id": 6, "wanted": encode(DecoderVocabulary(("<s> (", "\\end\\", "a\nb", "/1/ a;")))},
+            {"id": 7, "wanted": encode(DecoderVocabulary(("a",), pronunciations={"a": ("QQ",)}))},
             {"id": 8, "pieces": ""},
         ]
         lines = b"".join(
@@ -464,12 +470,12 @@ class TestWorker:
             "import asyncio, os, sys\n"
             "from pathlib import Path\n"
             "from tangy_hw.audio.wav import read_wav\n"
-            "from tangy_tui.speech.evidence import Wanted\n"
+            "from tangy_tui.speech.evidence import DecoderVocabulary\n"
             "from tangy_tui.speech.recogniser import Recogniser\n"
             "async def run():\n"
             "    asyncio.get_running_loop().slow_callback_duration = 60.0\n"
             "    recogniser = Recogniser(log=Path(sys.argv[2]))\n"
-            "    await recogniser.start(Wanted(('tell a joke', 'xhqzr', 'a(b')))\n"
+            "    await recogniser.start(DecoderVocabulary(('tell a joke', 'xhqzr', 'a(b')))\n"
             "    first, sound = recogniser.pid, asyncio.Queue()\n"
             "    assert os.getsid(first) != os.getsid(0)\n"
             "    begun = asyncio.Event()\n"
