@@ -143,10 +143,10 @@ def test_another_process_learns_the_same_bit_for_bit(
     code = (
         "import sys, json\n"
         "from tangy_profiles.activity import load_activity\n"
-        "from tangy_profiles.codec import read\n"
+        "from tangy_profiles.codec import decode\n"
         "from tangy_profiles.demonstration import Demonstration, Step\n"
         "from tangy_tui.learning.policy import PAPER, learn_policy\n"
-        "steps = tuple(read(Step, one) for one in json.load(sys.stdin))\n"
+        "steps = tuple(decode(Step, one) for one in json.load(sys.stdin))\n"
         "shown = Demonstration('x', 'bingo', 'test', 0, (), steps)\n"
         "print(learn_policy(load_activity('bingo'), [shown], settings=PAPER).digest)\n"
     )
