@@ -84,7 +84,7 @@ def test_what_was_shown_before_is_not_brought_about_again() -> None:
 @pytest.mark.parametrize(
     "name",
     [
-        *("toss", "who-am-i", "simon-says"),
+        *("toss", "who-am-i", "simon-says", "raffle"),
         pytest.param("twenty-questions", marks=pytest.mark.slow),
     ],
 )

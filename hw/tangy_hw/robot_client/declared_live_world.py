@@ -16,9 +16,9 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.game import DeclaredGame, Execution
-from tangy_profiles.declared.items import order_of
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
+from tangy_profiles.declared.lots import drawn_game
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.silence import silence
@@ -72,9 +72,7 @@ class DeclaredLiveWorld(LiveWorld):
 
     def _begin(self) -> None:
         super()._begin()
-        declaration = self.activity.declaration
-        order = order_of(declaration.items, self._order.random)
-        self.game = DeclaredGame(declaration, self.people, order)
+        self.game = drawn_game(self.activity.declaration, self.people, self._order.random)
         for person in sorted(self.away):
             self.game.observe(HERE, person, NO)
         self.tracker = DeclaredTracker(self.activity, self.game)

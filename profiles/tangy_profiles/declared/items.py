@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -98,18 +98,3 @@ def _right_in(top: Section, items: Items, fact: Fact, number: int) -> tuple[str,
     place = items.columns.index(fact.checks)
     told = "|".join(words or way for words, way in zip(chosen, ways, strict=True))
     return (*row[:place], told, *row[place + 1 :])
-
-
-def order_of(items: Items, uniform: Callable[[], float]) -> list[int]:
-    """Return the rows of a game's items in order (Fisher-Yates if shuffled).
-
-    Args:
-        items: the items, with the number of rounds of a game.
-        uniform: draws from 0 to 1.
-    """
-    order = list(range(len(items.rows)))
-    if items.order == "shuffled":
-        for end in range(len(order) - 1, 0, -1):
-            pick = int(uniform() * (end + 1))
-            order[end], order[pick] = order[pick], order[end]
-    return order[: items.rounds]

@@ -76,6 +76,7 @@ def game_from(
         return None
     from tangy_profiles.declared.game import DeclaredGame
 
+    players = tuple(who for who, _ in memory.acts)  # in the order of their turns
     game = DeclaredGame(declaration, players, memory.order)
     game.values = {(fact, whose): value for fact, whose, value in memory.values}
     game.counts = {(fact, whose): number for fact, whose, number in memory.counts}

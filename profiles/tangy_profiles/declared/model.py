@@ -16,6 +16,7 @@ from tangy_profiles.declared.vocabulary import (
     Quantifier,
     Selector,
     Source,
+    Turns,
 )
 
 PAUSE_SECONDS = 8.0
@@ -174,6 +175,7 @@ class Declaration:
     behaviours: Mapping[str, DeclaredBehaviour]
     items: Items = Items()
     teams: tuple[str, ...] = ()
+    turns: Turns = "in order"
     habits: tuple[Habit, ...] = ()
     expected: tuple[Expectation, ...] = ()
     strategies: Mapping[str, str] = field(default_factory=dict)

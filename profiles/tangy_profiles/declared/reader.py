@@ -28,7 +28,9 @@ from tangy_profiles.declared.vocabulary import (
     ASKING,
     ORDERS,
     SLOT,
+    TURNS,
     Order,
+    Turns,
 )
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.given_file import lines_of, read_given
@@ -39,7 +41,7 @@ from tangy_profiles.reading import LARGEST_PROFILE, nearest, read_toml
 KEYS = (
     *("name", "title", "items", "flags", "teams", "facts", "stages", "expected", "people"),
     *("behaviours", "strategies", "plain_strategy", "speech", "patience", "pronunciations"),
-    *("words", "summary"),
+    *("words", "summary", "turns"),
 )
 PLAIN = "plain"
 GROUP = "group"
@@ -92,6 +94,7 @@ def _read(top: Section, path: Path) -> Declaration:
         behaviours=behaviours,
         items=items,
         teams=_read_teams(top),
+        turns=cast(Turns, top.word("turns", TURNS, "in order")),
         habits=_read_habits(top, phrasing),
         expected=expected,
         strategies=strategies,

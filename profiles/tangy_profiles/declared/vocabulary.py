@@ -55,6 +55,10 @@ WHOSE = "whose "
 Order = Literal["given", "shuffled"]
 ORDERS: tuple[Order, ...] = get_args(Order)
 
+Turns = Literal["in order", "by lot"]
+TURNS: tuple[Turns, ...] = get_args(Turns)
+"""Orders of the players' turns: as they sit, or drawn for each game."""
+
 ASKING, TURN, ADDRESSED, PLACE, ITEMS = "asking", "turn", "addressed", "place", "items"
 BUILT_IN: dict[str, tuple[str, ...]] = {
     ITEMS: ("left", "over"),

@@ -17,7 +17,7 @@ from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.memory import GameMemory, game_from
 from tangy_profiles.declared.model import Fact
-from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
+from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES, Named
 from tangy_profiles.person import Person
 from tangy_sim.device_simulator.faults import Faults
 from tangy_sim.device_simulator.people import CLEAR, TURNS_DOWN, People, Sitter
@@ -27,6 +27,7 @@ from tangy_sim.worlds.clarity import UNCLEAR, Clarity
 from tangy_sim.worlds.compliance import respond
 from tangy_sim.worlds.users import SimulatedUser
 
+WHOSE_TURN: Named = "whose turn"
 ACTS = (1.0, 6.0)  # s between a sentence and an action that follows it
 
 
@@ -96,7 +97,11 @@ class DeclaredPeople(People):
         named = (game.whom(one) for one in declared.to)
         whom = heard.person or next((one for one in named if one is not None), None)
         whom = None if not heard.person and "group" in declared.to[:1] else whom
+        if heard.person and declared.to[:1] == (WHOSE_TURN,):
+            game.turn = game.players.index(heard.person)  # turns may be drawn by lot
         done = game.execute(behaviour.name, whom)
+        if heard.turn:
+            game.turn = game.players.index(heard.turn)
         rows, self.perceived = heard.rows or self.perceived, ()
         if rows and game.row not in rows and game.row >= 0:
             order = list(game.order)

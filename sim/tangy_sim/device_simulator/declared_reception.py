@@ -68,8 +68,10 @@ class DeclaredReception:
             rows = self._rows(one.columns, found.groupdict())
             if one.columns and not rows:
                 continue
-            person = self._people.get(found.groupdict().get("name") or "", "")
-            return HeardLine(one.behaviour, one.strategy, person, rows=tuple(rows))
+            person, turn = (
+                self._people.get(found.groupdict().get(slot) or "", "") for slot in ("name", "turn")
+            )
+            return HeardLine(one.behaviour, one.strategy, person, rows=tuple(rows), turn=turn)
         asked = next((found for one in self._again if (found := one.fullmatch(plain))), None)
         asked = asked or next(
             (found for one in self._hints if (found := one.pattern.fullmatch(plain))), None
@@ -101,16 +103,16 @@ def _cells(items: Items, column: str) -> str:
 def _sentence(
     text: str, names: str, cells: Mapping[str, str], behaviour: Behaviour, strategy: str
 ) -> _Sentence:
-    pattern, used, letters, begin, named = "", list[str](), 0, 0, False
+    pattern, used, letters, begin, named = "", list[str](), 0, 0, set[str]()
     plain = simplified(text)
     for slot in SLOT.finditer(plain):
         between = plain[begin : slot.start()]
         pattern += re.escape(between)
         letters, begin = letters + len(between), slot.end()
         name = next((one for one in cells if one.casefold() == slot[1]), "")
-        if slot[1] == "name":
-            pattern += "(?P=name)" if named else f"(?P<name>{names})"
-            named = True
+        if slot[1] in ("name", "turn"):
+            pattern += f"(?P={slot[1]})" if slot[1] in named else f"(?P<{slot[1]}>{names})"
+            named.add(slot[1])
         elif name:
             pattern += f"(?P<s{len(used)}>{cells[name]})"
             used.append(name)

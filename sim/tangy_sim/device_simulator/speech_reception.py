@@ -39,6 +39,8 @@ class HeardLine:
     """Whether the screen shows more numbers than were said."""
     rows: tuple[int, ...] = ()
     """Possible rows of an activity's items."""
+    turn: str = ""
+    """The person whose turn it is now, if the sentence names them."""
     again: bool = False
     """Whether the person is asked to repeat their answer."""
 

@@ -15,10 +15,10 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.acts import Act, acts, raw, take_in
-from tangy_profiles.declared.game import DeclaredGame, Execution
-from tangy_profiles.declared.items import order_of
+from tangy_profiles.declared.game import Execution
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
+from tangy_profiles.declared.lots import drawn_game
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.speech import again, media, words
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
@@ -90,8 +90,7 @@ class DeclaredWorld:
 
     def begin(self) -> ActivityState:
         """Begin a new game with shuffled items, and return its first state."""
-        order = order_of(self._declaration.items, self._items)
-        self.game = DeclaredGame(self._declaration, self.people, order)
+        self.game = drawn_game(self._declaration, self.people, self._items)
         for person in self.game_plan.absent:
             self.game.observe(HERE, person, NO)
         self.over = False
