@@ -61,7 +61,7 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
             return [
                 f"{number}. {moment_words(activity, state, name)} -> "
                 f"{action.behaviour.question}{target}{how}, {why}",
-                f"   Tangy says: {speech}" if outcome.completed else "   It was not carried out.",
+                f"   Tangy says: {speech}" if outcome.completed else "   Tangy did not finish this.",
             ]
         case Diagnosed() | Moved():
             return fault_lines(event)

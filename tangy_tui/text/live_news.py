@@ -41,7 +41,7 @@ def event_words(event: Event, name: Name) -> str:
     match event:
         case Acted(number=number, action=action, outcome=outcome, speech=speech):
             whom = "" if action.target is None else f" ({name(action.target)})"
-            done = "" if outcome.completed else "  not carried out"
+            done = "" if outcome.completed else "  not finished"
             return f"{number:4} {action.behaviour.question}{whom}: {speech}{done}"
         case CallMade(role=role, way=way, stage=stage, said=said):
             return logged_words(role, way, stage, said)
