@@ -42,6 +42,7 @@ SHOWS = {
     "log": "Show the log",
     "faults": "Show the faults of this game",
 }
+NOT_FINISHED = "   Tangy did not finish this."
 SENSORS = "Show the sensors, and what cameras see"
 """The names of the number keys' actions."""
 
@@ -61,7 +62,7 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
             return [
                 f"{number}. {moment_words(activity, state, name)} -> "
                 f"{action.behaviour.question}{target}{how}, {why}",
-                f"   Tangy says: {speech}" if outcome.completed else "   Tangy did not finish this.",
+                f"   Tangy says: {speech}" if outcome.completed else NOT_FINISHED,
             ]
         case Diagnosed() | Moved():
             return fault_lines(event)

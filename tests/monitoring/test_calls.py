@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any
 
 import pytest
@@ -102,6 +104,40 @@ def test_an_answer_about_an_earlier_fault_says_nothing_of_a_later_one(
     earlier(CallNews("answered", "Coming."))
     assert calls.state(EXPERT) is None
     assert logged(workspace.store)[-1] == (EXPERT, "answered", "Coming.")
+
+
+class SlowButtons:
+    """A chest screen that shows its first offer only after the one behind it, if that can pass."""
+
+    on_answer: Callable[[str], object]
+
+    def __init__(self) -> None:
+        self.shown: list[list[str]] = []
+        self.first, self.passed = Event(), Event()
+
+    def offer_calls(self, calls: Mapping[str, str]) -> None:
+        if not self.first.is_set():
+            self.first.set()
+            self.passed.wait(0.2)
+        self.shown.append(list(calls.values()))
+        self.passed.set()
+
+
+def test_the_newest_offer_is_the_last_on_the_chest_screen(
+    supervise: Supervise, workspace: Workspace, line: Line
+) -> None:
+    robot, buttons = replace(workspace.robot, staff=STATION), SlowButtons()
+    calls = Calls(robot, list[object]().append, line, buttons=buttons)
+    game = supervise("link-lost@3")
+    game.begin()
+    while game.halted is None:
+        game.step()
+    beginning = Thread(target=calls.begin, args=(game.halted,))
+    beginning.start()
+    assert buttons.first.wait(20)
+    calls.end()
+    beginning.join(20)
+    assert buttons.shown[-1] == [], "nobody is called any more"
 
 
 def test_where_nobody_can_be_called_it_is_never_said_that_somebody_was(

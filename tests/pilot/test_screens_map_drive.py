@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from threading import Event
+from threading import Event, current_thread, main_thread
 from typing import TYPE_CHECKING
 
 import pytest
@@ -15,7 +15,7 @@ from tangy_profiles.room import load_room
 from tangy_tui.ui.screens import map_drive
 from tangy_tui.ui.screens.map_drive import MapDriveScreen
 from tests.hw.raycast import look, room_sides
-from tests.pilot.conftest import screen_text
+from tests.pilot.conftest import StillClock, screen_text
 from tests.pilot.live_games import HeldLink
 from tests.support.waiting import until_shown
 
@@ -66,6 +66,32 @@ async def test_one_map_is_drawn_at_a_time(
         assert len(begun) == 1
         go_on.set()
         await until_shown(pilot, lambda: len(begun) > 2)
+
+
+async def test_the_next_map_waits_for_three_times_the_last_drawing(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looking, drawing, begun = StillClock(), StillClock(), list[float]()
+
+    def clock() -> float:
+        return looking.now if current_thread() is main_thread() else drawing.now
+
+    def slow(log: Path) -> None:
+        begun.append(drawing.now)
+        drawing.now += 2.0
+
+    monkeypatch.setattr(map_drive, "map_so_far", slow)
+    monkeypatch.setattr(map_drive, "monotonic", clock)
+    monkeypatch.setattr(map_drive, "DRAWN_SECONDS", 0.01)
+    link = HeldLink()
+    async with run(MapDriveScreen(link, tmp_path / "a.log", "Tangy")) as pilot:  # type: ignore[arg-type]
+        await until_shown(pilot, lambda: drawing.now == 2.0)
+        looking.now = 7.9
+        seen = link.stamps
+        await until_shown(pilot, lambda: link.stamps > seen + 3)  # the screen has looked again
+        assert begun == [0.0]
+        looking.now = 8.1
+        await until_shown(pilot, lambda: len(begun) == 2)
 
 
 async def test_what_is_near_is_said_and_stop_holds_until_it_is_released(
