@@ -5,8 +5,9 @@ Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]... [--stage
 clear what halts the robot, with N busy processes beside them, and over a link of that quality. The
 robot's process is stopped for so many s in each stage in turn, N times for each length: while a
 number is due, while it drives to a person who asks, and beside that person; while it speaks, waits
-for what a person does, waits for people to clear its way, or for staff to answer a question. A
-dialog is a critical fault; other faults that are diagnosed after a stall are shown, too.
+for what a person does, waits for people to clear its way, turns to find its place, or waits for
+staff to answer a question. A dialog is a critical fault; other faults that are diagnosed after a
+stall are shown, too.
 """
 
 from __future__ import annotations
@@ -46,9 +47,11 @@ from tests.bench.jitter import busy
 
 RESTS = (2.0, 6.0)  # s between two stalls, by chance
 STAGES = ("facilitate", "navigate", "help")  # of the activity
-SPEAKING, WATCHING, RECOVERING, ASKING = "speaking", "watching", "recovering", "asking"
-MOMENTS = (SPEAKING, WATCHING, RECOVERING, ASKING)
-BLOCKED = "path-blocked"  # the fault that it recovers from
+SPEAKING, WATCHING, RECOVERING, TURNING = "speaking", "watching", "recovering", "turning"
+ASKING = "asking"
+MOMENTS = (SPEAKING, WATCHING, RECOVERING, TURNING, ASKING)
+FAULTS = {RECOVERING: "path-blocked", TURNING: "carried-off"}  # which it recovers from
+REMEDIES = {"ask": RECOVERING, "spin": TURNING}
 COMES = 120.0  # s in which a stage has to come about
 SETTLES = 4.0  # s after a stall in which what comes of it is told
 
@@ -98,7 +101,7 @@ class WatchedBench(BenchedWorld):
 
     def recover(self, remedy: Remedy) -> float:
         """Carry out a remedy."""
-        self.doing = RECOVERING if remedy.kind == "ask" else self.doing
+        self.doing = REMEDIES.get(remedy.kind, self.doing)
         try:
             return super().recover(remedy)
         finally:
@@ -145,8 +148,8 @@ class StalledGames:
         world, until = self.world, time.monotonic() + COMES
         self.wanted = stage
         asked = stage in (STAGES[0], ASKING)
-        if stage == RECOVERING:
-            world.inject(BLOCKED)
+        if stage in FAULTS:
+            world.inject(FAULTS[stage])
         while time.monotonic() < until:
             now = world.tracker.state().situation.stage
             if not asked and now == STAGES[0] and not world.over:
@@ -155,7 +158,7 @@ class StalledGames:
             if stage == ASKING and self.control.phase == "running" and not world.over:
                 self.control.apply(TakeOver())
             there = self.stage == stage
-            if there and (stage != "navigate" or world.truth()["moving"]):
+            if there and (stage not in ("navigate", TURNING) or world.truth()["moving"]):
                 return
             time.sleep(0.05)
 
@@ -195,8 +198,8 @@ class StalledGames:
                 self.wanted = ""
         for fault in self.told[before:]:
             (one.dialogs if fault.critical else one.others).append(fault.code)
-        if BLOCKED in world.present:
-            world.lift(BLOCKED)
+        for kind in set(FAULTS.values()) & set(world.present):
+            world.lift(kind)
         return one
 
 
