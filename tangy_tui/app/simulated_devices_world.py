@@ -218,14 +218,19 @@ class BenchedWorld(LiveWorld):
             case injection.CLOSING | injection.WAITING if "requests-silent" in self.present:
                 return False  # no sensor sees whether a sign is up
             case injection.CLOSING:
-                settled = self.activity.card_states[-1].name
-                return beside and behaviour.closes == "always" and tracker.seen == settled
+                if behaviour.closes != "always" or tracker.seen != self._settled:
+                    return False
+                return beside and tracker.place in self.truth()["asking"]  # its sign is still up
             case injection.WAITING:
                 return len(tracker.queue) > 1
             case injection.MOVING_ON:
                 return beside and behaviour.effect in CORRECTS
             case _:
                 return True
+
+    @property
+    def _settled(self) -> str:
+        return self.activity.card_states[-1].name
 
     def _never_complies(self, person: str) -> bool:
         there = {fault["kind"]: fault["person"] for fault in self.truth()["faults"]}

@@ -26,6 +26,10 @@ GAMES_A_PIECE = 5
 """Games on one bench with the same people: few, so that each core has work."""
 
 
+PLACED = ("path-detour", "request-stuck")
+"""Kinds that may find no occasion on the bench; its ground truth says so."""
+
+
 class InducingBench(BenchedWorld):
     """A world on the bench with planned faults."""
 
@@ -60,13 +64,13 @@ class InducingBench(BenchedWorld):
     def _note_hidden(self) -> None:
         """At a game's end, mark the faults that could no longer be observed.
 
-        These are a chair that found no room in front of the robot, and a withdrawn request, which
-        only shows with the next behaviour.
+        These are a chair that found no room in front of the robot, a sign that was already down,
+        and a withdrawn request, which only shows with the next behaviour.
         """
         self._note_lifted()
         placed = {fault["kind"]: fault["shown"] for fault in self.truth()["faults"]}
         for fault in self.inducer.induced:
-            nowhere = placed.get(fault.kind.name) is False and fault.kind.name == "path-detour"
+            nowhere = fault.kind.name in PLACED and placed.get(fault.kind.name) is False
             late = fault.lifted is not None and fault.lifted > self.tracker.step
             fault.hidden = nowhere or (late and fault.kind.shows == WAITING)
 

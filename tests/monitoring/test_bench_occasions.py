@@ -21,6 +21,8 @@ BINGO, PEOPLE = load_activity("bingo"), ("user1", "user2")
 class FakeBench:
     """A bench of which only the faults matter."""
 
+    asking: tuple[str, ...] = PEOPLE
+
     def __init__(self, **faults: str) -> None:
         self.faults = [
             {"kind": kind.replace("_", "-"), "person": who} for kind, who in faults.items()
@@ -28,7 +30,7 @@ class FakeBench:
 
     def do(self, what: str, **_: Any) -> dict[str, Any]:
         assert what == "truth"
-        return {"truth": {"faults": self.faults}}
+        return {"truth": {"faults": self.faults, "asking": self.asking}}
 
 
 def beside_somebody(**faults: str) -> BenchedWorld:
@@ -66,10 +68,23 @@ def test_a_person_who_never_complies_shows_it_at_any_request_about_the_card() ->
         assert world.can_show(KINDS["never-complies"], action)
 
 
-def test_a_sign_that_stays_up_shows_only_to_a_sensor_that_works() -> None:
+@pytest.mark.parametrize(
+    ("silent", "asking", "shows"),
+    [
+        ({}, PEOPLE, True),
+        ({"requests_silent": ""}, PEOPLE, False),  # no sensor sees it
+        ({}, ("user2",), False),  # it is down already
+    ],
+)
+def test_a_sign_stays_up_only_where_one_is_seen_to_be_up(
+    silent: dict[str, str],
+    asking: tuple[str, ...],
+    shows: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(FakeBench, "asking", asking)
     closing = next(one for one in BINGO.behaviours.values() if one.closes == "always")
     action = BINGO.action(closing, "user1", None)
-    for silent, shows in (({}, True), ({"requests_silent": ""}, False)):
-        world = beside_somebody(**silent)
-        world.tracker.seen = BINGO.card_states[-1].name
-        assert world.can_show(KINDS["request-stuck"], action) == shows
+    world = beside_somebody(**silent)
+    world.tracker.seen = BINGO.card_states[-1].name
+    assert world.can_show(KINDS["request-stuck"], action) == shows
