@@ -74,8 +74,8 @@ class RobotControls:
 
     @property
     def lets(self) -> str:
-        """For whom it waits on its way, as in `RobotState.lets`; "" for nobody."""
-        return "" if self._robot is None else self._robot.link.state.lets
+        """For whom it waits on its way, as in `RobotState.yields_to`; "" for nobody."""
+        return "" if self._robot is None else self._robot.link.state.yields_to
 
     def rests(self, decision: Decision) -> bool:
         """Return whether it is too early for the next call."""

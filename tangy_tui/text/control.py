@@ -20,7 +20,7 @@ HELD = {
 }
 """Why the robot does not drive as told."""
 
-COURTESIES = {
+WAIT_EXPLANATIONS = {
     "walking": "I let you pass.",
     "standing": "May I pass, please?",
 }

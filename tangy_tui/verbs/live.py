@@ -172,7 +172,7 @@ def live(
         from tangy_profiles.known_devices import reads_cards
         from tangy_tui.app.dealing import read_dealt
         from tangy_tui.app.robot_opening import check_map, opening_of
-        from tangy_tui.text.control import COURTESIES
+        from tangy_tui.text.control import WAIT_EXPLANATIONS
         from tangy_tui.text.missing_devices import missing_words, staff_needed
 
         if map_:
@@ -180,7 +180,7 @@ def live(
         check_injections(faults, workspace)
         own = {
             "cameras": camera or (), "requests": requests, "corners": read_corners(table),
-            "cards": read_dealt(card or (), workspace.people), "courtesies": COURTESIES,
+            "cards": read_dealt(card or (), workspace.people), "courtesies": WAIT_EXPLANATIONS,
         }  # fmt: skip
 
         def opening(seed: int) -> WorldOpening:

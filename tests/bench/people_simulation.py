@@ -202,7 +202,7 @@ class Drive:
 
     def _listen(self, navigator: Navigator) -> None:
         moves = abs(self.twist.forward) > MOVES or abs(self.twist.turn) > 0.05
-        says = navigator.lets != "" or navigator.state in ("blocked", "spinning", "failed")
+        says = navigator.yields_to != "" or navigator.state in ("blocked", "spinning", "failed")
         self._quiet = 0.0 if moves or says else self._quiet + TICK
         self.silent = max(self.silent, self._quiet)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from tangy_hw.navigation.surroundings import Held
+from tangy_hw.navigation.surroundings import BlockingPerson
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_hw.robot_process.wait_explanations import AFTER_SECONDS, AGAIN_SECONDS, WaitExplanations
 
@@ -12,7 +12,7 @@ WORDS = {"walking": "After you.", "standing": "May I?"}
 LONGEST = 5.0  # s for which nobody has to wait without hearing why
 
 
-async def said(lets: list[Held], *, halted: bool = False) -> list[tuple[float, str]]:
+async def said(yields_to: list[BlockingPerson], *, halted: bool = False) -> list[tuple[float, str]]:
     """Return what is said when, while it stands so for a tenth of a second each."""
     heard: list[tuple[float, str]] = []
     now = 0.0
@@ -22,9 +22,9 @@ async def said(lets: list[Held], *, halted: bool = False) -> list[tuple[float, s
         if halted:
             raise Preempted("stopped")
 
-    courtesies = WaitExplanations(WORDS, says)
-    for one in lets:
-        courtesies.note(one, now)
+    explanations = WaitExplanations(WORDS, says)
+    for one in yields_to:
+        explanations.note(one, now)
         await asyncio.sleep(0)
         now += 0.1
     return heard
@@ -50,6 +50,6 @@ async def test_a_robot_that_is_stopped_meanwhile_is_quiet_and_lives() -> None:
 
 
 async def test_without_words_nothing_is_said() -> None:
-    courtesies = WaitExplanations({}, lambda text: asyncio.sleep(0))
+    explanations = WaitExplanations({}, lambda text: asyncio.sleep(0))
     for tick in range(60):
-        courtesies.note("walking", tick / 10)
+        explanations.note("walking", tick / 10)

@@ -20,7 +20,7 @@ from tangy_hw.navigation.navigator import SPIN, State
 from tangy_hw.navigation.people_guard import WALKS, NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.poses import IDENTITY, Floats
-from tangy_hw.navigation.surroundings import Held
+from tangy_hw.navigation.surroundings import BlockingPerson
 from tangy_profiles.health import Fact, Reading
 
 AGAIN_SECONDS = 0.5  # seconds that the robot must be allowed to drive before the goal is sent again
@@ -38,7 +38,7 @@ class ExternalNavigator:
         self.why = ""
         """Reason for `failed` or `blocked`: one sentence."""
         self.path = None
-        self.lets: Held = ""
+        self.yields_to: BlockingPerson = ""
         """Kind of person it waits for: one who walks into its way."""
         self.tracks: tuple[Track, ...] = ()
         self._tracker, self._limits = PeopleTracker(laser), limits or MotionLimits()
@@ -109,15 +109,15 @@ class ExternalNavigator:
             return
         tracks = self._tracker.update(at_scan, scan, dt)
         self.tracks = tuple(one.seen_from(at_scan) for one in tracks)
-        if self.lets and self._allowed < AGAIN_SECONDS:
+        if self.yields_to and self._allowed < AGAIN_SECONDS:
             return  # go on after nobody has come for a moment
         walking = [one for one in self.tracks if one.speed > WALKS]
         meets = (
             limit_near_people(odometry.twist, NearbyPeople(walking, np.zeros((0, 2))), self._limits)
             == STILL
         )
-        self.lets = "walking" if self.drives and meets and odometry.twist != STILL else ""
-        if self.lets:
+        self.yields_to = "walking" if self.drives and meets and odometry.twist != STILL else ""
+        if self.yields_to:
             self.held()
 
     # -------------------------------------------------------------- state

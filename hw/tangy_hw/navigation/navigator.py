@@ -40,7 +40,7 @@ from tangy_hw.navigation.poses import (
 )
 from tangy_hw.navigation.pursuit import Pursuit
 from tangy_hw.navigation.slip_detection import SlipDetector
-from tangy_hw.navigation.surroundings import Held, Surroundings
+from tangy_hw.navigation.surroundings import BlockingPerson, Surroundings
 from tangy_profiles.health import OK, Fact, Reading
 
 State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived", "failed"]
@@ -100,7 +100,7 @@ class Navigator:
         self._localisation = Localisation(map_, rng, start, laser)
         self._around = Surroundings(map_, laser, self.limits)
         self._slip_detector = SlipDetector(laser)
-        self.lets: Held = ""
+        self.yields_to: BlockingPerson = ""
         """Kind of person it is waiting for, if any."""
         self._pursuit: Pursuit | None = None
         self._given_up: Floats | None = None
@@ -330,7 +330,7 @@ class Navigator:
 
     def _stop_following(self) -> None:
         self.path = self._pursuit = self._given_up = None
-        self.lets = ""
+        self.yields_to = ""
         self._waited = self._without = self._marked = 0.0
         self._mark = self._detour = None
 
@@ -352,13 +352,13 @@ class Navigator:
             self.state, self._way = "arrived", "clear"
             self._stop_following()
             return STILL
-        self.lets = self._around.held(wanted)
-        stands = pursuit.state == "waiting" or self.lets != ""
+        self.yields_to = self._around.held(wanted)
+        stands = pursuit.state == "waiting" or self.yields_to != ""
         if stands or self._touches(ahead[:LOOK_AHEAD], obstacles, pose, goal):
             self._waited += dt
         else:
             self._waited = 0.0
-        patience = PATIENCE_WALKING if self.lets == "walking" else PATIENCE
+        patience = PATIENCE_WALKING if self.yields_to == "walking" else PATIENCE
         if self._waited >= patience and self._since_plan >= AGAIN:
             self._since_plan = 0.0
             path, self._given_up = self._plan(pose, goal), ahead

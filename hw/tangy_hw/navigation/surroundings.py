@@ -17,7 +17,7 @@ from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints, lengths, transform_points
 
-Held = Literal["", "walking", "standing"]
+BlockingPerson = Literal["", "walking", "standing"]
 """Kind of person that the robot waits for: nobody, a walking one, a standing one."""
 
 SURE = 0.3  # metres of pose spread up to which points become obstacles
@@ -95,7 +95,7 @@ class Surroundings:
         """Return the part of a command that may be driven near the people around."""
         return limit_near_people(twist, NearbyPeople(self._tracks, self._ends), self._limits)
 
-    def held(self, twist: Twist) -> Held:
+    def held(self, twist: Twist) -> BlockingPerson:
         """Return the kind of person who blocks a command; "" if it is not blocked."""
         if self.limited(twist) != STILL or twist == STILL:
             return ""

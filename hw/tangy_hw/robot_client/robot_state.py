@@ -20,7 +20,7 @@ class RobotState:
     control that only a new robot process fixes. `frozen` is for how many s its control was
     frozen, until staff acknowledge it; `held` is the result of the last manual command: ""
     executed, "slow", "stands" or "overridden". `waits` names the late data that it waits for;
-    `pauses` is the number of such waits, and their total s. `lets` is the kind of person it
+    `pauses` is the number of such waits, and their total s. `yields_to` is the kind of person it
     waits for: "walking" past, or "standing" in the way. `answered` are the keys of calls
     answered at the chest screen.
     """
@@ -42,7 +42,7 @@ class RobotState:
     held: str = ""
     waits: str = ""
     pauses: tuple[int, float] = (0, 0.0)
-    lets: str = ""
+    yields_to: str = ""
     answered: tuple[str, ...] = ()
 
     @classmethod

@@ -157,7 +157,7 @@ def assemble(setup: RobotSetup) -> RobotRuntime:
         senses=senses,
         requests=_requests(setup, room),
         stepped=setup.stepped,
-        courtesies=setup.courtesies,
+        wait_explanations=setup.courtesies,
     )
     bench = None
     if isinstance(clock, SteppedClock):

@@ -59,7 +59,7 @@ class LiveRobot:
         senses: CardAndFacePerception | None = None,
         requests: RequestSource | None = None,
         stepped: bool = False,
-        courtesies: Mapping[str, str] | None = None,
+        wait_explanations: Mapping[str, str] | None = None,
     ) -> None:
         """Assemble the controller.
 
@@ -71,7 +71,7 @@ class LiveRobot:
             senses: readers of its images.
             requests: source of requests for help.
             stepped: whether its time stands still while nothing is done.
-            courtesies: sentences for people whom it waits for (see `WaitExplanations`).
+            wait_explanations: sentences for people whom it waits for (see `WaitExplanations`).
         """
         self.robot = robot
         self.navigator = navigator
@@ -95,7 +95,9 @@ class LiveRobot:
         self._left_alone = False
         self._performer = Performer(body, self.passing, robot, navigator, lambda: self._halted)
         self.perform = self._performer.perform
-        self._courtesies = WaitExplanations(courtesies or {}, lambda text: self.perform(text=text))
+        self._wait_explanations = WaitExplanations(
+            wait_explanations or {}, lambda text: self.perform(text=text)
+        )
         self._moved = OdometryHistory()
         self._wanted: Pose | None = None
         self._was = ""  # state at the end of the last drive
@@ -347,8 +349,8 @@ class LiveRobot:
         by_hand = self.hand.command(seen, now, self.navigator.unseen, self.navigator.tracks)
         command = command if by_hand is None else by_hand
         self._mind()
-        self._courtesies.note(self.navigator.lets, now)
-        if self.hazard or (self.navigator.lets and self.navigator.drives):
+        self._wait_explanations.note(self.navigator.yields_to, now)
+        if self.hazard or (self.navigator.yields_to and self.navigator.drives):
             command = STILL
             self._stand()
         elif command != STILL or not self.wheels.stand:

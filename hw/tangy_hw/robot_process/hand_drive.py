@@ -19,7 +19,7 @@ HOLDS_SECONDS = 0.4  # for which a manual command is valid
 
 OVERRIDE = 0.08  # maximum m/s while the scanner's protection is overridden
 
-Held = Literal["", "slow", "stands", "overridden"]
+HandDriveResult = Literal["", "slow", "stands", "overridden"]
 """Result of the last command: executed, slower, not executed, or slowly past an obstacle, because
 staff held the override key."""
 
@@ -31,7 +31,7 @@ class HandDrive:
     """
 
     def __init__(self, limits: MotionLimits, laser: Pose = IDENTITY) -> None:
-        self.held: Held = ""
+        self.held: HandDriveResult = ""
         self._limits, self._laser = limits, laser
         self._told = STILL
         self._overrides = False
@@ -87,7 +87,7 @@ class HandDrive:
         return twist
 
 
-def _held(told: Twist, twist: Twist) -> Held:
+def _held(told: Twist, twist: Twist) -> HandDriveResult:
     if twist == told:
         return ""
     return "stands" if twist.forward == 0 and told.forward != 0 else "slow"

@@ -34,7 +34,7 @@ def beat_of(robot: LiveRobot, number: int) -> dict[str, Any]:
         "held": robot.hand.held,
         "waits": robot.pauses.why,
         "pauses": [robot.pauses.count, round(robot.pauses.seconds, 2)],
-        "lets": navigator.lets,
+        "lets": navigator.yields_to,
         "answered": list(robot.body.calls_answered),
     }
 

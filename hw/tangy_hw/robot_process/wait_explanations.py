@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 
-from tangy_hw.navigation.surroundings import Held
+from tangy_hw.navigation.surroundings import BlockingPerson
 from tangy_hw.robot_process.stop_latch import Preempted
 
 AFTER_SECONDS = 1.0  # of standing for a person until it speaks
@@ -19,23 +19,23 @@ class WaitExplanations:
     def __init__(self, words: Mapping[str, str], says: Callable[[str], Awaitable[object]]) -> None:
         """Set the sentences, by "walking" and "standing", and the speech function."""
         self._words, self._says = words, says
-        self._lets: Held = ""
+        self._yields_to: BlockingPerson = ""
         self._since = 0.0
         self._said: dict[str, float] = {}
         self._saying: asyncio.Task[None] | None = None
 
-    def note(self, lets: Held, now: float) -> None:
+    def note(self, yields_to: BlockingPerson, now: float) -> None:
         """Update the kind of person it waits for, `now` in s; speak after a moment."""
-        if lets != self._lets:
-            self._lets, self._since = lets, now
-        words = self._words.get(lets, "")
-        last = self._said.get(lets)
+        if yields_to != self._yields_to:
+            self._yields_to, self._since = yields_to, now
+        words = self._words.get(yields_to, "")
+        last = self._said.get(yields_to)
         if not words or now - self._since < AFTER_SECONDS:
             return
         if last is not None and now - last < AGAIN_SECONDS:
             return
         if self._saying is None or self._saying.done():
-            self._said[lets] = now
+            self._said[yields_to] = now
             self._saying = asyncio.create_task(self._say(words))
 
     async def _say(self, words: str) -> None:

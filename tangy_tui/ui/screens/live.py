@@ -386,7 +386,7 @@ class LiveScreen(PlayScreen):
         going = state.going
         if not going:
             return ""
-        if waits := WAITS_SHORT.get(state.lets):
+        if waits := WAITS_SHORT.get(state.yields_to):
             return waits
         return f"drives to {'the front' if going == FRONT else self._workspace.name(going)}"
 
