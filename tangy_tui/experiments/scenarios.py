@@ -63,12 +63,16 @@ class PersuasionScenario:
 
 @dataclass(frozen=True)
 class Recovering:
-    """The parameters of Scenario 3: people, games, and the seed of games and faults."""
+    """The parameters of Scenario 3: people, games, and the seed of games and faults.
+
+    `load` is the number of processes that keep the machine busy beside games on the bench.
+    """
 
     activity: str
     users: int
     games: int
     seed: int
+    load: int = 0
 
 
 def learning(asked: Learning, where: Where) -> dict[str, Any]:
@@ -150,7 +154,8 @@ def recovery(
         a_piece: games with the same people.
     """
     run = partial(recovering.run, asked.activity, asked.users, asked.games, asked.seed, where)
-    played = run() if bench is None else run(name="bench", piece=bench, a_piece=a_piece)
+    name = f"bench-load-{asked.load}" if asked.load else "bench"
+    played = run() if bench is None else run(name=name, piece=bench, a_piece=a_piece)
     return {
         "experiment": 3,
         "simulated": bench is None,
@@ -163,6 +168,7 @@ def recovery(
             "people": asked.users,
             "demonstrations": f"{supervised.DEMONSTRATIONS}, guided",
             "games with the same people": a_piece,
+            "busy processes beside them": asked.load,
             "P(people at the table help)": faulty_world.HELPS,
             "P(one turn finds the place)": faulty_world.FINDS_ITSELF,
             "P(a restart helps)": faulty_world.STARTS_AGAIN,

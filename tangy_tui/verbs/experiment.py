@@ -16,6 +16,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import experiment_stopped, games_to_read, report_in
+from tangy_tui.verbs.bench_options import Load
 from tangy_tui.verbs.common import ActivityName, Data, Json, print_json
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ def third(
         bool,
         typer.Option("--simulated", help="Simulate all of it (seconds, not hours on the bench)."),
     ] = False,
+    load: Load = 0,
     report: Report = None,
     activity: ActivityName = DEFAULT_ACTIVITY,
     jobs: Jobs = -1,
@@ -107,10 +109,13 @@ def third(
     They are played on the bench: cards, faces, scans and signs are rendered, and go through the
     drivers and all that a real robot has. --simulated leaves that out.
     """
+    from tangy_tui.app.machine_load import machine_load
     from tangy_tui.app.workspace import data_folder
     from tangy_tui.experiments.scenarios import Recovering, recovery
 
-    asked = Recovering(activity, users, games, seed)
+    if load and simulated:
+        raise TangyError("--load: only bench games are played on a busy machine.")
+    asked = Recovering(activity, users, games, seed, load)
 
     def scenario(where: Where) -> dict[str, Any]:
         if simulated:
@@ -120,7 +125,8 @@ def third(
         bench = partial(play_on_bench, logs=data_folder(data) / "experiments" / "logs")
         return recovery(asked, where, bench=bench, a_piece=GAMES_A_PIECE)
 
-    _run(scenario, data, jobs, dask, fresh, report, as_json)
+    with machine_load(load):
+        _run(scenario, data, jobs, dask, fresh, report, as_json)
 
 
 def _run(
