@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import pi
 
 import numpy as np
 import pytest
 
-from tangy_hw.device_protocols import STILL, Pose
-from tests.hw.navigated import FRONT, DrivenRobot, at_seat
+from tangy_hw.device_protocols import STILL, Odometry, Pose
+from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.navigator import Navigator
+from tests.hw.navigated import FRONT, MAP, ROOM, DrivenRobot, at_seat
+from tests.hw.raycast import driven, look, room_sides
 
 
 class TestGoing:
@@ -171,3 +175,36 @@ class TestFaults:
 
         assert robot.run(30, done)
         assert sum(turned) == pytest.approx(2 * pi, abs=0.2)
+
+
+class TestLateBase:
+    """A base whose odometry and commands lag by .2 s."""
+
+    def test_it_reaches_its_speed_as_fast_as_the_limits_allow(self) -> None:
+        told = commands_to_a_late_base(seconds=4.0)
+        limits = MotionLimits()
+        first = next(at for at, speed in enumerate(told) if speed > 0)
+        fast = next(at for at, speed in enumerate(told) if speed > 0.9 * limits.max_speed)
+        assert fast - first <= 1.2 * 0.9 * limits.max_speed / limits.acceleration / 0.1
+        assert max(b - a for a, b in pairwise(told)) <= limits.acceleration * 0.1 + 1e-9
+
+    def test_a_base_that_does_not_move_is_not_told_to_race(self) -> None:
+        limits = MotionLimits()
+        told = commands_to_a_late_base(seconds=4.0, moves=False)
+        assert 0 < max(told) <= limits.acceleration * (limits.latency + 0.1) + 1e-9
+
+
+def commands_to_a_late_base(seconds: float, *, moves: bool = True) -> list[float]:
+    """Drive along the room's front; return the forward speeds that the base was told."""
+    start = Pose(2.0, 1.2, 0.0)
+    navigator = Navigator(MAP, np.random.default_rng(1), start)
+    navigator.go(Pose(8.0, 1.2, 0.0))
+    twists, pose, wheels = [STILL, STILL], start, Pose(0.0, 0.0, 0.0)
+    told = []
+    for _ in range(round(seconds * 10)):
+        scan = look(room_sides(ROOM), pose, np.random.default_rng(2), beams=240)
+        twist = navigator.tick(Odometry(wheels, twists[0]), scan, 0.1)
+        told.append(twist.forward)
+        twists = [*twists[1:], twist if moves else STILL]
+        pose, wheels = driven(pose, twists[0], 0.1), driven(wheels, twists[0], 0.1)
+    return told
