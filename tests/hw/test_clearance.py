@@ -78,6 +78,12 @@ class TestPeople:
         away = past(Twist(0.5, 0.0), person(1.2, 0.0, 0.8)).forward
         assert 0 < away < past(Twist(0.5, 0.0), person(1.2, 0.0)).forward
 
+    def test_who_walked_faster_lately_is_followed_more_slowly(self) -> None:
+        slow = person(1.2, 0.0, 0.4)
+        paces = (0.4, 0.6, 0.8, 1.4)
+        speeds = [past(Twist(0.5, 0.0), replace(slow, pace=pace)).forward for pace in paces]
+        assert speeds == sorted(speeds, reverse=True) and speeds[0] > speeds[-1] > 0
+
     def test_it_stands_for_who_crosses_its_way(self) -> None:
         assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL
 

@@ -113,6 +113,6 @@ class TestPeople:
 
     @pytest.mark.slow
     def test_without_anybody_nothing_slows_it_down(self) -> None:
-        """It takes as long as it took before it kept away from people."""
+        """It takes no longer than it took before it kept away from people."""
         for drive, seconds in zip(drives("alone", 2, seed=7), (16.3, 15.0), strict=True):
-            assert drive.arrived and drive.time == pytest.approx(seconds, abs=0.5)
+            assert drive.arrived and drive.time <= seconds

@@ -155,6 +155,16 @@ class TestTracks:
             _, track = nearest(watching.tracker.tracks, person)
             assert track.stood == 0.0 and track.age > 0.3 and track.pace > 0.25
 
+    def test_the_pace_of_who_slows_down_is_remembered(self) -> None:
+        def step(person: Person, drive: Drive) -> None:
+            person.walk(0.0, 1.2 if person.gone < 1.5 else 0.4)
+
+        person = Person(4.2, 2.8, 0.0, step)
+        watching = Watching(drive([person]))
+        watching.watch(2.4)
+        _, track = nearest(watching.tracker.tracks, person)
+        assert track.speed < 0.7 and track.pace > 0.9
+
     def test_who_has_gone_is_forgotten(self) -> None:
         person = Person(5.2, 2.6, 0.4)
         watching = Watching(drive([person]))

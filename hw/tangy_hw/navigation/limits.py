@@ -23,7 +23,8 @@ class MotionLimits:
     Near people the robot must be able to stop in time (see `people_guard`): `latency` is the time
     until it brakes in s, `full_braking` the deceleration, `margin` the distance left at the end.
     People are assumed to approach `approach` m/s faster than now, and new tracks `approach_new`;
-    walkers may turn round and approach at `approach_turned`.
+    walkers may turn round and approach `turned_faster` m/s faster than they walked lately, at
+    `approach_turned` at most.
     """
 
     max_speed: float = 0.5
@@ -43,6 +44,7 @@ class MotionLimits:
     margin: float = 0.09
     approach: float = 0.35
     approach_new: float = 0.8
+    turned_faster: float = 0.6
     approach_turned: float = 1.25
     corners: tuple[tuple[float, float], ...] = ()
 

@@ -1,10 +1,11 @@
 """Limits commands near people: speed and separation monitoring, as in ISO 13855.
 
 The robot keeps the distance that it needs to stop before it meets a person. It assumes that people
-keep their velocity and approach a little faster, and that walkers may turn round and approach at
-walking speed. The assumed speeds are settings (`MotionLimits`), below the 1.6 m/s of the standard,
-with which a robot could never drive up to a seat. Only motion that brings the robot nearer to a
-person than stopping does is limited: the robot may drive away from a person who approaches it.
+keep their velocity and approach a little faster, and that walkers may turn round and approach
+faster than they walked lately. The assumed speeds are settings (`MotionLimits`), below the 1.6 m/s
+of the standard, with which a robot could never drive up to a seat. Only motion that brings the
+robot nearer to a person than stopping does is limited: the robot may drive away from a person who
+approaches it.
 """
 
 from __future__ import annotations
@@ -98,7 +99,7 @@ def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
             one.vy,
             one.half + limits.margin,
             limits.approach_new if one.age < FRESH else limits.approach,
-            limits.approach_turned if one.pace > WALKS else 0.0,
+            _turned(one, limits),
         )
         for one in tracks
     ]
@@ -108,6 +109,13 @@ def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
     walks = np.hypot(table[:, 2], table[:, 3]) > WALKS
     leeway = np.where(walks, FURTHER, -NEARER)
     return _Bodies(table[:, :2], table[:, 2:4], apart, table[:, 5], leeway, table[:, 6])
+
+
+def _turned(one: Track, limits: MotionLimits) -> float:
+    """Return how fast a walker may approach after turning round, in m/s; 0 for who stands."""
+    if one.pace <= WALKS:
+        return 0.0
+    return min(limits.approach_turned, one.pace + limits.turned_faster)
 
 
 def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:

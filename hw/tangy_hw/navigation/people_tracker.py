@@ -30,7 +30,7 @@ SURE = 3  # sightings that confirm a track
 DROPPED, DROPPED_HIDDEN = 0.5, 1.5  # seconds unseen until a track is dropped: visible, occluded
 SETTLED, SETTLED_WAY, SETTLED_SECONDS = 1.0, 0.15, 0.9  # standing: age in s; less than m in s
 RUNS = 0.5  # m/s above which a track does not count as standing
-SLOWS = 1.0  # m/s^2, decrease of a walker's remembered pace
+SLOWS = 0.2  # m/s^2, decrease of a walker's remembered pace
 WALKED, WALKED_SECONDS = 0.8, 0.8  # metres and seconds of walking that make a track a person
 LEGS_SHARE, LEGS_SECONDS = 0.7, 2.0  # share of a window in s with two legs that makes a person
 
