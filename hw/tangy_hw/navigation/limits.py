@@ -76,6 +76,15 @@ class MotionLimits:
         )
         return clamped if isfinite(over) else STILL
 
+    def reached(self, told: Twist, measured: Twist) -> Twist:
+        """Return the twist that a base is about to reach, as far as its latency explains.
+
+        Commands and odometry lag: the measured speed is older than the last command.
+        """
+        forward = min(told.forward, measured.forward + self.acceleration * self.latency)
+        turn = min(abs(told.turn), abs(measured.turn) + self.turn_acceleration * self.latency)
+        return Twist(max(measured.forward, forward), max(abs(measured.turn), turn))
+
 
 def laser_of(robot: Robot) -> Pose:
     """Return the pose of a robot's scanner on it: x and y in m, heading in rad."""

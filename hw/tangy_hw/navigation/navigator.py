@@ -308,8 +308,7 @@ class Navigator:
 
     def _plan(self, pose: Pose, goal: Pose) -> Path | None:
         ends = (pose.x, pose.y), (goal.x, goal.y)
-        around = self._around
-        standing, walking = around.standing, around.walking
+        standing, walking = self._around.standing, self._around.walking
         return plan(self.map, *ends, standing, self._radius, self._keep, walking)
 
     def _take(self, path: Path, goal: Pose, pose: Pose) -> None:
@@ -346,7 +345,9 @@ class Navigator:
             self.state, self._way, self._detour = "replanned", "replanned", None
         obstacles = self._around.standing
         wary_of = np.vstack((self.people, obstacles))
-        wanted = pursuit.command(pose, self._reached(odometry.twist), scan, dt, wary_of)
+        wanted = pursuit.command(
+            pose, self.limits.reached(self._told, odometry.twist), scan, dt, wary_of
+        )
         twist = self._around.limited(wanted)
         if pursuit.state == "arrived":
             self.state, self._way = "arrived", "clear"
@@ -373,13 +374,6 @@ class Navigator:
             self._block("It comes no further.")
             return STILL
         return twist
-
-    def _reached(self, measured: Twist) -> Twist:
-        """Return the twist that the base reaches by the next command: odometry and base lag."""
-        limits, told = self.limits, self._told
-        forward = min(told.forward, measured.forward + limits.acceleration * limits.latency)
-        turn = min(abs(told.turn), abs(measured.turn) + limits.turn_acceleration * limits.latency)
-        return Twist(max(measured.forward, forward), max(abs(measured.turn), turn))
 
     def _touches(self, path: Floats, obstacles: Floats, pose: Pose, goal: Pose) -> bool:
         """Return whether a path comes closer to an obstacle than allowed and than the robot is."""
