@@ -106,7 +106,7 @@ def _talk(activity: Activity) -> Iterator[str]:
         things = _things(behaviour, ARTICLES)
         for place, form in enumerate(talk["about"]):
             if "{do" in form or "{did}" in form:
-                some = phrases[place % EVERY :: EVERY] or phrases[:1]
+                some = phrases[place % EVERY :: EVERY]
                 some += behaviour.wordings[place % WORDED :: WORDED]
                 for phrase in some:
                     yield _fill(form, do=phrase, doing=_doing(phrase), did=_did(phrase))

@@ -1,0 +1,84 @@
+"""How long after the key a spoken command has its meaning, which is when its question is asked.
+
+Run by hand: `python -m tests.bench.question_latency [--times N]` on a machine that has nothing else
+to do; needs flite and festival. Each sentence arrives as it is spoken, in pieces of 40 ms; the key
+that ends it is pressed with the last word, or some time after. The load is printed with the times.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import math
+import os
+import statistics
+import tempfile
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from tangy_hw.audio.wav import RATE
+from tangy_tui.speech.evidence import USUAL
+from tangy_tui.speech.recogniser import Recogniser
+from tangy_tui.speech.understanding import understand, wanted
+from tests.bench.speech import BOOK
+from tests.bench.spoken_stops import QUIET, Said, Voices
+
+SENTENCES = (
+    *("call the next number", "greet everyone", "tell a joke", "go to user two"),
+    *("ask to move the card closer", "would you read out another number please"),
+)
+VOICES = ("slt", "rms", "awb", "kal_diphone")
+AFTER = (0.0, 0.3, 0.6)  # s from the last word to the key
+PIECE = 2 * round(0.04 * RATE)  # bytes
+
+
+async def press(recogniser: Recogniser, pcm: bytes, after: float) -> float:
+    """Let a sentence arrive, press the key so many s later; return the s until it is understood."""
+    sound: asyncio.Queue[bytes] = asyncio.Queue()
+    hearing = asyncio.create_task(recogniser.hear(sound))
+    hiss = np.random.default_rng(0).normal(0, 8, round(after * RATE)).astype("<i2").tobytes()
+    whole = pcm + hiss
+    begun = perf_counter()
+    for place in range(0, len(whole), PIECE):
+        sound.put_nowait(whole[place : place + PIECE])
+        due = begun + (place + PIECE) / 2 / RATE
+        await asyncio.sleep(max(0.0, due - perf_counter()))
+    pressed = perf_counter()
+    sound.put_nowait(b"")
+    understand(await hearing, BOOK, USUAL)
+    return perf_counter() - pressed
+
+
+async def measure(times: int) -> None:
+    """Print the median, the 95th percentile and the longest time for each moment of the key."""
+    recogniser = Recogniser()
+    await recogniser.start(wanted(BOOK, USUAL))
+    said = [Said("", text, voice) for text in SENTENCES for voice in VOICES]
+    with tempfile.TemporaryDirectory() as folder:
+        voices = Voices(Path(folder))
+        voices.say(said)
+        sounds = [voices.heard(one, "clean", ())[: -2 * QUIET] for one in said]
+    await press(recogniser, sounds[0], 0.0)  # models are loaded
+    for after in AFTER:
+        found = sorted([await press(recogniser, pcm, after) for pcm in sounds * times])
+        late = found[math.ceil(0.95 * len(found)) - 1]
+        print(
+            f"{after:.1f} s after the last word, n {len(found)}: median "
+            f"{1000 * statistics.median(found):.0f} ms, p95 {1000 * late:.0f} ms, longest "
+            f"{1000 * found[-1]:.0f} ms; load {os.getloadavg()[0]:.1f}",
+            flush=True,
+        )
+    await recogniser.close()
+
+
+def main() -> None:
+    """Measure."""
+    options = argparse.ArgumentParser(description="Measure the time from the key to the question.")
+    options.add_argument("--times", type=int, default=1)
+    asyncio.run(measure(options.parse_args().times))
+
+
+if __name__ == "__main__":
+    main()
