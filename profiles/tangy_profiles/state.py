@@ -179,3 +179,5 @@ class Outcome(NamedTuple):
     image: str = ""
     unclear: tuple[UnclearAnswer, ...] = ()
     """The answers that were not judged, in order."""
+    led_on: bool = False
+    """Whether the behaviour itself changed facts of the game, even if people changed them back."""

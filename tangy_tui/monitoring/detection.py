@@ -252,7 +252,8 @@ class Detector:
         ):
             self.refused(str(before.attended))
         alike = after._replace(step=before.step, closed=before.closed) == before
-        moved_on = before.attended is None and bool(outcome.numbers)  # a number was called
+        called = before.attended is None and bool(outcome.numbers)
+        moved_on = called or outcome.led_on
         self._fruitless = self._fruitless + 1 if alike and not moved_on else 0
 
 

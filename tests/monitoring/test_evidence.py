@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tangy_profiles.activity import load_activity
@@ -93,6 +95,13 @@ def test_a_call_leads_on_although_no_state_changes(detector: Detector) -> None:
     assert evidence(detector, acted("joke", QUIET))["visit.fruitless"] == 1
     assert "visit.fruitless" not in evidence(detector, called)
     assert evidence(detector, acted("joke", QUIET))["visit.fruitless"] == 1, "it begins anew"
+
+
+def test_what_people_undo_at_once_still_led_on(detector: Detector) -> None:
+    idle = acted("joke", QUIET)
+    led = replace(idle, outcome=idle.outcome._replace(led_on=True))
+    counted = [evidence(detector, step).get("visit.fruitless") for step in (idle, led, idle)]
+    assert counted == [1, None, 1]
 
 
 def test_numbers_that_somebody_was_asked_about_do_not_lead_on(detector: Detector) -> None:

@@ -151,6 +151,18 @@ def test_nobody_who_is_away_asks_answers_or_counts(game: DeclaredGame) -> None:
     assert game.holds(every, None)
 
 
+def test_a_behaviour_differs_if_it_changes_more_than_a_timer(game: DeclaredGame) -> None:
+    changes = {"allow time": False, "give hint": True, "confirm answer": True, "tell scores": True}
+    for behaviour, differs in changes.items():
+        before = game.copy()
+        game.execute(behaviour, "ann")
+        assert game.differs(before) is differs, behaviour
+    before = game.copy()
+    game.now += 60
+    game.execute("allow time", None)
+    assert not game.differs(before)
+
+
 def test_the_screen_keeps_a_question_until_it_shows_something_else(
     trivia: DeclaredActivity,
 ) -> None:

@@ -81,6 +81,18 @@ def test_what_was_shown_before_is_not_brought_about_again() -> None:
     assert len({state.situation for state in long}) == len(activity.situations)
 
 
+def test_a_behaviour_that_was_renamed_since_it_was_shown_is_shown_again() -> None:
+    activity = declared("trivia")
+    taught = expected_moves(activity)
+    world = DeclaredWorld(activity, ("user1",), seed=1)
+    state = world.observe()
+    again = DemonstratedMoves(activity.behaviours)
+    again.show(state, "a name of before", None)
+    assert again.move(world.game) is None
+    again.show(state, activity.expected[state.situation], None)
+    assert again.move(world.game) == taught.move(world.game)
+
+
 @pytest.mark.parametrize(
     "name",
     [

@@ -214,6 +214,7 @@ class DeclaredLiveWorld(LiveWorld):
         name, game = action.behaviour.name, self.game
         whom = None if action.target in (None, EVERYBODY) else action.target
         game.now = self.link.time - self._started
+        before = game.copy()
         speech = image = self.broken = ""
         response: Response | None = None
         done = Execution(False)
@@ -226,13 +227,13 @@ class DeclaredLiveWorld(LiveWorld):
             self.broken = str(error)
         if not done.completed:
             game.failed()
-        self.over = game.over
+        self.over, led_on = game.over, game.differs(before)
         self.commands.settle()
         if not self.broken and not self.over:
             self._let_people_act(name if done.completed else "", whom)
         seconds = max(0.0, self.link.time - began)
         unclear, self._not_clear = tuple(self._not_clear), []
-        return Outcome(done.completed, seconds, (), response, speech, image, unclear)
+        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led_on)
 
     def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
         """Speak, show, gesture and drive; return speech and picture text.

@@ -36,10 +36,12 @@ class DemonstratedMoves:
         return other
 
     def show(self, state: ActivityState, behaviour: str, target: str | None) -> None:
-        """Add one step of a demonstration."""
-        self.shown[state.situation] = behaviour
+        """Add one step of a demonstration; ignore a behaviour that the activity no longer has."""
         known = self._behaviours.get(behaviour)
-        if known is None or len(known.to) < 2:
+        if known is None:
+            return
+        self.shown[state.situation] = behaviour
+        if len(known.to) < 2:
             return
         named = named_by(known, state, target)
         if named:

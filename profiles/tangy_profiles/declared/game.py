@@ -296,6 +296,15 @@ class DeclaredGame:
             self.screen = name, whom
         return Execution(True, tuple(invited))
 
+    def differs(self, other: DeclaredGame) -> bool:
+        """Return whether facts other than timers, the item, turn, place or requests differ."""
+        return self._apart_from_timers() != other._apart_from_timers()
+
+    def _apart_from_timers(self) -> tuple[object, ...]:
+        facts = self.declaration.facts
+        counts = {key: n for key, n in self.counts.items() if facts[key[0]].kind != "timer"}
+        return self.values, counts, self.round, self.turn, self.place, self.queue
+
     def failed(self) -> None:
         """Count a behaviour that could not be carried out: nothing else changes."""
         self.closed = None

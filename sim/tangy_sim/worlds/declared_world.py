@@ -132,6 +132,7 @@ class DeclaredWorld:
         pause = self._declaration.behaviours[behaviour].pause
         whom = None if action.target in (None, EVERYBODY) else action.target
         done = game.execute(behaviour, whom)
+        led_on = game.differs(before)
         speech, image = (
             words(self.game, before, action.behaviour.name, action.strategy, whom)
             if done.completed
@@ -149,7 +150,8 @@ class DeclaredWorld:
             if done.completed and whom is not None:
                 self._ask_silent(behaviour, whom)
         seconds += pause + ASKING_AGAIN * sum(one.asked_again for one in self._not_clear)
-        return Outcome(done.completed, seconds, (), response, speech, image, tuple(self._not_clear))
+        unclear = tuple(self._not_clear)
+        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led_on)
 
     def who(self, place: str) -> str:
         """Return who sits at a person's place: always that person."""
