@@ -8,12 +8,21 @@ from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
 from time import monotonic
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
 import pytest
 
-from tangy_hw.device_protocols import STILL, DeviceError, MachineClock, Twist
+from tangy_hw.device_protocols import (
+    STILL,
+    DeviceError,
+    MachineClock,
+    Odometry,
+    Pose,
+    Stamped,
+    Twist,
+)
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.people_tracker import Track
@@ -214,3 +223,23 @@ class TestArms:
         assert ("pose" in parts.told) is moves
         await acts.be_still()
         doing.cancel()
+
+
+async def test_the_control_passes_the_odometry_of_the_scans_own_time() -> None:
+    async with living() as (robot, parts):
+        told: list[Pose | None] = []
+        tick = robot.navigator.tick
+
+        def note(*data: Any) -> Twist:
+            told.append(data[3])
+            return tick(*data)
+
+        turns, scan = Twist(0.5, 0.0), parts.laser.scan
+        with patch.object(robot.navigator, "tick", note):
+            parts.base.odometry = Stamped(Odometry(Pose(0.0, 0.0, 0.0), turns), 10.0, 2, 10.0)
+            robot.tick()
+            parts.laser.scan = replace(scan, stamp=10.4, seq=2, measured=10.1)  # it was held up
+            parts.base.odometry = Stamped(Odometry(Pose(0.1, 0.0, 0.0), turns), 10.4, 3, 10.2)
+            robot.tick()
+        at_scan = told[-1]
+        assert at_scan is not None and at_scan.x == pytest.approx(0.05)

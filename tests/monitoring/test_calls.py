@@ -25,6 +25,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.calls import Calls
 from tangy_tui.text.calls import REHEARSAL, call_words, expert_words
+from tangy_tui.text.live_news import live_lines
 from tests.monitoring.conftest import Supervise
 from tests.support.telephone import ANNA, STATION, Line
 from tests.support.waiting import wait_until
@@ -177,6 +178,10 @@ def test_the_outcomes_of_a_call_come_with_the_events_of_the_game(
         (STAFF_ROLE, "answered", "coming"),
     ]
     assert not game.look()  # each of them once
+    assert live_lines(told, [], str) == [
+        "The staff (command): a message is being sent.",
+        "The staff (command): was reached, and answered: coming.",
+    ]
 
 
 def test_on_the_bench_people_are_called_if_calls_are_rehearsed_and_the_message_says_so(
