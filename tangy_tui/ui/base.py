@@ -104,6 +104,12 @@ class TangyScreen(Screen[ResultT]):
         if self.is_active:
             self.dismiss(result)
 
+    def leave(self, result: ResultT) -> None:
+        """Close the screen, if it is on top, and clear its toasts."""
+        if self.is_active:
+            self.app.clear_notifications()
+            self.close(result)
+
     def take_letter(self, event: events.Key | events.Paste) -> bool:
         """Handle a key before the bindings do; return False to leave it to them.
 

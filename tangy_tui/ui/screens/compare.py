@@ -26,7 +26,6 @@ from tangy_tui.text.policies import (
 )
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.keys import bind, keymap_of
@@ -148,12 +147,12 @@ class CompareScreen(TangyScreen[None]):
 
     async def action_choose(self) -> None:
         """Compare other policies."""
-        close(self, None)
+        self.leave(None)
         await self.run_action("app.compare")
 
     def action_leave(self) -> None:
         """Close the screen."""
-        close(self, None)
+        self.leave(None)
 
     def _summary(self) -> str:
         differ = sum(not row.same for row in self._all)

@@ -23,7 +23,6 @@ from tangy_tui.text.situations import step_words
 from tangy_tui.text.times import local_time
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
@@ -115,7 +114,7 @@ class DemonstrationScreen(TangyScreen[None]):
 
     def action_leave(self) -> None:
         """Close the screen."""
-        close(self, None)
+        self.leave(None)
 
     def _summary(self) -> str:
         entry, shown = self._entry, self.shown

@@ -22,7 +22,6 @@ from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import edit_words, step_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
@@ -216,7 +215,7 @@ class DemonstrationsScreen(TangyScreen[None]):
             self.query_one(Transcript).release()
             self.query_one(DemonstrationList).focus()
         else:
-            close(self, None)
+            self.leave(None)
 
     def _confirm(self, asked: tuple[str, str], yes: str, change: Callable[[], Edit]) -> None:
         """Ask for confirmation, and make the change."""

@@ -33,7 +33,6 @@ from tangy_tui.text.drills import (
 )
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.panels import LOW, KeyLine, key_line, panel
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS, clock_of
@@ -123,7 +122,7 @@ class DrillScreen(TangyScreen[None]):
     def action_leave(self) -> None:
         """Leave; ask first if the drill is unfinished and has answers."""
         if self._at_end or not self.drill.sheet.answered or self.drill.over:
-            close(self, None)
+            self.leave(None)
             return
         self.app.push_screen(
             ConfirmDialog(
@@ -138,11 +137,11 @@ class DrillScreen(TangyScreen[None]):
     def _left(self, leaves: bool | None) -> None:
         if leaves:
             self.drill.leave()  # stored before home reads it
-            self.call_later(close, self, None)
+            self.call_later(self.leave, None)
 
     def _go_on(self) -> None:
         if self._at_end:
-            close(self, None)
+            self.leave(None)
         elif self.drill.over:
             self._show_sheet()
         else:

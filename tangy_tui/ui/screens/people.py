@@ -19,7 +19,6 @@ from tangy_tui.interaction.record import Record
 from tangy_tui.text import people as text
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodChoice, MethodDialog
@@ -229,7 +228,7 @@ class PeopleScreen(TangyScreen[None]):
 
     def action_leave(self) -> None:
         """Close the screen."""
-        close(self, None)
+        self.leave(None)
 
     @property
     def _record(self) -> Record:

@@ -21,7 +21,6 @@ from tangy_tui.text import phrases as text
 from tangy_tui.text.phrases import NONE_FOUND, PhraseItem, items
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.pronunciation import NewPronunciation, PronunciationDialog
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import key_line, panel
@@ -160,7 +159,7 @@ class PhrasesScreen(TangyScreen[None]):
         if self.query_one(SearchInput).value:
             self.action_all()
         else:
-            close(self, None)
+            self.leave(None)
 
     @property
     def _list(self) -> ChoiceList:

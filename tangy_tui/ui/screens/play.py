@@ -25,7 +25,6 @@ from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text import games as text
 from tangy_tui.text.control import noted_words
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.messages import Stop
@@ -167,7 +166,7 @@ class PlayScreen(PlayStaff):
         elif (asking := self._asking) is not None:
             asking.ask_to_give_up()
         elif self.at_rest:
-            close(self, self.tally)
+            self.leave(self.tally)
         elif not self._leaving:
             self.run_worker(self._leave(), name="leave")
 
@@ -182,7 +181,7 @@ class PlayScreen(PlayStaff):
         if leaves:
             await self._come_to_rest()
             self._end_game()
-            close(self, self.tally)
+            self.leave(self.tally)
         elif going and not self.control.stopped and not self._halted:
             self._do(GoOn())
 
@@ -237,7 +236,7 @@ class PlayScreen(PlayStaff):
             return True
         self.games = self.tally.games
         if not self._supervision.games:
-            close(self, self.tally)
+            self.leave(self.tally)
         return False
 
     async def _play_game(self) -> None:

@@ -17,7 +17,6 @@ from tangy_tui.text.keys import with_keys
 from tangy_tui.text.learnt import effects_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import key_line, panel
@@ -138,7 +137,7 @@ class PolicyScreen(TangyScreen[None]):
 
     def action_leave(self) -> None:
         """Close the screen."""
-        close(self, None)
+        self.leave(None)
 
     def _summary(self) -> str:
         policy, activity = self.policy, self._workspace.activity

@@ -29,7 +29,6 @@ from tangy_tui.text.sensors import (
 )
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.closing import close
 from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.block_picture import BlockPicture
@@ -173,7 +172,7 @@ class SensorsScreen(TangyScreen[None]):
         if self.maximized is not None:
             self.minimize()
         else:
-            close(self, None)
+            self.leave(None)
 
     # ------------------------------------------------------------------------------ cameras
 
