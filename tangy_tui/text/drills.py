@@ -140,7 +140,7 @@ def device_words(devices: Sequence[tuple[str, str]]) -> str:
         for state, labels in by_state.items()
     ]
     if well:
-        parts.append(f"no error from the other {len(well)}")
+        parts.append(f"no error from the other {counted(len(well), 'device')}")
     return "; ".join(parts) + "."
 
 

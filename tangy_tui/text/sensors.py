@@ -183,7 +183,7 @@ def _camera(device: DeviceProfile, sight: Sight, source: str) -> DeviceSummary:
     facts: dict[str, Fact] = dict(sight.reading(device.name).facts)
     told = _facts(device, facts)
     if sight.sharpness is not None:
-        told += (f"sharpness of the picture, 0 to 1: {sight.sharpness:.2f}",)
+        told += (f"sharpness (0 to 1): {sight.sharpness:.2f}",)
     return DeviceSummary(
         device,
         sight.state,

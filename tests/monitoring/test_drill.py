@@ -495,7 +495,7 @@ def test_devices_are_told_by_the_ill_ones() -> None:
     assert device_words([("a", "OK"), ("b", "OK")]) == "None reports an error."
     assert device_words([("a", "STALE"), ("b", "STALE")]) == "all 2: no data."
     mixed = device_words([("a", "ERROR"), ("b", "OK"), ("c", "STALE")])
-    assert mixed == ("a: failed; c: no data; no error from the other 1.")
+    assert mixed == ("a: failed; c: no data; no error from the other 1 device.")
 
 
 def test_by_lines_a_slip_is_asked_again_and_the_end_of_lines_leaves(

@@ -221,7 +221,7 @@ def test_what_only_excludes_another_fault_is_not_told_as_its_evidence(supervise:
     game = supervise("camera-frozen@2", seed=3)
     game.begin()
     until(game, lambda now: now.halted)
-    assert game.faults[0].why == "head camera: seconds with the very same picture: 2 (limit 1)"
+    assert game.faults[0].why == "head camera: time without a new picture (s): 2 (limit 1)"
 
 
 def test_by_lines_no_game_is_begun_after_what_nobody_cleared(supervise: Supervise) -> None:
