@@ -14,7 +14,7 @@ from scipy.ndimage import distance_transform_edt
 
 from tangy_hw.navigation.mapping import PlacedScan
 from tangy_hw.navigation.occupancy import OCCUPIED, OccupancyMap
-from tangy_hw.navigation.poses import Floats, endpoints, transform_points
+from tangy_hw.navigation.poses import endpoints, transform_points
 from tangy_hw.navigation.revisits import Revisits
 
 TORN = 0.15
@@ -69,18 +69,8 @@ def contradicted(scans: Sequence[PlacedScan], map_: OccupancyMap) -> float:
         along = np.arange(STEP, REACH, STEP)
         on_way = start + (ends - start)[:, None, :] * (along / length[:, None])[..., None]
         before = along[None, :] < length[:, None] - SHORT
-        missing = _at(far, ends, map_) > NEAR
-        through = ((_at(far, on_way, map_) == 0) & before).any(axis=1)
+        missing = map_.values_at(ends, far, np.nan) > NEAR
+        through = ((map_.values_at(on_way, far, np.nan) == 0) & before).any(axis=1)
         beams += len(points)
         against += int((missing | through).sum())
     return against / beams if beams else 0.0
-
-
-def _at(far: Floats, points: Floats, map_: OccupancyMap) -> Floats:
-    """Return the distance of points (..., 2) to the nearest wall in m; NaN outside the map."""
-    cells = np.floor((points - map_.origin) / map_.resolution).astype(np.intp)
-    rows, columns = cells[..., 1], cells[..., 0]
-    inside = (rows >= 0) & (columns >= 0) & (rows < far.shape[0]) & (columns < far.shape[1])
-    found = np.full(rows.shape, np.nan)
-    found[inside] = far[rows[inside], columns[inside]]
-    return found

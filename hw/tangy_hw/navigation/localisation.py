@@ -26,10 +26,7 @@ DOUBT = 0.95  # of the usual fit: below this, a scan does not update the usual f
 MOVED, TURNED = 0.1, 0.1  # metres and radians after which particles are weighted again
 FAST, SLOW = 0.1, 0.002  # weights of a new value in the averages of the fit
 WEIGHTIEST = 3  # usual steps that one long step counts for at most
-USUAL, BELIEF = (
-    0.75,
-    10,
-)  # prior for the usual fit at a correct pose, and its weight in scans
+USUAL, BELIEF = 0.75, 10  # prior for the usual fit at a correct pose, and its weight in scans
 SHARPNESS = 30.0  # exponent that turns the fit into a weight
 START = (0.1, 0.1, 0.05)  # m, m, rad: standard deviations of a given start
 FARTHEST = 20.0  # metres beyond which beams are ignored

@@ -8,14 +8,19 @@ from numpy.typing import NDArray
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.likelihood import NEAREST
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.poses import IDENTITY, Floats, compose, endpoints, transform_points, wrap
+from tangy_hw.navigation.poses import (
+    IDENTITY,
+    Floats,
+    bearings,
+    compose,
+    endpoints,
+    transform_points,
+    wrap,
+)
 
 OFF = 0.1  # metres from everything on the map beyond which a return is an obstacle
 FIDGETING = 0.2  # the same where seated people move their feet
-AWAY, AWAY_SHARE = (
-    0.15,
-    0.02,
-)  # the same for a single beam: metres, and share of the range
+AWAY, AWAY_SHARE = 0.15, 0.02  # the same for a single beam: metres, and share of the range
 RANGE = 6.0  # metres beyond which beams are too inaccurate for planning
 SURE = 3  # scans that must hit a cell before it counts
 KEPT = 30.0  # seconds after which an unseen obstacle is dropped
@@ -49,31 +54,18 @@ class Obstacles:
 
     def among(self, points: Floats) -> NDArray[np.bool_]:
         """Return whether each of the points (n, 2) is off everything on the map."""
-        cells = np.floor((points - self._map.origin) / self._map.resolution).astype(np.intp)
-        rows, columns = cells[:, 1], cells[:, 0]
-        inside = (rows >= 0) & (columns >= 0) & (rows < self._map.shape[0])
-        inside &= columns < self._map.shape[1]
-        found = np.ones(len(points), dtype=np.bool_)
-        found[inside] = self._new[rows[inside], columns[inside]]
-        return found
+        return self._map.values_at(points, self._new, outside=True)
 
     def unmapped(self, pose: Pose, scan: Scan) -> NDArray[np.bool_]:
         """Return for each beam (n,) whether its return is off everything on the map."""
-        eye = compose(pose, self._laser)
         met = np.isfinite(scan.ranges)
-        ranges = np.where(met, scan.ranges, 0.0)
-        angles = eye.heading + scan.first + scan.step * np.arange(len(ranges), dtype=np.float64)
-        x = eye.x + ranges * np.cos(angles) - self._map.origin[0]
-        y = eye.y + ranges * np.sin(angles) - self._map.origin[1]
-        columns = np.floor(x / self._map.resolution).astype(np.intp)
-        rows = np.floor(y / self._map.resolution).astype(np.intp)
-        inside = (rows >= 0) & (columns >= 0) & (rows < self._map.shape[0])
-        inside &= columns < self._map.shape[1]
-        away = np.zeros(len(ranges))  # points outside the map are seen through a door
-        away[inside] = self._map.seen_distance[rows[inside], columns[inside]]
+        ranges, angles = np.where(met, scan.ranges, 0.0), bearings(scan)
+        ends = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
+        ends = transform_points(ends, compose(pose, self._laser))
+        # points outside the map are seen through a door
+        away = self._map.values_at(ends, self._map.seen_distance, outside=0.0)
+        fidgets = self._map.values_at(ends, self._map.feet, outside=False)
         beyond = AWAY + AWAY_SHARE * ranges
-        fidgets = np.zeros(len(ranges), dtype=np.bool_)
-        fidgets[inside] = self._map.feet[rows[inside], columns[inside]]
         return met & (away > np.where(fidgets, np.maximum(beyond, FIDGETING), beyond))
 
     def _clear(self, pose: Pose, scan: Scan) -> None:

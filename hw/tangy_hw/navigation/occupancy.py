@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from tangy_profiles.room import Point, Room
 
 Cells: TypeAlias = NDArray[np.int8]
 Mask: TypeAlias = NDArray[np.bool_]
+Value = TypeVar("Value", bound=np.generic)
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 """Cell values, as in nav_msgs/OccupancyGrid."""
@@ -97,9 +98,22 @@ class OccupancyMap:
 
     def cells_of(self, points: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Return the rows and columns of the points (n, 2) that lie on the map."""
-        columns, rows = np.floor((points - self.origin) / self.resolution).astype(np.intp).T
-        on = (rows >= 0) & (columns >= 0) & (rows < self.shape[0]) & (columns < self.shape[1])
+        rows, columns, on = self._cells(points)
         return rows[on], columns[on]
+
+    def values_at(self, points: Floats, grid: NDArray[Value], outside: float) -> NDArray[Value]:
+        """Return the values of a grid (rows, columns) at points (..., 2); `outside` off the map."""
+        rows, columns, on = self._cells(points)
+        found = np.full(on.shape, outside, dtype=grid.dtype)
+        found[on] = grid[rows[on], columns[on]]
+        return found
+
+    def _cells(self, points: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp], Mask]:
+        """Return the rows and columns of points (..., 2), and whether they lie on the map."""
+        cells = np.floor((points - self.origin) / self.resolution).astype(np.intp)
+        rows, columns = cells[..., 1], cells[..., 0]
+        on = (rows >= 0) & (columns >= 0) & (rows < self.shape[0]) & (columns < self.shape[1])
+        return rows, columns, on
 
     def free_points(self) -> Floats:
         """Return the centres of all free cells (n, 2)."""
