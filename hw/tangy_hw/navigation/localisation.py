@@ -35,7 +35,7 @@ SEEN = 0.2  # share of beams that the map must explain or contradict
 BLIND = 0.02  # odometry noise without scans: the squared error for each squared unit moved
 GENTLE = 0.15  # factor on SHARPNESS while several places are possible
 EVERY = 120  # beams used while several places are possible: few beams tell them apart
-SETTLING = 15  # scans with a good fit at one place before it is believed
+SETTLING = 15.0  # scans with a good fit at one place before it is believed
 JUMP, PROOF = 0.5, 0.75  # metres of a jump that resets the fast fit, and the share it resets to
 FRESH = 0.1  # share of the particles drawn again until then
 FIRST_TRIED, TRIED, PLACES = 20_000, 1500, 32  # poses tried at first, later, and kept
@@ -103,7 +103,7 @@ class Localisation:
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
         self._fast = self._slow = USUAL
         self._scans = BELIEF
-        self._unsettled = SETTLING if pose is None else 0
+        self._unsettled = SETTLING if pose is None else 0.0
         self._searches = 0 if pose else LATELY
         self._odometry = None
         self._sum_up()
@@ -146,16 +146,17 @@ class Localisation:
         if not first and hypot(self._anchor.x - here.x, self._anchor.y - here.y) > JUMP:
             self._fast = min(self._fast, PROOF * self._slow)  # one of the two poses is wrong
         score = self._field.evidence(self._anchor, every).score
-        self._note(score, moved or first, hypot(step.x, step.y) / MOVED)
+        steps = min(max(hypot(step.x, step.y) / MOVED, 1.0), WEIGHTIEST)
+        self._note(score, steps, moved or first)
         self._renew(every)
         return self._told(self._anchor)
 
-    def _note(self, score: float, moved: bool, steps: float) -> None:
+    def _note(self, score: float, steps: float, moved: bool) -> None:
         """Update both averages with a score, and count the scans until the pose has settled.
 
-        A scan that follows a step of several `MOVED` counts as several scans.
+        A scan after a way of several `MOVED` counts as so many scans (`steps`).
         """
-        self._fast += (1 - (1 - FAST) ** min(max(steps, 1.0), WEIGHTIEST)) * (score - self._fast)
+        self._fast += (1 - (1 - FAST) ** steps) * (score - self._fast)
         self._scans += 1
         doubtful = self._fast < DOUBT * self._slow  # so it must not change the usual fit
         share = SLOW if doubtful else max(SLOW, 1 / self._scans)
@@ -163,7 +164,7 @@ class Localisation:
         if self._fast < LOST * self._slow:
             self._unsettled = SETTLING
         elif moved:
-            self._unsettled = max(0, self._unsettled - 1)
+            self._unsettled = max(0.0, self._unsettled - steps)
 
     def _weigh(self, points: Floats) -> None:
         scores = self._field.scores(self._particles, points)
