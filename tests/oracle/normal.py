@@ -15,8 +15,11 @@ _CLOCK = re.compile(r"\b\d\d:\d\d(?::\d\d)?\b")
 _DAY = re.compile(r"\b\d{4}-\d\d-\d\d\b")
 _PATH = re.compile(r"/tmp/[\w./-]+")  # noqa: S108 - what is looked for in texts
 
-MEASURED = {"versions", "elapsed", "wall_seconds", "real_time_factor", "cpu", "took", "seconds"}
-"""Keys whose values are measured by the clock of the machine, or name its libraries."""
+MEASURED = {
+    *("versions", "code", "elapsed", "wall_seconds", "real_time_factor", "cpu", "took"),
+    *("seconds", "median_seconds"),
+}
+"""Keys whose values the machine's clock measures, or that name libraries or the source."""
 
 
 class Names:
