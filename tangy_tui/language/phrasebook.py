@@ -65,6 +65,10 @@ class Phrases:
         self._order = tuple(activity.behaviours)
         self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
         """The questions about the behaviours, as they are spoken."""
+        self.wordings = tuple(
+            spoken(words_of(text)) for b in activity.behaviours.values() for text in b.wordings
+        )
+        """Other wordings of the behaviours, as they are spoken."""
         self.answers = _answers_in(activity)
         """The possible answers of people in a game, by spoken form."""
         self.numbers = _numbers_of(people)

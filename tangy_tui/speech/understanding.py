@@ -57,6 +57,7 @@ BOTH_HEARD, ONE_HEARD = 0.95, 0.5
 They are chosen, not fitted: the first is judged, the second is too low to be judged.
 """
 
+WORDED = 3  # how often each wording counts among the sentences that do not stop the robot
 LEAST_STEERING = -0.6
 """The lowest margin of a steering request that the grammar does not find."""
 
@@ -87,7 +88,7 @@ def wanted(
         {**OWN_NAME, **phrasebook.pronunciations()},
         settings,
         stop_texts(),
-        (*other_stop_texts(), *said),
+        (*other_stop_texts(), *said, *phrasebook.table.wordings * WORDED),
         tuple(sorted(phrasebook.game)),
     )
 

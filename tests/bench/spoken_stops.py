@@ -153,7 +153,7 @@ def main() -> None:
         use_model(train(stop_examples(chosen.set)))
     listened = wanted(BOOK, USUAL)
     texts = stop_texts(chosen.set)
-    other_texts = (*other_stop_texts(chosen.set), *BOOK.spoken())
+    other_texts = (*other_stop_texts(chosen.set), *listened.no_stops[len(other_stop_texts()) :])
     decoder = make_decoder(replace(listened, stops=texts, no_stops=other_texts))
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
     said = list(sayings(read, chosen.voices))[:: chosen.every]
