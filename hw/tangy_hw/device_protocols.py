@@ -146,7 +146,7 @@ class Base(Device, Protocol):
 
     @property
     def odometry(self) -> Stamped[Odometry] | None:
-        """LatestValue odometry; None before the first."""
+        """The newest odometry; None before the first."""
         ...
 
     async def drive(self, twist: Twist) -> None:
@@ -167,7 +167,7 @@ class Laser(Device, Protocol):
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """LatestValue scan; None before the first."""
+        """The newest scan; None before the first."""
         ...
 
 

@@ -6,8 +6,9 @@ defaults count. A conversion writes these defaults out, for the author to change
 
 from __future__ import annotations
 
+import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -50,16 +51,27 @@ def converted(file: Path, comments: Mapping[str, str]) -> Conversion:
     if declares(top):
         return Conversion(text, (), ())
     values = {
-        PRESSING: "[]",
+        PRESSING: json.dumps(activity.pressing, ensure_ascii=False),
         VISIT: str(activity.asking.visit),
         GAME: str(activity.asking.game),
     }
     new = [key for key in values if key not in top]
+    written = [f"{key} = {values[key]}  # {comments[key]}" for key in new]
     lines = text.split("\n")
     place = line_of(text, (BEFORE,)) or 0
-    lines[place:place] = [f"{key} = {values[key]}  # {comments[key]}" for key in new]
+    lines[place:place] = written
+    if not _holds("\n".join(lines), new):  # the key before them takes several lines
+        lines = [*written, *text.split("\n")]
     lacks = tuple(key for key in OPTIONAL if _lacks(top, key))
     return Conversion("\n".join(lines), tuple(new), lacks)
+
+
+def _holds(text: str, keys: Sequence[str]) -> bool:
+    """Return whether a text is TOML with these keys at its top."""
+    try:
+        return tomllib.loads(text).keys() >= set(keys)
+    except tomllib.TOMLDecodeError:
+        return False
 
 
 def _lacks(top: Mapping[str, Any], key: str) -> bool:

@@ -49,6 +49,8 @@ class Detector:
         self._robot = robot
         self._refusals: Counter[str] = Counter()
         self._in_game: Counter[str] = Counter()
+        self._refusing: set[str] = set()
+        """Who refused in a whole visit, and has followed no request since."""
         self._unchanged: Counter[str] = Counter()
         self.doubted: set[str] = set()
         """People whose cards Tangy may misread; it does not judge them in this game."""
@@ -63,6 +65,7 @@ class Detector:
         """Reset for a new game."""
         self._refusals.clear()
         self._in_game.clear()
+        self._refusing.clear()
         self._unchanged.clear()
         self.doubted.clear()
         self.withdrew = ()
@@ -73,6 +76,8 @@ class Detector:
         """Count that a person did not follow a request; return how often in a row."""
         self._refusals[person] += 1
         self._in_game[person] += 1
+        if self._refusals[person] >= self.activity.asking.visit:
+            self._refusing.add(person)
         return self._refusals[person]
 
     @property
@@ -208,7 +213,7 @@ class Detector:
         if outcome.response is not None:
             followed = outcome.response.followed
         else:
-            refuses = self._in_game[str(before.attended)] >= self.activity.asking.visit
+            refuses = before.attended in self._refusing
             followed = not (refuses and behaviour.effect == "bring card closer")
         return [
             mismatch
@@ -245,6 +250,7 @@ class Detector:
             person = before.attended or outcome.response.person  # the person at this place
             if outcome.response.followed:
                 self._refusals.pop(person, None)
+                self._refusing.discard(person)
             else:
                 self.refused(person)
         elif not explained and (

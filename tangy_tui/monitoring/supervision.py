@@ -211,7 +211,8 @@ class Supervision:
         It may be called at any rate, also while the robot is halted or asks.
         """
         told = self.watch.look() + self._end_if_hopeless()
-        return told if self.calls is None else [*told, *self.calls.take_news()]
+        news = [] if self.calls is None else self.calls.take_news()
+        return [*told, *(one for one in news if one.game == self.game.game)]
 
     @property
     def status(self) -> tuple[str, str]:

@@ -204,7 +204,7 @@ def run_watching(folder: Path, *, who: str, note: str, ascii_only: bool) -> int:
         app = TangyApp(
             lambda: WatchScreen(guest, store, who=who, note=note),
             pictures=folder,
-            **_appearance(folder, ascii_only),
+            **_appearance(folder, ascii_only, keep=False),
         )
         return run_app(app)
 
@@ -265,13 +265,16 @@ def _run(
     return run_app(program)
 
 
-def _appearance(folder: Path, ascii_only: bool) -> dict[str, Any]:
-    """Return what the terminal and a data folder decide about the look and the keys."""
+def _appearance(folder: Path, ascii_only: bool, *, keep: bool = True) -> dict[str, Any]:
+    """Return what the terminal and a data folder decide about the look and the keys.
+
+    A theme that is chosen is kept there, unless an onlooker chooses it (`keep`).
+    """
     settings = read_settings(folder)
     return {
         "kind": terminal_kind(ascii=True if ascii_only else None),
         "keymap": settings.keymap,
         "link": settings.link,
         "theme": read_profile(folder).theme,
-        "keep_theme": partial(change_theme, folder),
+        **({"keep_theme": partial(change_theme, folder)} if keep else {}),
     }

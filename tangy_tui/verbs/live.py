@@ -245,8 +245,10 @@ def live(
                 if not lines.begins_anyway():
                     return
                 lines.setup.carry_out(there)
+            # Only people who are there can rehearse a call: a batch of games must not page anybody.
+            rehearsal = REHEARSAL if plain_lines and not expert else ""
             supervision = workspace.supervision(
-                learnt, number, asks=asks, world=there, rehearsal="" if expert else REHEARSAL
+                learnt, number, asks=asks, world=there, rehearsal=rehearsal
             )
             if plain_lines:
                 to_their_end = play_with_staff(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -50,6 +51,21 @@ def test_a_converted_file_is_the_same_activity_and_names_its_defaults(
     assert check_activity(before, load_robot(), people).warnings
     assert not check_activity(after, load_robot(), people).warnings
     assert not converted(put(tmp_path, found.text), COMMENTS).added
+
+
+@pytest.mark.parametrize("ending", ["", "\n"])
+def test_what_the_file_leaves_out_stays_what_it_was(ending: str, tmp_path: Path) -> None:
+    shipped = Path(shipped_activities()["bingo"]).read_text(encoding="utf-8")
+    new = ("pressing_strategies", "asks_in_visit", "asks_in_game")
+    text = "\n".join(line for line in shipped.split("\n") if not line.startswith(new))
+    plain = re.search(r'plain_strategy = "(\w+)"', text)
+    assert plain is not None
+    several = text.replace(plain[0], f'plain_strategy = """{ending}{plain[1]}"""')
+    file = put(tmp_path, several)
+    before, found = read_activity(file), converted(file, COMMENTS)
+    assert found.added == new
+    after = read_activity(put(tmp_path, found.text))
+    assert before.pressing and as_before(after) == as_before(before)
 
 
 def test_every_key_that_it_can_write_or_name_has_words(tmp_path: Path) -> None:

@@ -32,6 +32,7 @@ class TestSourceClock:
         for number in range(6_000):
             sent = number * 0.1
             measured = clock.measured(sent * (1 - 1e-4), sent)
+            assert measured is not None
             assert abs(measured - sent) <= (2 * WINDOW + 0.2) * 1e-4
 
     @pytest.mark.parametrize("by", [-10 * JUMP, 10 * JUMP])
@@ -39,6 +40,17 @@ class TestSourceClock:
         clock = SourceClock()
         clock.measured(AHEAD, 0.0)
         assert clock.measured(AHEAD + by + 0.1, 0.1) == pytest.approx(0.1)
+
+    @pytest.mark.parametrize("digits", [0, -3])
+    def test_stamps_that_repeat_tell_nothing(self, digits: int) -> None:
+        clock = SourceClock()
+        told = [clock.measured(round(AHEAD + 0.1 * n, digits), 0.1 * n) for n in range(100)]
+        assert not any(told[10:])
+
+    def test_a_clock_of_another_speed_tells_nothing_after_its_second_jump(self) -> None:
+        clock = SourceClock()
+        told = [clock.measured(0.05 * n, 0.1 * n) for n in range(600)]
+        assert not any(told[round(5 * JUMP / 0.1) :])
 
 
 def test_a_value_knows_when_it_was_measured_if_its_source_says_so() -> None:

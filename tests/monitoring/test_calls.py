@@ -184,6 +184,21 @@ def test_the_outcomes_of_a_call_come_with_the_events_of_the_game(
     ]
 
 
+def test_an_answer_after_the_game_is_not_told_in_the_next(
+    supervise: Supervise, calls: Calls, line: Line
+) -> None:
+    game = supervise("link-lost@3")
+    game.call_by(calls)
+    game.begin()
+    while game.halted is None:
+        game.step()
+    game.look()
+    game.clear("Ada")
+    game.begin()
+    line.says("Station 2", "answered", "coming")
+    assert not [one for one in game.look() if isinstance(one, CallMade)]
+
+
 def test_on_the_bench_people_are_called_if_calls_are_rehearsed_and_the_message_says_so(
     workspace: Workspace, learnt: Policy, tmp_path: Path
 ) -> None:

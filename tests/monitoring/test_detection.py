@@ -11,6 +11,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import OK, STALE, DeviceState, Reading
 from tangy_profiles.robot import load_robot
+from tangy_profiles.state import Outcome
 from tangy_sim.worlds.devices import READINGS, WELL
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS, read_injection
@@ -26,6 +27,38 @@ from tests.support.games import acts, codes, moves, play, until, world_of
 @pytest.fixture
 def detector(workspace: Workspace) -> Detector:
     return Detector(workspace.activity, workspace.robot, Effects({}))
+
+
+def test_a_hidden_card_is_a_refusal_only_of_somebody_who_refused_in_a_whole_visit(
+    workspace: Workspace, supervise: Supervise
+) -> None:
+    effects = Effects({"move card closer": {"what was asked about": frozenset({"settled"})}})
+    detector = Detector(workspace.activity, workspace.robot, effects)
+    game = supervise(seed=1)
+    game.begin()
+    game.step()
+    game.step()  # a number was called: the game has begun
+    world = world_of(game)
+    person, closer = world.people[0], workspace.activity.behaviours["move card closer"]
+    world.tracker.ask(person)
+    world.tracker.arrive(person)
+    hidden = world.observe()
+    still_hidden = Outcome(True, 1.0, (), None)
+
+    def told() -> bool:
+        found = detector.unexpected(closer, hidden, still_hidden, hidden)
+        return any(one.variable == "what was asked about" for one in found)
+
+    assert told()
+    for _ in range(2 * workspace.activity.asking.visit):
+        detector.refused(person)
+        detector.forgive(person)
+    assert told(), "once a visit is no refusal of a whole visit"
+    for _ in range(workspace.activity.asking.visit):
+        detector.refused(person)
+    assert not told()
+    detector.forgive(person)  # they were left in peace
+    assert not told()
 
 
 def test_the_simulated_body_has_the_devices_of_the_robot() -> None:

@@ -89,7 +89,6 @@ def test_what_cannot_be_seen_counts_as_not_followed_and_is_named(
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_who_was_left_in_peace_with_a_hidden_card_refuses_again_and_the_card_is_no_new_fault(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -108,6 +107,7 @@ def test_who_was_left_in_peace_with_a_hidden_card_refuses_again_and_the_card_is_
     assert again > 3  # who came again and refused again
 
 
+@pytest.mark.slow
 def test_a_covered_camera_says_nothing_of_a_person(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -178,10 +178,22 @@ def test_the_screen_keeps_a_question_until_it_shows_something_else(
     assert shown("allow time") == shown("give hint", "ann") == question
     logged = decode(GameMemory, encode(memory_of(game)))
     again = game_from(game.declaration, PLAYERS, logged)
-    assert again is not None and again.screen == game.screen == ("ask question", "ann")
+    assert again is not None and again.screen == game.screen == ("ask question", "ann", "ann")
     assert shown("confirm answer", "ann") == shown("allow time") != question
     assert "\x02ben\x03 0" in shown("tell scores")
     assert shown("close quiz") == game.declaration.title
+
+
+def test_the_screen_keeps_whose_turn_it_was() -> None:
+    raffle = read_declared(Path(__file__).parents[1] / "support/activities/raffle.toml")
+    game = DeclaredGame(raffle.declaration, PLAYERS)
+    shown = ""
+    for behaviour in ("open the raffle", "draw a lot", "pass it on", "hand over"):
+        before, whom = game.copy(), game.whom("whose turn")
+        game.execute(behaviour, None if behaviour == "open the raffle" else whom)
+        earlier, shown = shown, words(game, before, behaviour, "plain", whom)[1]
+    assert "wins" in shown and shown == earlier
+    assert f"\x02{game.whom('whose turn')}\x03" not in shown, "it is another one's turn now"
 
 
 def test_the_next_item_takes_the_old_one_off_the_screen(tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ BETWEEN_MS = 60  # minimum between two frames
 
 
 class RosPictures:
-    """LatestValue frames of a topic."""
+    """The newest frames of a topic."""
 
     rate = 0.0
 

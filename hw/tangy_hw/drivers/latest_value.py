@@ -23,7 +23,7 @@ class LatestValue(Generic[Value]):
     def __init__(self, clock: Callable[[], float]) -> None:
         """Start without a value; the age counts from now."""
         self.stamped: Stamped[Value] | None = None
-        """LatestValue value; None before the first."""
+        """The newest value; None before the first."""
         self._clock = clock
         self._arrivals = RateEstimator()
         self._source = SourceClock()

@@ -65,7 +65,7 @@ class RosBase:
 
     @property
     def odometry(self) -> Stamped[Odometry] | None:
-        """LatestValue odometry; None before the first."""
+        """The newest odometry; None before the first."""
         return self._newest.stamped
 
     async def start(self) -> None:

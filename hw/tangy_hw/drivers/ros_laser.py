@@ -49,7 +49,7 @@ class RosLaser:
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """LatestValue scan; None before the first."""
+        """The newest scan; None before the first."""
         return self._newest.stamped
 
     async def start(self) -> None:

@@ -110,7 +110,7 @@ class ScipLaser:
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """LatestValue scan; None before the first."""
+        """The newest scan; None before the first."""
         return self._scan
 
     @property

@@ -69,8 +69,8 @@ class DeclaredGame:
         """The time in this game, in s."""
         self.step = 0
         self.closed: str | None = None
-        self.screen: tuple[str, str | None] | None = None
-        """The behaviour and the person whose text or picture the chest screen shows.
+        self.screen: tuple[str, str | None, str] | None = None
+        """Whose text or picture is on the chest screen: the behaviour, its person, the turn then.
 
         It stays until another one has its own, the next item comes, or the game is over.
         """
@@ -293,7 +293,7 @@ class DeclaredGame:
             if all(self.holds(one, person) for one in effect.conditions):
                 self._change(effect, whom, invited)
         if behaviour.image or behaviour.picture:
-            self.screen = name, whom
+            self.screen = name, whom, self.players[self.turn]
         return Execution(True, tuple(invited))
 
     def differs(self, other: DeclaredGame) -> bool:

@@ -43,7 +43,8 @@ class GameMemory:
     away: Sparse[tuple[str, ...]] = ()
     """The players who have left."""
     screen: Sparse[tuple[str, ...]] = ()
-    """The behaviour whose text or picture is on the screen, and its person ("": the group)."""
+    """The behaviour whose text or picture is on the screen, its person ("": the group), and whose
+    turn it was."""
 
 
 def memory_of(game: DeclaredGame) -> GameMemory:
@@ -64,7 +65,7 @@ def memory_of(game: DeclaredGame) -> GameMemory:
         closed=game.closed,
         executed=tuple(sorted(game.executed.items())),
         away=tuple(one for one in game.players if one not in game.here),
-        screen=() if game.screen is None else (game.screen[0], game.screen[1] or ""),
+        screen=tuple(part or "" for part in game.screen or ()),
     )
 
 
@@ -88,7 +89,8 @@ def game_from(
     game.executed = dict(memory.executed)
     game.here = tuple(one for one in players if one not in memory.away)
     if memory.screen:
-        game.screen = memory.screen[0], memory.screen[1] or None
+        name, person, turn = memory.screen
+        game.screen = name, person or None, turn
     return game
 
 
@@ -110,5 +112,12 @@ def _fits(declaration: Declaration, players: tuple[str, ...], memory: GameMemory
         )
         and all(fact in facts and whose in own for fact, whose, _ in memory.counts)
         and all(name in declaration.behaviours for name, _ in memory.executed)
-        and (not memory.screen or memory.screen[0] in declaration.behaviours)
+        and (not memory.screen or _shows(declaration, players, memory.screen))
+    )
+
+
+def _shows(declaration: Declaration, players: tuple[str, ...], screen: tuple[str, ...]) -> bool:
+    """Return whether a stored screen fits the activity and its players."""
+    return (
+        len(screen) == 3 and screen[0] in declaration.behaviours and {*screen[1:]} <= {"", *players}
     )

@@ -15,13 +15,14 @@ PERSON = re.compile(r"\x02([^\x03]*)\x03")
 OF_EACH = " of each"
 
 
-def filled(game: DeclaredGame, template: str, whom: str | None) -> str:
+def filled(game: DeclaredGame, template: str, whom: str | None, turn: str = "") -> str:
     """Fill the slots of a text.
 
     Args:
         game: the game, with its current item.
         template: the text.
         whom: the player who is addressed, None for the group.
+        turn: the player whose turn it is in the text ("": whose turn it is now).
 
     Returns:
         The text, with people as ids (see `with_names`); "" if a slot is empty.
@@ -30,7 +31,7 @@ def filled(game: DeclaredGame, template: str, whom: str | None) -> str:
 
     def value(match: re.Match[str]) -> str:
         nonlocal empty
-        found = _value(game, match.group(1), whom)
+        found = _value(game, match.group(1), whom, turn)
         empty = empty or not found
         return found
 
@@ -60,17 +61,17 @@ def words(
 
 def _image(game: DeclaredGame, behaviour: str, whom: str | None) -> str:
     """Return the screen text after a behaviour: its own, the one that stays, or the title."""
-    name, person = game.screen or (behaviour, whom)
+    name, person, turn = game.screen or (behaviour, whom, "")
     declared = game.declaration.behaviours[name]
     if declared.image or declared.picture:
-        return filled(game, declared.image, person)
+        return filled(game, declared.image, person, turn)
     return game.declaration.title
 
 
 def media(game: DeclaredGame, behaviour: str) -> tuple[MediaFile | None, MediaFile | None]:
     """Return the picture on the screen and the sound after a behaviour, by the facts then."""
     declaration = game.declaration
-    name, _ = game.screen or (behaviour, None)
+    name = game.screen[0] if game.screen is not None else behaviour
     picture, sound = declaration.behaviours[name].picture, declaration.behaviours[behaviour].sound
     names = (file_name(text, declaration.items, game.row) for text in (picture, sound))
     shown, heard = (declaration.media.get(name) for name in names)
@@ -93,12 +94,12 @@ def with_names(text: str, name: Callable[[str], str]) -> str:
     return PERSON.sub(lambda match: name(match.group(1)), text)
 
 
-def _value(game: DeclaredGame, slot: str, whom: str | None) -> str:
+def _value(game: DeclaredGame, slot: str, whom: str | None, turn: str = "") -> str:
     declaration = game.declaration
     if slot == "name":
         return _person(whom) if whom is not None else ""
     if slot == "turn":
-        return _person(game.players[game.turn])
+        return _person(turn or game.players[game.turn])
     if slot == "n":
         return str(game.round) if game.round else ""
     if slot.endswith(OF_EACH) and slot[: -len(OF_EACH)] in declaration.facts:

@@ -97,8 +97,9 @@ class DeclaredPeople(People):
         named = (game.whom(one) for one in declared.to)
         whom = heard.person or next((one for one in named if one is not None), None)
         whom = None if not heard.person and "group" in declared.to[:1] else whom
-        if heard.person and declared.to[:1] == (WHOSE_TURN,):
-            game.turn = game.players.index(heard.person)  # turns may be drawn by lot
+        by_lot = game.declaration.turns == "by lot"
+        if heard.person and by_lot and declared.to == (WHOSE_TURN,):
+            game.turn = game.players.index(heard.person)  # only the robot knows the lots
         done = game.execute(behaviour.name, whom)
         if heard.turn:
             game.turn = game.players.index(heard.turn)
