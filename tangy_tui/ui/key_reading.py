@@ -34,7 +34,10 @@ class KeyReader:
             return True
         if writes or not isinstance(event, events.Key):
             return False
-        return self._begins_filter(event) or (bool(pasted_text(event)) and _is_text(event))
+        if self._begins_filter(event):
+            return True
+        filters = getattr(focused, "LETTERS_FILTER", False) and event.is_printable
+        return bool(pasted_text(event)) and _is_text(event) and not filters
 
     def _begins_filter(self, event: events.Key) -> bool:
         """Start to filter before the next key is read, which may arrive together with this one."""

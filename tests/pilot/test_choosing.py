@@ -9,6 +9,7 @@ from textual.app import ComposeResult
 
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+from tangy_tui.ui.round_trip import ReplyParser
 from tests.support.waiting import until, until_shown
 
 if TYPE_CHECKING:
@@ -76,3 +77,18 @@ async def test_the_word_stop_is_no_filter(run: Run, monkeypatch: pytest.MonkeyPa
         assert "User 7" not in pilot.text()
         await pilot.press("p")
         assert stops == ["stop"]
+
+
+@pytest.mark.parametrize("typed", ["oscar", "oscar\r", "\x1b[200~oscar\x1b[201~"])
+async def test_letters_that_arrive_together_filter_and_enter_among_them_takes_nothing(
+    run: Run, typed: str
+) -> None:
+    asking = Asking()
+    async with run(asking) as pilot:
+        await until_shown(pilot, lambda: "letters filter" in pilot.text())
+        for message in ReplyParser().feed(typed):
+            pilot.app.post_message(message)
+        await until_shown(pilot, lambda: "/oscar_" in pilot.text())
+        assert not asking.answers
+        await pilot.press("enter")
+        await until(lambda: asking.answers == ["oscar"])
