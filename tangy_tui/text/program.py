@@ -10,9 +10,9 @@ NOTHING_MOVES = "Nothing is moving."
 MOUSE_ON = "Mouse on. Press {mouse} to turn it off and select text."
 MOUSE_OFF = "Mouse off: you can select text. Press {mouse} to turn it on again."
 THEMES = {
-    "Dark theme": "Light colours on black",
-    "Light theme": "Dark colours on white",
-    "Theme of the terminal": "Its own sixteen colours",
+    "Colours: dark theme": "Light colours on black",
+    "Colours: light theme": "Dark colours on white",
+    "Colours: theme of the terminal": "Its own sixteen colours",
 }
 """The names and descriptions of the themes."""
 COMPARE_POLICIES = ("Compare policies", "Teacher against teacher, before against after")

@@ -434,7 +434,7 @@ async def test_a_theme_of_the_palette_is_kept(run: Run, tmp_path: Path) -> None:
         (light,) = (
             command
             for command in pilot.app.get_system_commands(pilot.app.screen)
-            if command.title == "Light theme"
+            if command.title == "Colours: light theme"
         )
         light.callback()
         assert pilot.app.theme == LIGHT.name

@@ -15,6 +15,7 @@ from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPla
 from tangy_tui.ui.widgets.rows import Row, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
+AWAY = "not here"
 FLOOR_DOTS = 8  # columns between dots
 BELOW = 12  # extra lines, cut off at the end
 
@@ -154,7 +155,8 @@ class RoomDrawing:
         self._lines[row + 1 + below].within(centre, *within, name, ink)
         if deep > 1:
             return  # names use the lines for people's activities
-        doing = wrap(clean(scene.doing.get(person.id, "")), width)
+        words = AWAY if away else clean(scene.doing.get(person.id, ""))
+        doing = wrap(" ".join(shorten(word, width) for word in words.split()), width)
         if len(doing) > most:
             doing = [*doing[: most - 1], " ".join(doing[most - 1 :])]
         for y, text in enumerate(doing, row + 2):
