@@ -8,6 +8,8 @@ tracker, and nothing in it is learnt.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
+from typing import NamedTuple
 
 from tangy_profiles.activity import Activity, StageRule
 from tangy_profiles.behaviour import Behaviour
@@ -19,6 +21,20 @@ READS = ("beside requester",)
 
 ATTENDS = ("beside requester", "requested or away", "after")
 """The conditions of stages in which open requests matter."""
+
+
+MOST_POSSIBLE = 8
+"""The most kinds of progress that are followed at the same time."""
+
+
+class _Progress(NamedTuple):
+    """All that changes in a tracker during a game."""
+
+    counts: dict[str, int]
+    since: dict[tuple[str, str], int]
+    queue: list[str]
+    numbers: tuple[int, int, int]
+    here: tuple[str, str | None, str | None]
 
 
 class Tracker:
@@ -53,6 +69,8 @@ class Tracker:
         self._situations: dict[tuple[str, str, str], Situation] = {
             s: s for s in activity.situations
         }
+        self._possible: list[_Progress] = []
+        """What else fits the log that is being followed."""
         self._idle = tuple(UserState(id, self._unread, "ANR") for id in self.people)
         self._users = self._idle
         self._users_key: tuple[str, ...] = ()
@@ -155,22 +173,45 @@ class Tracker:
     def follow(self, step: GameStep) -> bool:
         """Apply a step from the log; return whether the resulting state is the logged one.
 
-        A behaviour without success is not counted, which only the state reveals.
+        A behaviour without success is not counted. Only the state reveals that, and sometimes only
+        a later one, so all that is possible so far is followed.
         """
         behaviour, after = self._activity.behaviours.get(step.behaviour), step.after
         if behaviour is None or after is None:
             return False
-        steps, counts, since, queue = self.step, {**self._counts}, {**self._since}, [*self.queue]
-        place, row = self.place, (self.visits, self.calls_first)
-        for succeeded in (step.completed, False):
-            self.step, self.queue, self.place = steps, [*queue], place
-            self.visits, self.calls_first = row
-            self._counts.update(counts)
-            self._since.update(since)
-            self._see(behaviour, after, succeeded=succeeded)
-            if self.state() == after:
-                return True
-        return False
+        found: list[_Progress] = []
+        for before in (self._progress(), *self._possible):
+            for succeeded in dict.fromkeys((step.completed, False)):
+                self._go_to(before)
+                self._see(behaviour, after, succeeded=succeeded)
+                now = self._progress()
+                if self.state() == after and not any(map(partial(self._alike, now), found)):
+                    found.append(now)
+        if found:
+            self._go_to(found[0])
+        self._possible = found[1:MOST_POSSIBLE]
+        return bool(found)
+
+    def _progress(self) -> _Progress:
+        return _Progress(
+            {**self._counts},
+            {**self._since},
+            [*self.queue],
+            (self.step, self.visits, self.calls_first),
+            (self.place, self.seen, self.closed),
+        )
+
+    def _alike(self, one: _Progress, other: _Progress) -> bool:
+        """Return whether two kinds of progress lead to the same stages from here on."""
+        names = (*self._openers, *self._closers)
+        return one[1:] == other[1:] and all(one.counts[n] == other.counts[n] for n in names)
+
+    def _go_to(self, progress: _Progress) -> None:
+        self._counts.update(progress.counts)
+        self._since.update(progress.since)
+        self.queue = [*progress.queue]
+        self.step, self.visits, self.calls_first = progress.numbers
+        self.place, self.seen, self.closed = progress.here
 
     def _see(self, behaviour: Behaviour, after: ActivityState, *, succeeded: bool) -> None:
         """Count a behaviour, and take requests and card from the state after it."""

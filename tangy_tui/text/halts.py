@@ -90,4 +90,6 @@ ALL_WELL = "Is all well now?"
 
 def uncleared_words(name: str) -> str:
     """Name the fault that nobody cleared in the last game, and tell what going on does."""
-    return f"Nobody cleared a fault of the last game: {name}. Tangy may move as soon as you go on."
+    return (
+        f"{name}: nobody cleared this fault of the last game. Tangy may move as soon as you go on."
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import string
 from collections.abc import Callable, Coroutine
+from functools import partial
 from typing import Any
 
 import pytest
@@ -25,6 +26,7 @@ from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, TangyPilot
 from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.support.waiting import until
 
 LETTERS = (*string.ascii_letters, "slash", "asterisk", "full_stop", "less_than_sign")
 
@@ -76,6 +78,11 @@ async def home(program: Program) -> None:
 def kept(workspace: Workspace) -> list[int]:
     """Return what is in the log, by its numbers."""
     return [event.seq for event in workspace.store.events()]
+
+
+def changed(workspace: Workspace, before: list[int]) -> bool:
+    """Return whether the log has something new."""
+    return kept(workspace) != before
 
 
 async def back(pilot: TangyPilot, screen: object) -> None:
@@ -155,6 +162,7 @@ async def test_no_letter_changes_a_live_game_unasked(run: Run, taught: Workspace
             before, told = kept(taught), list(link.told)
             pilot.type(letter)
             await pilot.pause()
+            await until(partial(changed, taught, before))
             new = [event for event in taught.store.events() if event.seq not in before]
             assert [event.kind for event in new] == ["staff action"], letter
             assert link.told == told, letter
