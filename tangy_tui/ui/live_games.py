@@ -10,7 +10,6 @@ from textual.constants import ESCAPE_DELAY
 from tangy_profiles import game_world
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import USUAL_PACE
-from tangy_tui.text.calls import REHEARSAL
 from tangy_tui.text.live_games import SWITCH_ON_DETAIL, parts_lines, switch_on_words
 from tangy_tui.ui.interruption import ask_about_interrupted
 
@@ -80,6 +79,7 @@ async def play_live(
         if world is None:
             return
         from tangy_tui.learning.policies import load_policy
+        from tangy_tui.text.calls import REHEARSAL
         from tangy_tui.ui.screens.live import LiveScreen
 
         if workspace.profile != activity:

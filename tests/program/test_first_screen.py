@@ -46,3 +46,15 @@ def test_the_first_screen_loads_nothing_heavy(tmp_path: Path) -> None:
     assert "Teach" in seen["text"]
     assert "textual" in seen["loaded"]
     assert not set(HEAVY) & set(seen["loaded"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("module", ["tangy_tui.ui.run", "tangy_tui.ui.dialogs.name"])
+def test_home_and_the_question_for_a_name_load_no_grammar_of_games(module: str) -> None:
+    code = f"import sys, {module}; print(*sys.modules)"
+    done = subprocess.run(  # noqa: S603 - our own interpreter
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    later = {"tangy_tui.app.command_grammar", "tangy_tui.learning.teaching_events"}
+    assert module in done.stdout.split()
+    assert not {*later, *HEAVY} & set(done.stdout.split())

@@ -61,7 +61,7 @@ from tangy_tui.text.tablet import screen_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
-from tangy_tui.ui.dialogs.line import TellDialog
+from tangy_tui.ui.dialogs.staff_line import TellDialog
 from tangy_tui.ui.fault_console import Work
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens import live_keys

@@ -41,7 +41,7 @@ from tangy_tui.text.watching import stopped_by_guest
 from tangy_tui.ui.base import perform
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.dialogs.line import CommandDialog
+from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer, wanted

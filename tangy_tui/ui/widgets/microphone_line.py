@@ -9,7 +9,6 @@ from rich.cells import cell_len
 from textual.strip import Strip
 from textual.timer import Timer
 
-from tangy_tui.text.mic_check import trouble_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
@@ -145,6 +144,8 @@ class MicrophoneLine(InkedWidget):
     def tick(self) -> None:
         """Redraw level and words, and check for trouble from time to time."""
         if self.ticks % LOOKS == 0:
+            from tangy_tui.text.mic_check import trouble_words  # not before the first frame
+
             trouble = self.ears.trouble
             self._trouble = "" if trouble is None else trouble_words(trouble)
         self.ticks += 1

@@ -1,0 +1,66 @@
+"""Input lines for staff: a command, and what somebody answers or does.
+
+They stand apart from other input lines: commands take long to load, and the first dialog has none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import ClassVar
+
+from textual.binding import Binding, BindingType
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.app.command_grammar import Perform
+from tangy_tui.app.game_commands import GameCommand
+from tangy_tui.text import typed_commands as text
+from tangy_tui.text.telling import TELL, TELL_HELP, TELL_KEYS, telling_words
+from tangy_tui.ui.dialogs.line import LineDialog
+
+
+class CommandDialog(LineDialog[GameCommand | Perform]):
+    """Parses a command; a line that is none stays, with an explanation."""
+
+    HELP = "Type what you want done, and press Enter. Esc goes back."
+
+    def __init__(
+        self, read: Callable[[str], GameCommand | Perform | None], begun: str, example: str
+    ) -> None:
+        """Create the dialog.
+
+        Args:
+            read: parses a command.
+            begun: the initial text of the line.
+            example: examples of commands.
+        """
+        super().__init__(text.TITLE, example, text.KEYS, begun=begun)
+        self._read = read
+
+    def taken(self, line: str) -> GameCommand | Perform:
+        """Parse a command; raises TangyError if the line is none."""
+        command = self._read(line)
+        if command is None:
+            raise TangyError(text.not_known(line))
+        return command
+
+
+class TellDialog(LineDialog[str]):
+    """An input line: Enter submits the report, esc closes."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape", "leave", "Tell nothing", priority=True)
+    ]
+    HELP = TELL_HELP
+
+    def __init__(self, waits_for: str, sayable: Sequence[str]) -> None:
+        """Create the dialog.
+
+        Args:
+            waits_for: the name of the person the game waits for, "" for nobody.
+            sayable: the words that have a meaning now.
+        """
+        super().__init__(TELL, telling_words(waits_for, sayable), TELL_KEYS)
+
+    def taken(self, line: str) -> str | None:
+        """Return the line without spaces around it; None if it is empty."""
+        return line.strip() or None
