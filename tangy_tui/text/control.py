@@ -30,6 +30,10 @@ NOT_ACCEPTABLE = "Tangy is asking nothing that you could call all right."
 
 ACCEPT = "Is all well, and shall Tangy go on?"
 MOVE_AGAIN = ("Let the robot move again?", "It goes on with the game at once.")
+
+SPOKEN_SECONDS = 12.0
+"""Calls closer together (in s) may wait for Tangy's voice: a call took 8 to 10 s on the bench."""
+
 TAKE_CALL_BACK = "Take the last call back"
 """The name of undo in a live game."""
 
@@ -125,11 +129,12 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "call taken back":
             return f"{about} counts as not called."
         case "pace":
-            return f"Tangy calls every {about} seconds."
+            spoken = ", or as soon as it has spoken" if float(about) < SPOKEN_SECONDS else ""
+            return f"Tangy calls every {about} seconds{spoken}."
         case "claim right":
-            return f"Card {about} wins."
+            return f"Card {about} wins. Tangy tells everybody."
         case "claim wrong":
-            return f"Card {about} does not win yet."
+            return f"Card {about} does not win yet. Tangy tells everybody."
         case "patterns":
             return f"Played for: {about}."
         case "several":

@@ -12,7 +12,7 @@ from tangy_tui.text.rooms import room_words
 
 TITLE = "Set up"
 PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
-HERE, AWAY, AWAY_SHORT = "here", "not here yet", "away"
+HERE, NOT_YET = "here", "not here yet"
 SOUND = "Hello. Can everybody hear me?"
 CARD_HOW = "Hold a card in front of Tangy, then press Enter."
 NO_CARD = "Tangy saw no card. Hold one closer, flat, and in good light."
@@ -226,7 +226,7 @@ def lines_of(setup: SetUp) -> list[str]:
     """Describe the set-up line by line."""
     name = staff_names(setup.workspace.name)
     people = (
-        f"  {seat}. {name(person)}: {AWAY if person in setup.away else HERE}"
+        f"  {seat}. {name(person)}: {NOT_YET if person in setup.away else HERE}"
         for seat, person in enumerate(setup.seats, 1)
     )
     return [

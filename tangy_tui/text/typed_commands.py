@@ -8,6 +8,8 @@ from tangy_profiles.reading import plain
 TITLE = "What do you want to do?"
 KEYS = "enter does it   esc goes back"
 WHO_IS_HERE = "Who has come, or has left?"
+AWAY = "away"
+"""Beside a person who is not here, where there is little room."""
 IS_HERE, IS_AWAY = "here: Enter if they leave", "not here: Enter if they have come"
 
 

@@ -72,7 +72,8 @@ def called_words(view: GameView, activity: Activity | None) -> str:
     if not called:
         return ""
     label = str if activity is None else activity.deck.label
-    return f"Called so far: {len(called)}; the last: {', '.join(map(label, called[-LAST_CALLS:]))}."
+    newest = ", ".join(map(label, called[: -LAST_CALLS - 1 : -1]))
+    return f"Called so far: {len(called)}; newest first: {newest}."
 
 
 def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> list[str]:

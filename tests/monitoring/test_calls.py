@@ -24,6 +24,7 @@ from tangy_tui.app.simulated_worlds import game_world
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.calls import Calls
+from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text.calls import REHEARSAL, call_words, expert_words
 from tangy_tui.text.live_news import live_lines
 from tests.monitoring.conftest import Supervise
@@ -47,14 +48,20 @@ def logged(store: Store) -> list[tuple[str, str, str]]:
     return [(e.record.role, e.record.stage, e.record.said) for e in store.events(CallMade)]
 
 
-def test_staff_are_called_when_the_robot_halts_and_the_expert_when_staff_turn_to_them(
-    supervise: Supervise, calls: Calls, line: Line
-) -> None:
+def halted(supervise: Supervise, calls: Calls) -> Supervision:
+    """Play until a lost link halts the robot, with calls."""
     game = supervise("link-lost@3")
     game.call_by(calls)
     game.begin()
     while game.halted is None:
         game.step()
+    return game
+
+
+def test_staff_are_called_when_the_robot_halts_and_the_expert_when_staff_turn_to_them(
+    supervise: Supervise, calls: Calls, line: Line
+) -> None:
+    game = halted(supervise, calls)
     wait_until(lambda: "Station 2" in line.told, "staff are called")
     assert calls.state(EXPERT) is None
     game.call_expert("Ada")
@@ -65,11 +72,7 @@ def test_staff_are_called_when_the_robot_halts_and_the_expert_when_staff_turn_to
 def test_a_call_that_fails_one_that_is_answered_late_and_by_a_key_are_told_apart(
     supervise: Supervise, calls: Calls, line: Line, workspace: Workspace
 ) -> None:
-    game = supervise("link-lost@3")
-    game.call_by(calls)
-    game.begin()
-    while game.halted is None:
-        game.step()
+    game = halted(supervise, calls)
     game.call_expert("Ada")
     words = [expert_words(game)]
     line.says("Anna Berg", "failed", "no line")
@@ -187,11 +190,7 @@ def test_the_outcomes_of_a_call_come_with_the_events_of_the_game(
 def test_an_answer_after_the_game_is_not_told_in_the_next(
     supervise: Supervise, calls: Calls, line: Line
 ) -> None:
-    game = supervise("link-lost@3")
-    game.call_by(calls)
-    game.begin()
-    while game.halted is None:
-        game.step()
+    game = halted(supervise, calls)
     game.look()
     game.clear("Ada")
     game.begin()

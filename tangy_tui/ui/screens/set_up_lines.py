@@ -9,6 +9,7 @@ from tangy_tui.text import set_up as text
 from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.register import staff_names
 from tangy_tui.text.rooms import room_words
+from tangy_tui.text.typed_commands import AWAY
 from tangy_tui.ui.widgets.set_up_list import SetUpLine
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -26,7 +27,7 @@ def people_lines(setup: SetUp) -> list[SetUpLine]:
         for place, person in enumerate(sitting):
             seat += 1
             away = person in setup.away
-            value = (text.AWAY_SHORT if several else text.AWAY) if away else text.HERE
+            value = (AWAY if several else text.NOT_YET) if away else text.HERE
             label = f"{seat:>2} {name(person)}" if several else f"{seat:>2}  {name(person)}"
             at, ink = (table, place) if several else None, "dim" if away else "good"
             lines.append(SetUpLine("person", person, label, value, ink, at))

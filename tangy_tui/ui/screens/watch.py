@@ -107,7 +107,7 @@ class WatchScreen(TangyScreen[None]):
         except NobodyThere:
             log.write(text.NOTHING_TO_STOP, "bad")
         else:
-            log.write(text.ASKED_TO_STOP, "bad")
+            log.write(text.ASKED_TO_STOP, "warn")
 
     def look(self) -> None:
         """Show new events."""

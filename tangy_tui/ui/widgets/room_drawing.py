@@ -9,13 +9,13 @@ from rich.cells import cell_len
 from tangy_profiles.person import Person
 from tangy_profiles.scene import CardView, Scene
 from tangy_tui.text.cards import card_title
+from tangy_tui.text.typed_commands import AWAY
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.card_lines import LEGEND, card_lines
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPlan
 from tangy_tui.ui.widgets.rows import Row, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
-AWAY = "not here"
 FLOOR_DOTS = 8  # columns between dots
 BELOW = 12  # extra lines, cut off at the end
 
@@ -156,7 +156,9 @@ class RoomDrawing:
         if deep > 1:
             return  # names use the lines for people's activities
         words = AWAY if away else clean(scene.doing.get(person.id, ""))
-        doing = wrap(" ".join(shorten(word, width) for word in words.split()), width)
+        if any(cell_len(word) > width for word in words.split()):
+            return  # a part of a word tells nothing
+        doing = wrap(words, width)
         if len(doing) > most:
             doing = [*doing[: most - 1], " ".join(doing[most - 1 :])]
         for y, text in enumerate(doing, row + 2):
