@@ -27,6 +27,7 @@ _JOINS = re.compile(r"(guest|add) (.+)", re.I)
 _NAME = re.compile(r"rename (.+?) to (.+)", re.I)
 _ACTIVITY = re.compile(r"activity (.+)", re.I)
 _ROOM = re.compile(r"room (.+)", re.I)
+_SHOW = "show"
 _ACTIVITIES = ("activity", "activities")
 _ROOMS = ("room", "rooms")
 
@@ -41,15 +42,19 @@ class SetUpLines:
         self.setup = setup
         self._read, self._write = read, write
         self._command = command_reader(setup.workspace.activity, self._find)
+        self._told: list[str] = []
 
     def run(self) -> bool:
         """Set up; return whether to begin the game."""
-        self._tell()
+        self._tell_all()
         self._write(text.LINES_HELP)
         while (line := self._read()) is not None:
             words = " ".join(line.split()).strip(" .")
             if words.casefold() == "begin":
                 return True
+            if words.casefold() == _SHOW:
+                self._tell_all()
+                continue
             if words.casefold() in _ACTIVITIES:
                 self._write(text.activities_line(self.setup.activities().values()))
                 continue
@@ -64,7 +69,7 @@ class SetUpLines:
             if done is None:
                 return False
             if done:
-                self._tell()
+                self._tell_changes()
             else:
                 self._write(text.LINES_HELP)
         return False
@@ -73,17 +78,25 @@ class SetUpLines:
         """Write the results of the checks; if one failed, ask whether to begin."""
         for check in self.setup.checks():
             self._write(f"  {text.NAMES[check.name]}: {text.line_of(check)}")
-        if not self.setup.not_ready:
+        not_ready = self.setup.not_ready
+        if not not_ready:
             return True
-        self._write(text.LINES_ANYWAY)
+        self._write(text.lines_anyway(not_ready))
         line = self._read()
         return line is not None and line.strip().casefold() == "begin"
 
     def _find(self, wanted: str) -> str:
         return self.setup.workspace.find_person(wanted).id
 
-    def _tell(self) -> None:
-        for line in text.lines_of(self.setup):
+    def _tell_all(self) -> None:
+        self._told = list(text.lines_of(self.setup))
+        for line in self._told:
+            self._write(line)
+
+    def _tell_changes(self) -> None:
+        """Write only the lines that changed: a screen reader reads each one out."""
+        before, self._told = set(self._told), list(text.lines_of(self.setup))
+        for line in [line for line in self._told if line not in before] or [text.UNCHANGED]:
             self._write(line)
 
     def _own(self, words: str) -> bool:

@@ -201,9 +201,15 @@ def _to_do(check: Check) -> str:
 LINES_HELP = (
     "Type: left Rosa, here Rosa, seat Rosa 3, guest Anna, add Anna, rename Rosa to Rosie, "
     "activity trivia, room hall, play for line, full card, several winners, pace 20, visits on, "
-    "words gentle, time 40. Then: begin. Or: end."
+    "words gentle, time 40. Show lists everything again. Then: begin. Or: end."
 )
-LINES_ANYWAY = "Not everything is ready. Type begin to begin anyway, or end."
+UNCHANGED = "That changes nothing."
+
+
+def lines_anyway(not_ready: Sequence[Check]) -> str:
+    """Name the failed checks, and ask whether to begin in spite of them."""
+    names = ", ".join(NAMES[check.name] for check in not_ready).lower()
+    return f"Not ready: {names}. Type begin to begin anyway, or end."
 
 
 def line_of(check: Check) -> str:

@@ -100,6 +100,24 @@ def test_a_game_is_set_up_by_lines(data_folder: Path) -> None:
     workspace.close()
 
 
+def test_a_change_is_told_by_its_own_lines_until_all_is_asked_for(data_folder: Path) -> None:
+    workspace = Workspace(data_folder)
+    setup, said = SetUp.of(workspace), list[str]()
+    everything = len(text.lines_of(setup)) + 1  # and the help
+    told, lines = list[list[str]](), iter(("left User 3", "left User 3", "show", "begin"))
+
+    def read() -> str:
+        told.append([*said])
+        said.clear()
+        return next(lines)
+
+    assert SetUpLines(setup, read, said.append).run()
+    assert [len(answer) for answer in told] == [everything, 2, 1, everything - 1]
+    assert all("User 3" in line or "3 of 4" in line for line in told[1])
+    assert told[2] == [text.UNCHANGED]
+    workspace.close()
+
+
 @pytest.mark.slow
 def test_people_and_the_activity_are_set_up_by_lines(taught: Path) -> None:
     workspace = Workspace(taught)

@@ -7,6 +7,7 @@ from textual.pilot import Pilot
 
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
+from tangy_tui.learning.teaching_events import RemarkAnswer
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.dialogs.remark import RemarkDialog
@@ -41,6 +42,31 @@ async def contradict(pilot: Pilot[None]) -> RemarkDialog:
         await pilot.pause()
     assert isinstance(pilot.app.screen, RemarkDialog)
     return pilot.app.screen
+
+
+@pytest.mark.parametrize("width", [50, 80])
+async def test_a_number_stands_in_one_line_with_its_answer(
+    run: Run, workspace: Workspace, width: int
+) -> None:
+    async with run((width, 24), app=Program(workspace, show_remark, clock=StillClock())) as pilot:
+        await pilot.pause()
+        lines = screen_text(pilot.app).splitlines()
+        for start in (
+            "1 this step",
+            "2 the earlier one: greet",
+            "3 both are fine",
+            "4 a slip: undo",
+        ):
+            assert any(start in line for line in lines), lines
+
+
+async def show_remark(started: Program) -> None:
+    """Show a remark with four answers, too long for one line."""
+    answers: list[tuple[RemarkAnswer, str]] = [
+        ("this", "this step: tell a joke"), ("earlier", "the earlier one: greet everyone"),
+        ("both", "both are fine"), ("undo", "a slip: undo this step"),
+    ]  # fmt: skip
+    await started.push_screen(RemarkDialog("Ada did something else here.", answers, "later"))
 
 
 @pytest.mark.slow

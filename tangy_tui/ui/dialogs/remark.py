@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
+from rich.cells import cell_len
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -19,6 +20,11 @@ from tangy_tui.text.remarks import NUMBER_OR_ESC, answer_words, later_words, rem
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
+
+GAP = 3
+"""Cells between two answers."""
+PADDING = 2
+"""Cells at the sides of the dialog."""
 
 
 class RemarkDialog(Dialog[RemarkAnswer]):
@@ -72,6 +78,10 @@ class RemarkDialog(Dialog[RemarkAnswer]):
         """Accept keys from now on."""
         self._keys.watch(self, self._clock)
 
+    def on_resize(self, event: events.Resize) -> None:
+        """Keep each key and its words in one line."""
+        self.query_one("#remark", Static).update(self._content())
+
     def on_key(self, event: events.Key) -> None:
         """Answer with a number or esc, if the remark was visible before."""
         known = event.key == "escape" or event.key in self._answers
@@ -94,10 +104,14 @@ class RemarkDialog(Dialog[RemarkAnswer]):
             self.query_one("#remark", Static).update(self._content())
 
     def _content(self) -> Content:
-        parts: list[str | tuple[str, str] | Content] = [(self._sentence, "$warning"), "\n"]
-        for number, (_, words) in self._answers.items():
-            parts += [(number, "$primary bold"), f" {words}   "]
-        parts += [("esc", "$primary bold"), f" {self._later}"]
+        parts: list[str | tuple[str, str] | Content] = [(self._sentence, "$warning")]
+        left = 0  # cells of the line
+        answers = ((number, words) for number, (_, words) in self._answers.items())
+        for key, words in (*answers, ("esc", self._later)):
+            cells = len(key) + 1 + cell_len(words)
+            fits = GAP + cells <= left
+            parts += [" " * GAP if fits else "\n", (key, "$primary bold"), f" {words}"]
+            left = (left - GAP if fits else self.app.size.width - PADDING) - cells
         if self._told:
             parts += ["\n", (self._told, "$warning")]
         return Content.assemble(*parts)

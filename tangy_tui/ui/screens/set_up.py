@@ -32,7 +32,7 @@ from tangy_tui.ui.dialogs.tablet import TabletDialog
 from tangy_tui.ui.joining import ask_new_name, ask_who_joins
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import WIDE, key_line, panel
+from tangy_tui.ui.panels import WIDE, KeyLine, panel
 from tangy_tui.ui.screens.set_up_lines import check_lines, game_lines, people_lines
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.set_up_list import SetUpList
@@ -92,22 +92,27 @@ class SetUpScreen(TangyScreen[bool]):
 
     def compose(self) -> ComposeResult:
         """Lay out the lines and the seats."""
-        kind = getattr(self.app, "kind", None)
-        in_ascii = kind is not None and kind.ascii
         yield StatusLine()
         with Horizontal(id="page"):
             yield panel(SetUpList(), text.TITLE)
             yield Vertical(id="seats")
-        yield key_line(
+        yield KeyLine(*self._key_words())
+
+    def _key_words(self) -> list[str | tuple[str, str]]:
+        kind = getattr(self.app, "kind", None)
+        in_ascii = kind is not None and kind.ascii
+        patterns = len(self.setup.workspace.activity.rules.patterns)
+        number = "1" if patterns == 1 else f"1-{patterns}"
+        return [
             "begin",
             ("enter" if in_ascii else "↵", "change"),
             ("space" if in_ascii else "␣", "move"),
-            ("1-9", "played for"),
+            *([(number, "played for")] if patterns else []),
             "join",
             "rename",
             "back",
             "help",
-        )
+        ]
 
     def on_mount(self) -> None:
         """Show everything, and poll the readiness checks."""
@@ -163,6 +168,7 @@ class SetUpScreen(TangyScreen[bool]):
         width = lines.content_size.width
         lines.show([*people_lines(setup), *game_lines(setup, width), *check_lines(setup)])
         lines.border_subtitle = text.summary_words(setup.checks())
+        self.query_one(KeyLine).show(*self._key_words())
         self._draw_seats()
 
     # -------------------------------------------------------------------------------- the keys
