@@ -150,7 +150,8 @@ def _fault_sum(session: Session) -> str:
         return "none"
     there = sum(fault.status != OVER for fault in faults)
     words = f"{len(faults)}, of which {sum(fault.critical for fault in faults)} critical"
-    return f"{words}; {there or 'none'} not over at the end"
+    at_end = f"{there} still there at the end" if there else "all over at the end"
+    return f"{words}; {at_end}"
 
 
 def _until(session: Session) -> str:

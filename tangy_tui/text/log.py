@@ -149,9 +149,10 @@ def session_lines(session: Session) -> Iterator[str]:
         )
     for row in fault_rows(session.faults):
         if row["instances"]:
+            worked = round(row["success"] * row["instances"])
             yield (
-                f"  {row['criticality']}, {RECOVERY_WORDS[row['recovery']]}: "
-                f"{row['success']:.0%} of {row['instances']} recovered by that"
+                f"  {row['criticality']}, first recovery “{RECOVERY_WORDS[row['recovery']]}”: "
+                f"it worked {worked} of {counted(row['instances'], 'time')}"
             )
     yield ""
     yield from (_person_line(person) for person in session.people if person.interactions)
@@ -221,8 +222,8 @@ def _person_line(person: Progress) -> str:
     parts = []
     for strategy, one in person.strategies.items():
         if one.used:
-            change = f"{one.before.mean:.0%} -> {one.after.mean:.0%}"
-            parts.append(f"{strategy}: {one.in_words} ({change})")
+            expected = f"expected {one.before.mean:.0%} before, {one.after.mean:.0%} after"
+            parts.append(f"{strategy}: {one.in_words} ({expected})")
     return f"{person.name}, asked {counted(person.interactions, 'time')}: {'; '.join(parts)}"
 
 
