@@ -46,10 +46,12 @@ def run() -> object:
         print(f"tangy {__version__}")
         return 0
     if (given := program_options(sys.argv[1:])) is not None:
+        gc.disable()  # loading leaves no garbage; the screen collects again once it is drawn
         from tangy_tui.verbs.opening import full_screen, open_program
 
         if full_screen():
             return open_program(**given)
+        gc.enable()
     return parsed()
 
 

@@ -1,21 +1,9 @@
-"""The application: colours, global key bindings, and an orderly exit.
-
-Stable widget ids for scripts and testers:
-    #home        the choices of the first screen #status      the status line, at the top of every
-        screen #room        the room with robot and people #transcript  the numbered steps of a
-        demonstration or a game #command     the command bar (its input line is #command-input)
-        #question    the question that verifies a command #confirm, #message, #help    the other
-        dialogs #switching-on  shown while a robot is being switched on #posteriors  the posteriors
-        of each person #policy      the policy table #log         the events in sentences #coverage
-        the situations covered by demonstrations, and the missing ones #demonstrations  the list of
-        the library; #step is one step of a demonstration in detail #answers     the answers of a
-        conflict, side by side #why         the explanation of a decision #devices     the state of
-        every device; #about one of them, #picture the picture of a camera, #card the last card read
-"""
+"""The application: colours, global key bindings, and an orderly exit."""
 
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import signal
 from collections.abc import Callable, Iterable
@@ -60,8 +48,17 @@ if TYPE_CHECKING:
 HANGUP_CODE = 129
 TERMINATED_CODE = 143
 
+LOADED_SECONDS = 1.0
+"""The first screen is drawn by then."""
+
 FirstScreen = Callable[[], Screen[Any]]
 """Creates the first screen of the program."""
+
+
+def collect_again() -> None:
+    """Collect garbage from now on, except what was loaded, which stays as long as the program."""
+    gc.freeze()
+    gc.enable()
 
 
 class TangyApp(App[None]):
@@ -171,6 +168,8 @@ class TangyApp(App[None]):
             with suppress(NotImplementedError, RuntimeError, ValueError):
                 loop.add_signal_handler(number, self._signalled, number.name, code)
         self.call_after_refresh(Thread(target=prepare_stop, daemon=True).start)
+        if not gc.isenabled():
+            self.set_timer(LOADED_SECONDS, collect_again)
         if not self.is_headless:
             self.call_after_refresh(self._meet_terminal)
 

@@ -12,7 +12,7 @@ import pytest
 HEAVY = ("sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy")
 
 PAINT = """
-import asyncio, json, sys
+import asyncio, gc, json, sys
 from pathlib import Path
 import tangy_tui
 from tangy_tui.app.workspace import Workspace
@@ -24,28 +24,35 @@ async def paint():
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.pause()
         strips = app.screen._compositor.render_strips()
+        while not gc.isenabled():
+            await pilot.pause()
         text = "\\n".join("".join(s.text for s in strip) for strip in strips)
     with_workspace.close()
     return text
 
+gc.disable()  # as the command line does while it loads
 text = asyncio.run(paint())
 loaded = sorted({name.partition(".")[0] for name in sys.modules})
-print(json.dumps({"text": text, "loaded": loaded}))
+print(json.dumps({"text": text, "loaded": loaded, "kept": gc.get_freeze_count()}))
 """
 
 
 @pytest.mark.slow
-def test_the_first_screen_loads_nothing_heavy(tmp_path: Path) -> None:
+def test_the_first_screen_loads_nothing_heavy_and_collects_garbage_afterwards(
+    tmp_path: Path,
+) -> None:
     done = subprocess.run(  # noqa: S603 - our own interpreter
         [sys.executable, "-c", PAINT, str(tmp_path / "data")],
         capture_output=True,
         text=True,
         check=True,
+        timeout=60,
     )
     seen = json.loads(done.stdout)
     assert "Teach" in seen["text"]
     assert "textual" in seen["loaded"]
     assert not set(HEAVY) & set(seen["loaded"])
+    assert seen["kept"] > 0
 
 
 @pytest.mark.slow
