@@ -174,14 +174,16 @@ class Tracker:
         """Apply a step from the log; return whether the resulting state is the logged one.
 
         A behaviour without success is not counted. Only the state reveals that, and sometimes only
-        a later one, so all that is possible so far is followed.
+        a later one, so all that is possible so far is followed. One that named numbers succeeded.
         """
         behaviour, after = self._activity.behaviours.get(step.behaviour), step.after
         if behaviour is None or after is None:
             return False
+        certain = step.completed and step.numbers
+        outcomes = (True,) if certain else dict.fromkeys((step.completed, False))
         found: list[_Progress] = []
         for before in (self._progress(), *self._possible):
-            for succeeded in dict.fromkeys((step.completed, False)):
+            for succeeded in outcomes:
                 self._go_to(before)
                 self._see(behaviour, after, succeeded=succeeded)
                 now = self._progress()

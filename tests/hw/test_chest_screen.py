@@ -114,7 +114,9 @@ class TestAnsweringCalls:
     async def test_a_colleague_who_looks_on_may_answer_and_a_stranger_may_not(
         self, screen: WebChestScreen
     ) -> None:
+        (page,) = await opened(screen, "one")
         screen.offer({"staff": "Station 2"})
+        await until(lambda: page.calls == {"staff": "Station 2"})  # its process knows of it
         pairing = screen.pairing
         looks_on = f"Cookie: {pairing.cookie}={pairing.token(viewer=True)}\r\n".encode()
         pressed = await ask(screen.port, "POST", "/answer?call=staff")
@@ -122,6 +124,7 @@ class TestAnsweringCalls:
         pressed = await ask(screen.port, "POST", "/answer?call=staff", looks_on)
         assert pressed.startswith(b"HTTP/1.1 204")
         await until(lambda: screen.answered == ("staff",))
+        page.go()
 
     async def test_a_process_that_is_started_again_shows_the_buttons_again(
         self, screen: WebChestScreen

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, StageRule, load_activity
 from tangy_profiles.codec import decode, encode
+from tangy_profiles.game_records import GameStep
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
 from tangy_profiles.tracker import Tracker
 
@@ -270,3 +271,25 @@ def test_what_must_come_before_is_begun_only_when_all_of_it_was_done(activity: A
         tracker.executed(activity.behaviours[name])
         told.append((tracker.begun(), tracker.state().stage))
     assert told == [(False, "warm up"), (False, "warm up"), (True, "facilitate")]
+
+
+@pytest.mark.parametrize("jokes", [{}, {10: True}, {10: False}, {5: False, 10: False}])
+def test_a_joke_that_came_to_nothing_is_told_from_the_log_by_a_later_stage(
+    jokes: dict[int, bool],
+) -> None:
+    """The log says of each joke that the robot told it; only the stages say whether it counts."""
+    truth, followed = begun(), begun()
+    for call in range(1, 30):
+        told = [("call number", True)]
+        told += [("joke", jokes[call])] if call in jokes else []
+        for name, counts in told:
+            before = truth.state()
+            truth.executed(BINGO.behaviours[name], succeeded=counts)
+            numbers = (call,) if name == "call number" else ()
+            step = GameStep(
+                game="g", behaviour=name, target=None, numbers=numbers, state=before,
+                after=truth.state(),
+            )  # fmt: skip
+            assert followed.follow(step), f"{name} {call}"
+    assert followed.state() == truth.state()
+    assert truth.state().stage == "socialize"
