@@ -14,20 +14,19 @@ import numpy as np
 from numpy.random import Generator
 
 from tangy_hw.device_protocols import STILL, Odometry, Pose, Scan, Twist
-from tangy_hw.navigation.clearance import AWAY, REACH
+from tangy_hw.navigation.clearance import REACH
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import WIDE, Estimate, Localisation
 from tangy_hw.navigation.occupancy import OccupancyMap
+from tangy_hw.navigation.path_checks import comes_too_near, leaves
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.planning import (
-    BESIDE,
     FOOTPRINT,
     KEEP,
     RADIUS,
     Path,
     PlanError,
     check_goal,
-    near_ends,
     plan,
 )
 from tangy_hw.navigation.poses import (
@@ -38,6 +37,7 @@ from tangy_hw.navigation.poses import (
     relative_pose,
     transform_points,
 )
+from tangy_hw.navigation.progress import ProgressCheck, StallDetector
 from tangy_hw.navigation.pursuit import Pursuit
 from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_hw.navigation.surroundings import BlockingPerson, Surroundings
@@ -51,12 +51,9 @@ PATIENCE = 1.0  # seconds that something may block the path before replanning
 PATIENCE_WALKING = 3.0  # the same for a person who walks
 AGAIN = 1.0  # seconds between two attempts to plan while there is no path
 NO_WAY = 2.0  # seconds without a path before it is reported
-PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres of progress required per period in s
 SPIN = 0.5  # rad/s while it turns to localise itself
 LOOKS_ROUND = 2  # full turns without a pose before it gives up
 ASTRAY = 0.5  # metres off the path at which it replans
-INTO = 0.05  # metres that a path may be too near to an obstacle
-LOOK_AHEAD = 50  # points of the path checked for obstacles: 2.5 m
 TAKEN = 0.6  # metres driven on another path before it is reported: it may end as well
 SLOW = 0.1  # m/s: above this the robot stops before it takes another path
 SLIPS = 0.3  # metres of disagreement with the scans that mean slip
@@ -94,25 +91,22 @@ class Navigator:
         self.goal: Pose | None = None
         self.path: Path | None = None
         self.slip = 0.0
-        self.still = 0.0
         larger = self.limits.radius - FOOTPRINT
         self._radius, self._keep, self._laser = RADIUS + larger, KEEP + larger, laser
         self._localisation = Localisation(map_, rng, start, laser)
         self._around = Surroundings(map_, laser, self.limits)
         self._slip_detector = SlipDetector(laser)
+        self._stall_detector, self._progress = StallDetector(), ProgressCheck()
         self.yields_to: BlockingPerson = ""
         """Kind of person it is waiting for, if any."""
         self._pursuit: Pursuit | None = None
         self._given_up: Floats | None = None
         self._way = "clear"
         self._estimate: Estimate | None = None
-        self._odometry: Pose | None = None
         self._told = STILL
         self._turned = self._turn_to = 0.0
         self._waited = self._without = self._since_plan = 0.0
-        self._mark: tuple[float, float] | None = None
         self._detour: tuple[float, float] | None = None
-        self._marked = 0.0
 
     drives = False
     """The base is driven only by the commands that `tick` returns."""
@@ -210,7 +204,7 @@ class Navigator:
             "fit": estimate.fit if estimate else 1.0,
             "spread": estimate.spread if estimate else 0.0,
             "slip": self.slip,
-            "still": self.still,
+            "still": self._stall_detector.seconds,
         }
 
     def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
@@ -236,7 +230,7 @@ class Navigator:
             dt: s until the next tick.
             at_scan: the pose by odometry when the scan was taken; None: that of `odometry`.
         """
-        self._note_still(odometry, dt)
+        self._stall_detector.update(odometry.pose, self._told, dt)
         if scan is None:
             self._told = STILL
             return STILL
@@ -248,18 +242,6 @@ class Navigator:
         estimate = self._estimate = replace(seen, pose=now)
         self._told = self._command(estimate, odometry, scan, dt)
         return self._told
-
-    def _note_still(self, odometry: Odometry, dt: float) -> None:
-        before, self._odometry = self._odometry, odometry.pose
-        if before is None or (abs(self._told.forward) < 0.02 and abs(self._told.turn) < 0.05):
-            self.still = 0.0
-            return
-        step = relative_pose(before, odometry.pose)
-        moved = (
-            hypot(step.x, step.y) > 0.1 * abs(self._told.forward) * dt + 1e-6
-            or abs(step.heading) > 0.1 * abs(self._told.turn) * dt + 1e-6
-        )
-        self.still = 0.0 if moved else self.still + dt
 
     def _command(self, estimate: Estimate, odometry: Odometry, scan: Scan, dt: float) -> Twist:
         if self.state == "spinning":
@@ -315,7 +297,7 @@ class Navigator:
         """Follow a path; a detour from an abandoned path is reported once it is driven."""
         if self._way == "none":  # the path is free again
             self._way = "clear"
-        elif self._given_up is not None and _leaves(path.points, self._given_up):
+        elif self._given_up is not None and leaves(path.points, self._given_up):
             self._detour = (pose.x, pose.y)
         self.state = "replanned" if self._way == "replanned" else "driving"
         self.why = ""
@@ -330,8 +312,9 @@ class Navigator:
     def _stop_following(self) -> None:
         self.path = self._pursuit = self._given_up = None
         self.yields_to = ""
-        self._waited = self._without = self._marked = 0.0
-        self._mark = self._detour = None
+        self._waited = self._without = 0.0
+        self._detour = None
+        self._progress.restart()
 
     def _follow(
         self, pursuit: Pursuit, goal: Pose, pose: Pose, odometry: Odometry, scan: Scan, dt: float
@@ -355,7 +338,7 @@ class Navigator:
             return STILL
         self.yields_to = self._around.held(wanted)
         stands = pursuit.state == "waiting" or self.yields_to != ""
-        if stands or self._touches(ahead[:LOOK_AHEAD], obstacles, pose, goal):
+        if stands or comes_too_near(ahead, obstacles, pose, goal, self._radius, self._keep):
             self._waited += dt
         else:
             self._waited = 0.0
@@ -368,33 +351,11 @@ class Navigator:
                 return twist if twist.forward < SLOW else STILL
             self._pursuit = None
             return STILL
-        if not self._progressed(pose, dt):
+        # slipping wheels do not count against it
+        slips = self._stall_detector.seconds > 0.5 or self.slip > SLIPS
+        if not self._progress.made(pose, dt, excused=slips):
             self._pursuit, self._given_up, self._since_plan = None, ahead, -AGAIN
-            self._mark = None
+            self._progress.restart()
             self._block("It comes no further.")
             return STILL
         return twist
-
-    def _touches(self, path: Floats, obstacles: Floats, pose: Pose, goal: Pose) -> bool:
-        """Return whether a path comes closer to an obstacle than allowed and than the robot is."""
-        if not len(path) or not len(obstacles):
-            return False
-        beside = near_ends(obstacles, ((pose.x, pose.y), (goal.x, goal.y)), self._keep)
-        keep = np.where(beside, self._radius + BESIDE - RADIUS, self._keep) - INTO
-        keep = np.minimum(keep, lengths(obstacles - (pose.x, pose.y)) - AWAY)
-        apart = ((path[::2, None] - obstacles[None]) ** 2).sum(axis=2)
-        return bool((apart < np.maximum(keep, 0.0) ** 2).any())
-
-    def _progressed(self, pose: Pose, dt: float) -> bool:
-        """Return whether the robot makes progress; slipping wheels do not count against it."""
-        far = self._mark is None or hypot(pose.x - self._mark[0], pose.y - self._mark[1]) > PROGRESS
-        if far or self.still > 0.5 or self.slip > SLIPS:
-            self._mark, self._marked = (pose.x, pose.y), 0.0
-        self._marked += dt
-        return self._marked < PROGRESS_SECONDS
-
-
-def _leaves(path: Floats, other: Floats, by: float = 0.3) -> bool:
-    """Return whether a path leaves another one by more than `by` m."""
-    apart = ((path[::4, None] - other[None, ::2]) ** 2).sum(axis=2)
-    return bool(apart.min(axis=1).max() > by**2)
