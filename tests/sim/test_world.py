@@ -111,8 +111,19 @@ def test_whoever_has_a_full_line_of_marks_asks_for_help() -> None:
         for _ in game(made):
             for player in made.players.values():
                 if any(player.marked & line == line for line in BINGO.deck.lines):
-                    assert player.id in made.scene().requests
+                    assert made.over or player.id in made.scene().requests
         made.begin()
+
+
+def test_nobody_is_shown_as_asking_after_the_goodbye() -> None:
+    made, asked = world(14), 0
+    for _ in range(20):
+        for _ in game(made):
+            pass
+        asked += bool(made.tracker.queue)
+        assert made.scene().requests == () and "asks for help" not in made.scene().doing.values()
+        made.begin()
+    assert asked
 
 
 def test_nobody_asks_before_the_greeting() -> None:

@@ -349,11 +349,12 @@ class LiveWorld(LivePlan):
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""
         tracker = self.tracker
-        asking, view = set(tracker.queue), self.cards.view
+        asking = () if self.over else tuple(tracker.queue)  # after the game nobody is served
+        view = self.cards.view
         doing = {p: "asks for help" if p in asking else "watches" for p in self.people}
         return Scene(
             self.link.state.going or tracker.place,
-            tuple(tracker.queue),
+            asking,
             doing,
             tuple(self.called),
             view if view is not None and view.person == tracker.place else None,

@@ -160,12 +160,13 @@ class DeclaredWorld:
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""
         game = self.game
+        asking = () if self.over else tuple(game.queue)  # after the game nobody is served
         doing = {
             one: ", ".join(self.happened.get(one, ()))
-            or ("asks for help" if one in game.queue else "watches")
+            or ("asks for help" if one in asking else "watches")
             for one in self.people
         }
-        return Scene(game.place, tuple(game.queue), doing, (), None, self.away)
+        return Scene(game.place, asking, doing, (), None, self.away)
 
     def health(self) -> Health:
         """Return the readings of devices without faults."""

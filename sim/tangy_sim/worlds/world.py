@@ -143,11 +143,11 @@ class SimulatedWorld(PlannedGame):
     def scene(self) -> Scene:
         """Return the scene as a teacher or a member of staff sees it."""
         tracker = self.tracker
-        asking = set(tracker.queue)
+        asking = () if self.over else tuple(tracker.queue)  # after the game nobody is served
         doing: dict[str, str] = {}
         for player in self.players.values():
             step, verb, number = player.did
-            if step >= tracker.step - 1:
+            if step >= tracker.step - 1 and not self.over:
                 doing[player.id] = f"{verb} {self.activity.deck.label(number)}" if number else verb
             else:
                 doing[player.id] = "asks for help" if player.id in asking else "watches"
@@ -156,7 +156,7 @@ class SimulatedWorld(PlannedGame):
             beside = self.players[tracker.place]
             card = CardView(beside.id, beside.numbers, beside.marked, beside.called)
         called = tuple(self.order[: self._calls])
-        return Scene(tracker.place, tuple(tracker.queue), doing, called, card, self.away)
+        return Scene(tracker.place, asking, doing, called, card, self.away)
 
     def health(self) -> Health:
         """Return the readings of devices without faults (see `FaultyWorld`)."""
