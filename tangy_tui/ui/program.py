@@ -372,9 +372,10 @@ class Program(SoundingApp):
         except WorkerFailed as failed:
             if not isinstance(failed.error, TangyError):
                 raise
-            self.clear_notifications()
+            self.call_later(self.clear_notifications)
             await self.tell(str(failed.error), title=NOT_YET)
             return None
         finally:
             self._busy = False
-            self.clear_notifications()
+            # Later: quick work may be done before its notification was even shown.
+            self.call_later(self.clear_notifications)

@@ -25,6 +25,15 @@ def taught(workspace: Workspace) -> Workspace:
     return workspace
 
 
+async def test_quick_work_leaves_no_notice_that_it_goes_on(run: Run, workspace: Workspace) -> None:
+    program = Program(workspace, clock=StillClock())
+    async with run(app=program) as pilot:
+        program.call_next(program.in_thread, "Tangy is working ...", int)  # before it is drawn
+        await pilot.pause()
+        await pilot.pause()
+        assert not [told.message for told in program._notifications]
+
+
 @pytest.mark.slow
 async def test_after_learning_the_screen_names_the_key_that_plays(
     run: Run, taught: Workspace
