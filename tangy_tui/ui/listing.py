@@ -9,7 +9,7 @@ from typing import Any
 from textual.dom import DOMNode
 from textual.screen import Screen
 
-from tangy_tui.app.keymap import BY_ID
+from tangy_tui.app.keymap import BY_ID, Keymap
 from tangy_tui.ui.keys import keymap_of
 
 SILENT = frozenset({"number"})
@@ -31,7 +31,8 @@ class ListedAction:
 def listed(screen: Screen[Any]) -> list[ListedAction]:
     """List the actions of a screen and of its focused widget, each once.
 
-    Letter keys are listed even while an input line takes letters: the palette runs them.
+    Actions with letter keys are listed even while an input line takes letters, without those keys:
+    the palette runs them.
     """
     found: dict[tuple[str, str], ListedAction] = {}
     keymap, app = keymap_of(screen.app), screen.app
@@ -49,7 +50,7 @@ def listed(screen: Screen[Any]) -> list[ListedAction]:
                     binding.key_display
                     or _of_question(node, key)
                     or (
-                        keymap.shown(id, typing=typing)
+                        _shown(keymap, id, typing=typing)
                         if id in BY_ID and id not in SILENT
                         else app.get_key_display(binding)
                     )
@@ -59,6 +60,13 @@ def listed(screen: Screen[Any]) -> list[ListedAction]:
                     binding.description, given, word, binding.action, node, node is app
                 )
     return list(found.values())
+
+
+def _shown(keymap: Keymap, id: str, *, typing: bool) -> str:
+    """Return the key of an action, "" if it is a letter that goes into an input line."""
+    if typing and all(len(key) == 1 and key.isalnum() for key in keymap.keys(id)):
+        return ""
+    return keymap.shown(id, typing=typing)
 
 
 def _of_question(node: DOMNode, key: str) -> str:

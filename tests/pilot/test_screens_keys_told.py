@@ -10,6 +10,7 @@ import pytest
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.ui.listing import listed
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import help_for
 from tangy_tui.ui.screens.home import HomeScreen
@@ -67,6 +68,11 @@ async def test_the_help_of_a_screen_with_a_command_line_tells_of_both(
         await pilot.pause()
         told = dict(help_for(pilot.app.screen).everywhere)
         assert ":" in told
+        letters = [
+            one for one in listed(pilot.app.screen) if one.key.isalnum() and len(one.key) == 1
+        ]
+        assert not letters, "the line takes them"
+        assert any(one.word == "picture" for one in listed(pilot.app.screen))
         assert "+" not in told  # no panel has the keys
         await pilot.press("up", "ctrl+o")
         await pilot.pause()
