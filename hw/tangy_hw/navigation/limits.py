@@ -24,7 +24,8 @@ class MotionLimits:
     until it brakes in s, `full_braking` the deceleration, `margin` the distance left at the end.
     People are assumed to approach `approach` m/s faster than now, and new tracks `approach_new`;
     walkers may turn round and approach `turned_faster` m/s faster than they walked lately, at
-    `approach_turned` at most.
+    `approach_turned` at most. People who stand may set off at `set_off` m/s; with 0 they
+    may not, so that planned drives reach a seat beside a person.
     """
 
     max_speed: float = 0.5
@@ -46,6 +47,7 @@ class MotionLimits:
     approach_new: float = 0.8
     turned_faster: float = 0.6
     approach_turned: float = 1.25
+    set_off: float = 0.0
     corners: tuple[tuple[float, float], ...] = ()
 
     @classmethod

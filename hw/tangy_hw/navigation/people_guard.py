@@ -2,9 +2,10 @@
 
 The robot keeps the distance that it needs to stop before it meets a person. It assumes that people
 keep their velocity and approach a little faster, and that walkers may turn round and approach
-faster than they walked lately. The assumed speeds are settings (`MotionLimits`), below the 1.6 m/s
-of the standard, with which a robot could never drive up to a seat. Only motion that brings the
-robot nearer to a person than stopping does is limited: the robot may drive away from a person who
+faster than they walked lately. When it is driven by hand, it also assumes that people who stand may
+set off at a walking pace. The assumed speeds are settings (`MotionLimits`), below the 1.6 m/s of
+the standard, with which a robot could never drive up to a seat. Only motion that brings the robot
+nearer to a person than stopping does is limited: the robot may drive away from a person who
 approaches it.
 """
 
@@ -76,8 +77,8 @@ class _Bodies(NamedTuple):
     """Positions (n, 2) in m, velocities (n, 2), required separations, and speeds of approach.
 
     If both driving and stopping come too near, driving must gain `leeway` m over stopping: slightly
-    negative for standing people, positive for walkers. Walkers may also turn and approach at
-    `turned` m/s; 0 for standing people.
+    negative for standing people, positive for walkers. Walkers may also turn, and standing people
+    set off, and approach at `turned` m/s; 0 if not.
     """
 
     at: Floats
@@ -112,9 +113,9 @@ def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
 
 
 def _turned(one: Track, limits: MotionLimits) -> float:
-    """Return how fast a walker may approach after turning round, in m/s; 0 for who stands."""
+    """Return how fast a walker may turn and approach, or a standing person set off, in m/s."""
     if one.pace <= WALKS:
-        return 0.0
+        return limits.set_off
     return min(limits.approach_turned, one.pace + limits.turned_faster)
 
 

@@ -17,6 +17,8 @@ from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints
 
 HOLDS_SECONDS = 0.4  # for which a manual command is valid
 
+SET_OFF = 0.9  # m/s at which a person who stands may set off towards the robot
+
 OVERRIDE = 0.08  # maximum m/s while the scanner's protection is overridden
 
 HandDriveResult = Literal["", "slow", "stands", "overridden"]
@@ -32,7 +34,7 @@ class HandDrive:
 
     def __init__(self, limits: MotionLimits, laser: Pose = IDENTITY) -> None:
         self.held: HandDriveResult = ""
-        self._limits, self._laser = limits, laser
+        self._limits, self._laser = replace(limits, set_off=SET_OFF), laser
         self._told = STILL
         self._overrides = False
         self._until = 0.0
