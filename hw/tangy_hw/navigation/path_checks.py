@@ -9,7 +9,7 @@ from tangy_hw.navigation.clearance import AWAY
 from tangy_hw.navigation.planning import BESIDE, RADIUS, near_ends
 from tangy_hw.navigation.poses import Floats, lengths
 
-INTO = 0.05  # metres that a path may be nearer to an obstacle than a new one would be
+INTO = 0.02  # metres that a path may be nearer to an obstacle than a new one would be
 LOOK_AHEAD = 50  # points of the path checked for obstacles: 2.5 m
 LEAVES = 0.3  # metres between two paths that make one a detour
 

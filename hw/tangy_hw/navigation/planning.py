@@ -23,9 +23,9 @@ from tangy_profiles.errors import TangyError
 
 FOOTPRINT = 0.25  # metres from the robot's centre to its edge
 RADIUS = FOOTPRINT + 0.07  # metres that the robot's centre keeps from obstacles on the map
-KEEP = FOOTPRINT + 0.37
+KEEP = FOOTPRINT + 0.42
 """Metres that the robot's centre keeps from obstacles that are not on the map and may be people:
-the torso extends .22 m beyond the visible legs, with .15 m to spare."""
+the torso extends up to .17 m beyond the visible legs, with .25 m to spare."""
 BESIDE = FOOTPRINT + 0.2
 """Metres kept from a person beside an end of the path. The end does not move, and the robot still
 does not touch the torso."""
