@@ -22,7 +22,7 @@ AHEAD = 1_000.0  # s by which the device's clock is ahead
 class TestSourceClock:
     def test_a_message_that_was_held_up_is_as_old_as_it_is(self) -> None:
         clock, chance = SourceClock(), Random(1)
-        for number in range(200):
+        for number in range(round(20 * WINDOW)):  # longer than a window
             sent, late = number * 0.1, 0.01 + (chance.random() < 0.2) * chance.random()
             measured = clock.measured(sent + AHEAD, sent + late)
             assert measured == pytest.approx(sent + 0.01) or number == 0
@@ -46,6 +46,13 @@ class TestSourceClock:
         clock = SourceClock()
         told = [clock.measured(round(AHEAD + 0.1 * n, digits), 0.1 * n) for n in range(100)]
         assert not any(told[10:])
+
+    def test_stamps_are_believed_again_some_time_after_one_that_came_twice(self) -> None:
+        clock = SourceClock()
+        told = [clock.measured(AHEAD + 0.1 * (n - (n == 5)), 0.1 * n) for n in range(500)]
+        doubted = [n for n, measured in enumerate(told) if measured is None]
+        assert doubted[0] == 5 and doubted == list(range(5, doubted[-1] + 1))
+        assert doubted[-1] == pytest.approx(5 + WINDOW / 0.1, abs=1)
 
     def test_a_clock_of_another_speed_tells_nothing_after_its_second_jump(self) -> None:
         clock = SourceClock()

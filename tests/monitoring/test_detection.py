@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tangy_profiles.activity import load_activity
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import OK, STALE, DeviceState, Reading
@@ -32,7 +33,8 @@ def detector(workspace: Workspace) -> Detector:
 def test_a_hidden_card_is_a_refusal_only_of_somebody_who_refused_in_a_whole_visit(
     workspace: Workspace, supervise: Supervise
 ) -> None:
-    effects = Effects({"move card closer": {"what was asked about": frozenset({"settled"})}})
+    settles = {"what was asked about": frozenset({"settled"})}
+    effects = Effects({"move card closer": settles, "encourage": settles})
     detector = Detector(workspace.activity, workspace.robot, effects)
     game = supervise(seed=1)
     game.begin()
@@ -45,8 +47,8 @@ def test_a_hidden_card_is_a_refusal_only_of_somebody_who_refused_in_a_whole_visi
     hidden = world.observe()
     still_hidden = Outcome(True, 1.0, (), None)
 
-    def told() -> bool:
-        found = detector.unexpected(closer, hidden, still_hidden, hidden)
+    def told(behaviour: Behaviour = closer) -> bool:
+        found = detector.unexpected(behaviour, hidden, still_hidden, hidden)
         return any(one.variable == "what was asked about" for one in found)
 
     assert told()
@@ -59,6 +61,8 @@ def test_a_hidden_card_is_a_refusal_only_of_somebody_who_refused_in_a_whole_visi
     assert not told()
     detector.forgive(person)  # they were left in peace
     assert not told()
+    encourage = workspace.activity.behaviours["encourage"]
+    assert told(encourage), "a refusal explains no behaviour that asks for nothing"
 
 
 def test_the_simulated_body_has_the_devices_of_the_robot() -> None:

@@ -79,6 +79,31 @@ def test_a_refusal_is_told_of_whoever_is_attended_and_of_nobody_else(detector: D
     assert evidence(detector, again).get("person.refusals") == 1
 
 
+@pytest.mark.parametrize("ends", ["a request is followed", "the game"])
+def test_who_refused_in_a_whole_visit_counts_as_refusing_until_something_ends_it(ends: str) -> None:
+    settles = Effects({"move card closer": {"what was asked about": frozenset({"settled"})}})
+    detector = Detector(BINGO, load_robot(), settles)
+    unseen = (UserState("user1", "occluded", "AR"), IDLE)
+    state = HELP._replace(situation=Situation("help", "AR", "occluded"), users=unseen)
+    hidden = acted("move card closer", state)
+
+    def unexpected() -> bool:
+        behaviour = hidden.action.behaviour
+        found = detector.unexpected(behaviour, hidden.state, hidden.outcome, hidden.after)
+        return any(one.variable == "what was asked about" for one in found)
+
+    assert unexpected()
+    for _ in range(BINGO.asking.visit):
+        detector.compare(acted("mark numbers", HELP, did("user1", followed=False), changed=True))
+    detector.forgive("user1")
+    assert not unexpected()
+    if ends == "the game":
+        detector.begin()
+    else:
+        detector.compare(acted("mark numbers", HELP, did("user1", followed=True), changed=True))
+    assert unexpected()
+
+
 def test_a_step_after_which_nothing_is_amiss_gives_no_evidence(detector: Detector) -> None:
     assert evidence(detector, acted("navigate to user", HELP, changed=True)) == {}
 
