@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 
+import pytest
+
+from tangy_hw.robot_process import controller
 from tangy_hw.robot_process.stop_latch import FAULT, STAFF
 from tangy_hw.robot_process.tick_watchdog import LATE_SECONDS, TickWatch, time_awake_and_asleep
 from tangy_profiles.health import ERROR, OK
@@ -73,6 +77,38 @@ class TestFrozen:
             assert one.said[1]["broken"]
             await one.take(do="release", by=FAULT)
             assert one.state().stopped == "" and one.state().frozen == 0.0
+
+    async def test_it_is_told_even_if_a_drive_is_looked_at_before_the_next_tick(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """After a freeze the program seems to have said nothing for as long."""
+        monkeypatch.setattr(controller, "HAZARD_SECONDS", 0.0)
+        async with spoken() as one:
+            robot = one.robot
+            robot.alone = lambda: "the program says nothing" if robot.watch.overdue else ""
+            until_it_is_over = robot.passing.until
+
+            async def frozen_before(over: Callable[[], bool], seconds: float) -> bool:
+                frozen(one)
+                return await until_it_is_over(over, seconds)
+
+            monkeypatch.setattr(robot.passing, "until", frozen_before)
+            await one.take(id=1, do="go", to=[8.0, 3.0, 0.0])
+            await until(lambda: one.said)
+            assert one.said[0]["failed"] == "it was frozen for 5.0 s"
+
+    async def test_it_is_told_even_if_the_program_was_silent_just_before(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        async with spoken() as one:
+            one.robot.alone = lambda: "the program says nothing"
+            await one.take(id=1, do="go", to=[8.0, 3.0, 0.0])
+            await until(lambda: one.state().hazard)
+            await one.robot.passing.sleep(0.2)  # in which its silence is noticed
+            monkeypatch.setattr(controller, "HAZARD_SECONDS", 0.0)
+            frozen(one)
+            await until(lambda: one.said)
+            assert one.said[0]["failed"] == "it was frozen for 5.0 s"
 
     async def test_it_shows_in_the_link_until_staff_have_seen_to_it(self) -> None:
         async with spoken() as one:

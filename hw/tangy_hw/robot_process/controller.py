@@ -315,6 +315,8 @@ class LiveRobot:
             return self._clock.now() - since[what]
 
         def over() -> bool:
+            if self.watch.overdue:
+                return False  # the next tick tells that it was frozen, which explains the rest
             patience = self.pauses.patience(self.watchdogs.late()) or HAZARD_SECONDS
             blocked = lasts("blocked", navigator.state == "blocked") > BLOCKED_SECONDS
             waited = lasts("hazard", self.hazard != "") > patience or blocked
@@ -362,6 +364,7 @@ class LiveRobot:
         why = f"it was frozen for {self.watch.frozen:.1f} s"
         self._stops.hold(why, FAULT)
         self._tasks.append(asyncio.create_task(self._halt()))
+        self._alone_since = None  # nobody could be heard meanwhile
         self.left(why)
 
     async def _watch(self) -> None:
