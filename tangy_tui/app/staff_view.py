@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.gathering import as_gathering
 from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_profiles.state import FRONT, ActivityState
@@ -36,6 +37,11 @@ class PersonNow:
     waits: float | None = None
     unvisited: float | None = None
     doing: str = ""
+    counts: tuple[tuple[str, int], ...] = ()
+    """Their counts in a game declared by facts, such as a score."""
+    their_turn: bool = False
+    goes_round: bool = True
+    """Whether the robot visits people in this game."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +111,10 @@ class StaffWatch:
         return StaffView(
             0.0 if self._began is None else max(0.0, now - self._began),
             scene.called,
-            tuple(self._person(person, scene, now, away, robot) for person in people),
+            tuple(
+                _with_facts(self._person(person, scene, now, away, robot), world)
+                for person in people
+            ),
             0.0 if planned is None else planned.pace,
         )
 
@@ -127,6 +136,22 @@ class StaffWatch:
             None if visited is None else now - visited,
             scene.doing.get(person, ""),
         )
+
+
+def _with_facts(person: PersonNow, world: object) -> PersonNow:
+    """Add what a game declared by facts counts for a person."""
+    game = getattr(world, "game", None)
+    if not isinstance(game, DeclaredGame):
+        return person
+    declared = game.declaration
+    does = {effect.does for one in declared.behaviours.values() for effect in one.effects}
+    counts = tuple(
+        (fact.name, round(game.number(fact, person.id)))
+        for fact in declared.facts.values()
+        if fact.kind == "count" and fact.per_player
+    )
+    turn = "next turn" in does and game.players[game.turn] == person.id
+    return replace(person, counts=counts, their_turn=turn, goes_round="go to whom" in does)
 
 
 def next_step(world: object, policy: Policy) -> tuple[Decision, ActivityState] | None:

@@ -22,7 +22,8 @@ from tangy_tui.app.command_grammar import (
     read_settling,
     read_teaching,
 )
-from tangy_tui.app.tour import Tour
+from tangy_tui.app.spoken_answers import choices_of, spoken_settling
+from tangy_tui.app.tour import Tour, goes_to_people
 from tangy_tui.console.after_teaching import AfterTeaching
 from tangy_tui.console.step_rules import rules_to_type
 from tangy_tui.console.typed_yes import TypedYes
@@ -151,7 +152,11 @@ class TeachingLines:
         self._where()
         self._tell_of_tour()
         while (line := await self._next_line()) is not None:
-            command = self._command(line) if isinstance(line, str) else line
+            command: TeacherCommand | StopCommand | Leave | None
+            if isinstance(line, str):
+                command = self._command(line)
+            else:
+                command = spoken_settling(line, teaching.remark) or line
             if isinstance(command, Leave) or self.plays:
                 break
             asked = teaching.question
@@ -164,7 +169,7 @@ class TeachingLines:
             if self._ears is not None:
                 if asked is not None and teaching.question is not asked:  # for the next question
                     self._ears.asking(False)
-                self._ears.asking(teaching.question is not None, _choices(teaching.question))
+                self._ears.asking(teaching.question is not None, choices_of(teaching.question))
 
     def _leave(self) -> None:
         """Write what happens to the demonstration, and what to do next."""
@@ -294,7 +299,11 @@ class TeachingLines:
         teaching = self._teaching
         if self._tour is not None and self._tour.at is not None:
             phrase = next(iter(teaching.sayable), "")
-            words = tour_line(self._tour.at, teaching.teacher, teaching.activity.title, phrase)
+            activity = teaching.activity
+            visits = goes_to_people(activity)
+            words = tour_line(
+                self._tour.at, teaching.teacher, activity.title, phrase, visits=visits
+            )
             self._write(words)
 
     def _named(self, name: str) -> str:
@@ -388,13 +397,3 @@ def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:
     if not spoken.done() or spoken.cancelled() or spoken.exception() is not None:
         return False
     return isinstance(spoken.result(), Say)
-
-
-def _choices(question: Asked | Offered | None) -> tuple[str, ...]:
-    """Return the alternatives of a question, as worded in it."""
-    match question:
-        case Offered():
-            return question.questions
-        case Asked():
-            return question.others
-    return ()

@@ -21,7 +21,7 @@ from tangy_tui.language.intent_model import IntentModel
 from tangy_tui.language.steering import steering_of
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.language.words import bare, words_of
-from tangy_tui.learning.verification import NotUnderstood, Offered, Say, Verification
+from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Say, Verification
 
 MOST_WORDS = 12
 """Longer sentences are unlikely to be repeated."""
@@ -84,6 +84,7 @@ class OwnPhrases:
         self._activity = activity
         self._teacher = teacher
         self._unclear = ""  # the last words that were not understood
+        self._asked = False  # whether a later command has been asked about
 
     def phrasebook(self, people: Sequence[Person], learnt: Learnt | None) -> Phrasebook:
         """Build the phrasebook for the participants, with the teacher's own phrases."""
@@ -91,11 +92,16 @@ class OwnPhrases:
         return personal_phrasebook(self._activity, people, own, learnt)
 
     def followed(self, said: Say, came: Verification) -> Verification:
-        """Remember words that were not understood or uncertain; return the verification."""
-        if isinstance(came, NotUnderstood | Offered) and said.commands is not None:
-            self._unclear = _plain(came.heard)
-        elif isinstance(came, NotUnderstood):
-            self._unclear = ""
+        """Remember words that were not understood or uncertain; return the verification.
+
+        Only the next command that is understood can be what they mean.
+        """
+        if isinstance(came, NotUnderstood | Offered):
+            self._unclear = "" if said.commands is None else _plain(came.heard)
+            self._asked = False
+        elif isinstance(came, Asked):
+            self._unclear = "" if self._asked else self._unclear
+            self._asked = True
         return came
 
     def wording(self, behaviour: str) -> str:

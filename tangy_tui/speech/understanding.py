@@ -47,6 +47,9 @@ SAME_SOUND = 0.75  # similarity of letters from which such words count as the ph
 UNDERSTOOD = 0.35
 """The confidence below which the paper's mode rejects a command."""
 
+MOST_ANSWERS = 4
+"""The most numbered answers of a question: those to a step that contradicts an earlier one."""
+
 OWN_NAME = {"tangy": ("T AE NG IY",)}
 LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The lowest margins of an answer: if the grammar finds it too, and if not."""
@@ -60,6 +63,9 @@ They are chosen, not fitted: the first is judged, the second is too low to be ju
 WORDED = 3  # how often each wording counts among the sentences that do not stop the robot
 LEAST_STEERING = -0.6
 """The lowest margin of a steering request that the grammar does not find."""
+
+ANSWER_ALIKE = {"know": "no"}
+"""How an answer is misheard as everyday words while commands are expected."""
 
 SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "eight"}
 
@@ -79,7 +85,7 @@ def wanted(
         steering_texts(ways) if learnt else () for ways in (WHILE_TEACHING, IN_GAMES)
     )
     given = tuple(phrasebook.table.answers) if learnt else ()
-    answers = (*YES, *NO, *choice_phrases(MOST_ALTERNATIVES), *phrasebook.table.questions)
+    answers = (*YES, *NO, *choice_phrases(MOST_ANSWERS), *phrasebook.table.questions)
     said = tuple(phrasebook.spoken() if phrases is None else phrases)
     return DecoderVocabulary(
         (*said, *STOPS, *teaching),
@@ -174,11 +180,23 @@ def clearly_heard(text: str) -> AcousticEvidence:
 
 def commanded(
     evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings, *, live: bool
-) -> tuple[Say | StopCommand | None, HearingKind | None]:
-    """Return the command of an utterance, and a hearing note; None if there is none."""
+) -> tuple[Say | Reply | StopCommand | None, HearingKind | None]:
+    """Return the command of an utterance, and a hearing note; None if there is none.
+
+    A yes or no is a reply, also if nothing was asked.
+    """
     if evidence.words or evidence.stop:
-        return understand(evidence, phrasebook, settings), None
+        said = understand(evidence, phrasebook, settings)
+        return _reply_instead(said, settings) or said, None
     return None, "no words" if live and evidence.seconds else None
+
+
+def _reply_instead(said: Say | StopCommand, settings: EvidenceSettings) -> Reply | None:
+    """Return the yes or no that was said instead of a command, or None."""
+    if settings.mode == "paper" or not isinstance(said, Say) or said.commands != ():
+        return None
+    yes = yes_or_no(" ".join(ANSWER_ALIKE.get(word, word) for word in said.text.split()))
+    return None if yes is None else Reply(yes)
 
 
 def replied(

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from tangy_tui.speech.hearing_notes import HearingNote
 
 AGAIN_SOON = "Push again in a moment."
+NOTHING_ASKED = "I heard yes or no, but there is no question."
 
 
 def hearing_words(note: HearingNote) -> str:

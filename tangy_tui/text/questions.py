@@ -26,6 +26,8 @@ ANSWER_MEANINGS = (
 )
 DID_YOU_MEAN = "Did you mean"
 OR_DID_YOU_MEAN = "Or did you mean"
+YES_OR_NO = "yes or no"
+NUMBER_OR_NONE = "the number of one, or no: none of these"
 
 STOPPED_FIRST = "Tangy was stopped: press {pause} to go on first, then answer."
 GIVE_UP = "Give this game up?"

@@ -11,7 +11,7 @@ from tangy_tui.text.numbers import listed
 if TYPE_CHECKING:
     from tangy_tui.learning.verification import Refused
 
-WHICH = "Please say which: type its number, or N for a new command."
+WHICH = "Please say which: its number, or N for a new command."
 
 
 def refused_words(refused: Refused) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from tangy_tui.learning.remarks import answers_to
@@ -26,6 +26,7 @@ Name = Callable[[str], str]
 ANSWER_BY_LINE = "Type a number, or just go on: you can decide later."
 OR_NO = "Type 1 or no, or just go on."
 NUMBER_OR_ESC = "Press the number of an answer, or Esc."
+SAY_A_NUMBER = "Please say the number of an answer, or no."
 LATER = "decide later"
 GO_ON = "go on"
 NOT_ALWAYS = "no, and do not ask again"
@@ -93,6 +94,11 @@ def _answer(remark: Remark, answer: RemarkAnswer, activity: Activity) -> str:
             return "yes, always"
         case _:
             return LATER
+
+
+def sayable_words(answers: Sequence[RemarkAnswer]) -> str:
+    """Tell which answers to a remark can be spoken."""
+    return "yes or no" if tuple(answers) == ("keep",) else "the number of one, or no"
 
 
 def later_words(remark: Remark) -> str:

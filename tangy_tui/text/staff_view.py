@@ -109,7 +109,10 @@ def person_words(person: PersonNow) -> str:
             waits = "" if person.waits is None else f" {lasting_words(person.waits)}"
             return f"asks{waits}" + (f", {seen}" if seen else "")
         case "plays":
-            return seen or "no visit yet"
+            told = seen or ("no visit yet" if person.goes_round else "")
+            turn = "has the turn" if person.their_turn else ""
+            counts = (f"{name.replace('_', ' ')} {number}" for name, number in person.counts)
+            return ", ".join(filter(None, (turn, *counts, told)))
         case forgotten:
             assert_never(forgotten)
 

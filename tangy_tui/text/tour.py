@@ -8,10 +8,13 @@ from tangy_tui.app.tour import TourStop
 
 KEYS_ALSO = "Enter goes on, Esc skips the tour."
 LINES_ALSO = "Enter alone goes on; type skip to skip the tour."
+SEATED = "People answer, act or ask at their seats, and you say what Tangy does next."
 TOUR_ON, SKIP_TOUR = "Go on with the tour", "Skip the tour"
 
 
-def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
+def tour_words(
+    stop: TourStop, teacher: str, title: str, phrase: str, *, visits: bool = True
+) -> str:
     """Return the text of a stop on the screen, with placeholders for keys in braces.
 
     Args:
@@ -19,6 +22,7 @@ def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
         teacher: the teacher's name.
         title: the activity's title.
         phrase: the command to try.
+        visits: whether the robot goes to people in this activity.
     """
     match stop:
         case TourStop.ROOM:
@@ -36,6 +40,8 @@ def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
                 "That is your first step; see it under Steps. {undo} takes a step back, {redo} "
                 "brings it back. Enter goes on."
             )
+        case TourStop.PEOPLE if not visits:
+            return f"{SEATED} {{undo}} takes back more than one step. Enter goes on."
         case TourStop.PEOPLE:
             return (
                 "People press a button when they need help: ?1 beside a name is first. Send Tangy "
@@ -50,8 +56,8 @@ def tour_words(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
             assert_never(stop)
 
 
-def tour_line(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
-    """Return the text of a stop in line mode."""
+def tour_line(stop: TourStop, teacher: str, title: str, phrase: str, *, visits: bool = True) -> str:
+    """Return the text of a stop in line mode; see `tour_words`."""
     match stop:
         case TourStop.ROOM:
             return f"Welcome, {teacher}. You show Tangy how to host {title}. {LINES_ALSO}"
@@ -61,6 +67,8 @@ def tour_line(stop: TourStop, teacher: str, title: str, phrase: str) -> str:
             return "Tangy does nothing before you say yes. Read the question, and answer it."
         case TourStop.STEP:
             return "That is your first step. The word undo takes it back, redo brings it back."
+        case TourStop.PEOPLE if not visits:
+            return f"{SEATED} The line that begins with Now tells you."
         case TourStop.PEOPLE:
             return (
                 "Now and then somebody asks for help. Send Tangy there, for example: go to user 2. "

@@ -10,10 +10,10 @@ import asyncio
 from collections import deque
 from collections.abc import Awaitable, Callable
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.text.hearing import hearing_words
+from tangy_tui.text.hearing import NOTHING_ASKED, hearing_words
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.voice import HANDS_FREE, OR_KEY_AND_SAY, OR_SAY, RECORDING
 from tangy_tui.ui.clean_output import clean
@@ -27,9 +27,13 @@ if TYPE_CHECKING:
 
     from tangy_tui.language.commands import Phrasebook
     from tangy_tui.learning.verification import Reply, Say, StopCommand
+    from tangy_tui.speech.hearing_notes import HearingNote
     from tangy_tui.speech.input import SpeechInput
     from tangy_tui.ui.dialogs.question import VerifyingDialog
+    from tangy_tui.ui.dialogs.remark import RemarkDialog
     from tangy_tui.ui.widgets.log_view import Kind
+
+    SpokenQuestion: TypeAlias = VerifyingDialog | RemarkDialog
 
 WAITS = 0.05
 """The interval of checks whether the next command of a recording is due, in s."""
@@ -89,10 +93,10 @@ class Hearing:
         self._understood: Phrasebook | None = None
         self._failed = ""
         self._state = ""
-        self._about: VerifyingDialog | None = None  # the open question when speech began
+        self._about: SpokenQuestion | None = None  # the open question when speech began
         self._steer: Callable[[str, float], None] | None = None
         ears.changed = self._changed
-        ears.tell = lambda note: self.tell(hearing_words(note))
+        ears.tell = self._note
 
     @property
     def by_key(self) -> bool:
@@ -223,6 +227,11 @@ class Hearing:
         finally:
             await self.ears.close()
 
+    def _note(self, note: HearingNote) -> None:
+        """Show a note; without a question nobody missed an answer."""
+        if note.kind != "no answer" or self._question is not None:
+            self.tell(hearing_words(note))
+
     def _take(self, heard: Say | StopCommand | Reply) -> None:
         from tangy_tui.learning.verification import Reply, Say, StopCommand
 
@@ -243,6 +252,8 @@ class Hearing:
     def _answer(self, reply: Reply) -> None:
         """Answer the open question like its key, if it was open when the person began to speak."""
         question = self._question
+        if question is None and self._free:
+            self.tell(NOTHING_ASKED)
         if question is None or self._about not in (None, question):
             return
         wrong = question.hear(yes=reply.yes, alternative=reply.alternative)
@@ -263,12 +274,13 @@ class Hearing:
         return self.on and bool(self._listeners) and self._listeners[-1].listens
 
     @property
-    def _question(self) -> VerifyingDialog | None:
+    def _question(self) -> SpokenQuestion | None:
         """The open question on top, if there is one."""
         from tangy_tui.ui.dialogs.question import VerifyingDialog
+        from tangy_tui.ui.dialogs.remark import RemarkDialog
 
         screen = self._app.screen_stack[-1] if self._app.screen_stack else None
-        return screen if isinstance(screen, VerifyingDialog) else None
+        return screen if isinstance(screen, VerifyingDialog | RemarkDialog) else None
 
     @property
     def _begins(self) -> tuple[str, ...]:

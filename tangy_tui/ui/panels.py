@@ -89,5 +89,6 @@ def room_panel(workspace: Workspace) -> RoomView:
             workspace.people,
             robot=workspace.robot.title,
             label=workspace.activity.deck.label,
+            cards=bool(workspace.activity.deck.columns),
         )
     )

@@ -9,7 +9,7 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from tangy_profiles.state import ActivityState, Situation
-from tangy_tui.app.tour import Tour, TourStop
+from tangy_tui.app.tour import Tour, TourStop, goes_to_people
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, coverage, missing_words
 from tangy_tui.learning.library import read_library
@@ -244,7 +244,8 @@ class TeachingPicture:
     def _tour_words(self, at: TourStop) -> str:
         teaching = self._teaching
         phrase = next(iter(teaching.sayable), "")
-        words = tour_words(at, teaching.teacher, teaching.activity.title, phrase)
+        visits = goes_to_people(teaching.activity)
+        words = tour_words(at, teaching.teacher, teaching.activity.title, phrase, visits=visits)
         return self._told(words)
 
     def _told(self, words: str) -> str:

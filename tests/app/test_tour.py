@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import asyncio
 
-from tangy_tui.app.tour import Tour, TourStop
+from tangy_tui.app.tour import Tour, TourStop, goes_to_people
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.text.tour import tour_line, tour_words
+from tests.support.declared import declared
 
 
 def begun(workspace: Workspace) -> tuple[Tour, TeachingSession]:
@@ -75,6 +76,14 @@ def lines(workspace: Workspace, *typed: str) -> list[str]:
 
 def place(said: list[str], stop: TourStop) -> int:
     return said.index(tour_line(stop, "Ada", "Bingo", "greet everyone"))
+
+
+def test_without_visits_the_tour_sends_the_robot_to_nobody() -> None:
+    assert not goes_to_people(declared("trivia"))
+    for words in (tour_words, tour_line):
+        told = words(TourStop.PEOPLE, "Ada", "Trivia", "say hello", visits=False)
+        assert "at their seats" in told
+        assert "Send Tangy" not in told
 
 
 def test_by_lines_the_tour_teaches_one_step(workspace: Workspace) -> None:

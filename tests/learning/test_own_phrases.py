@@ -49,6 +49,14 @@ def meant(teaching: TeachingSession, words: str) -> str | None:
     return command.behaviour if command is not None and command.confidence == 1 else None
 
 
+def test_only_the_next_command_can_be_what_was_meant(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    say(teaching, WORDS)
+    teaching.apply(Say("call number"))
+    teaching.apply(Reply(yes=False))  # the teacher wants something else now
+    assert asked(show(teaching, "greet everyone")) == []
+
+
 def test_words_that_were_not_understood_are_asked_about_once_what_was_meant_was_typed(
     workspace: Workspace,
 ) -> None:

@@ -10,7 +10,7 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.steering import IN_GAMES
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence
-from tangy_tui.speech.understanding import BOTH_HEARD, LEAST_ANSWER, replied, wanted
+from tangy_tui.speech.understanding import BOTH_HEARD, LEAST_ANSWER, commanded, replied, wanted
 from tests.support.declared import declared
 
 GIVEN = {"the dove": "the dove", "the crow": "the crow", "no milk": "no milk", "seven": "7"}
@@ -53,6 +53,24 @@ def test_other_words_and_other_sounds_are_no_answer() -> None:
 def test_a_yes_is_none_of_their_answers() -> None:
     assert taken("yes please", "yes please") == Reply(True)
     assert taken("yes please", "the dove") is None
+
+
+@pytest.mark.parametrize(("heard", "yes"), [("know thank you", False), ("yes please", True)])
+def test_a_yes_or_no_that_answers_no_question_is_no_command(heard: str, yes: bool) -> None:
+    book = Phrasebook(declared("trivia"), load_people(4))
+    evidence = AcousticEvidence(heard, "", 0.0, 1.0, 1.0)
+    assert commanded(evidence, book, USUAL, live=True) == (Reply(yes), None)
+    other = AcousticEvidence("know your place", "", 0.0, 1.0, 1.0)
+    said, _ = commanded(other, book, USUAL, live=True)
+    assert isinstance(said, Say)
+
+
+def test_a_phrase_that_is_also_a_yes_stays_a_command() -> None:
+    book = Phrasebook(declared("trivia"), load_people(4))
+    evidence = AcousticEvidence("that is right", "that is right", 0.0, 1.0, 1.0)
+    said, _ = commanded(evidence, book, USUAL, live=True)
+    assert isinstance(said, Say)
+    assert said.commands
 
 
 def test_without_spoken_answers_nothing_of_people_is_taken() -> None:

@@ -308,6 +308,10 @@ async def test_nothing_is_asked_about_calls_where_nothing_is_called(
         await opened(pilot)
         ids = {line.id for line in pilot.app.screen.query_one(SetUpList).choices}
         assert "activity" in ids and ids.isdisjoint({"pace", "patterns", "several", "visits"})
+        shown = pilot.text()
+        assert "played for" not in shown  # no key for patterns
+        assert "Cards" not in shown and "Faces" in shown  # and no card to hold up
+        assert "[▦]" not in shown
     workspace.close()
 
 

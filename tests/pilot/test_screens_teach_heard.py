@@ -11,9 +11,11 @@ from textual.app import App
 from tangy_hw.audio.meter import SoundTrouble
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_demonstrations
-from tangy_tui.learning.verification import Reply, StopCommand
+from tangy_tui.learning.own_phrases import own_phrases
+from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.hearing_notes import HearingNote
 from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
+from tangy_tui.ui.dialogs.remark import RemarkDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.home import HomeScreen
@@ -271,7 +273,7 @@ async def test_what_is_told_while_a_question_is_open_stands_in_it(
         await pilot.pause()
         nothing, which = (
             "I heard something, but no yes, no or stop.",
-            "Heard: yes. Please say which: type its number, or N for a new command.",
+            "Heard: yes. Please say which: its number, or N for a new command.",
         )
         ears.tell(HearingNote("no answer"))
         await pilot.pause()
@@ -315,7 +317,7 @@ async def test_a_choice_says_which_answers_it_takes_by_voice(
         assert several.commands is not None
         ears.hear(several)
         await pilot.pause()
-        assert "Or say no: none of these." in dialog_text(pilot)
+        assert "Or say the number of one, or no: none of these." in dialog_text(pilot)
         ears.hear(Reply(False))
         await pilot.pause()
         ears.hear(replace(several, commands=several.commands[:1]))
@@ -339,8 +341,66 @@ async def test_a_yes_that_no_question_waits_for_does_nothing(
         ears.hear(Reply(True))
         await pilot.pause()
         assert isinstance(pilot.app.screen, HelpScreen)
-        assert ears.asks
         assert steps(workspace) == []
+
+
+@pytest.mark.slow
+async def test_a_phrase_is_said_while_the_page_of_phrases_is_open(
+    run: Run, workspace: Workspace
+) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(workspace, ears)) as pilot:
+        ears.hear(Say("what can i say", 1.0, None))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, PhrasesScreen)
+        ears.hear(Say("what a lovely day", 0.1, ()))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, PhrasesScreen)  # that was no command
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        assert steps(workspace) == ["greeting"]
+
+
+@pytest.mark.slow
+async def test_without_a_question_no_answer_is_missed_and_a_yes_is_told(
+    run: Run, workspace: Workspace
+) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(workspace, ears)) as pilot:
+        ears.tell(HearingNote("no answer"))
+        await pilot.pause()
+        assert "no yes, no or stop" not in screen_text(pilot.app)
+        ears.hear(Reply(False))
+        await pilot.pause()
+        assert "I heard yes or no, but there is no question." in screen_text(pilot.app)
+
+
+@pytest.mark.slow
+async def test_a_remark_on_a_spoken_step_is_answered_by_voice(
+    run: Run, workspace: Workspace
+) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(workspace, ears)) as pilot:
+        ears.hear(Say("let it all begin", 0.2, ()))
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, RemarkDialog)
+        assert "Or say yes or no." in screen_text(pilot.app)
+        ears.hear(Reply(yes=False, alternative=2))  # there is one answer
+        await pilot.pause()
+        assert "Please say the number of an answer, or no." in screen_text(pilot.app)
+        ears.hear(Reply(True))
+        await pilot.pause()
+        await pilot.pause()  # the answer is applied once the dialog is gone
+        assert isinstance(pilot.app.screen, TeachScreen)
+        kept = own_phrases(workspace.store, workspace.activity.name, "ann")
+        assert kept == {"let it all begin": "greeting"}
 
 
 @pytest.mark.slow
@@ -428,7 +488,6 @@ async def test_names_are_listened_for_as_they_are_said_now(run: Run, workspace: 
         await pilot.press("colon", *"phrases", "enter")
         await pilot.pause()
         assert isinstance(pilot.app.screen, PhrasesScreen)
-        assert ears.asks  # commands are not for this screen
         workspace.pronounce(workspace.people[0], "Y UW Z ER, W AH N")
         before = len(ears.books)
         for worker in [one for one in pilot.app.workers if one.group == "read"]:

@@ -17,9 +17,11 @@ from tangy_tui.learning.verification import Asked, Offered, Reply
 from tangy_tui.text.questions import (
     DID_YOU_MEAN,
     DID_YOU_SAY,
+    NUMBER_OR_NONE,
     OR_DID_YOU_MEAN,
     SAID_TOO_EARLY,
     TOO_EARLY,
+    YES_OR_NO,
     yes_words,
 )
 from tangy_tui.text.refusals import WHICH
@@ -176,7 +178,7 @@ class VerifyingDialog(Dialog[Answer]):
     @property
     def _sayable(self) -> str:
         """The answers that can be spoken."""
-        return "yes or no"
+        return YES_OR_NO
 
     def _content(self) -> Content:
         """Format the question."""
@@ -264,6 +266,7 @@ class QuestionDialog(VerifyingDialog):
     def _content(self) -> Content:
         parts: Parts = [
             DID_YOU_SAY,
+            NUMBER_OR_NONE,
             (self._behaviour, "$accent bold"),
             "?",
             *self._grounds(),
@@ -303,7 +306,7 @@ class ChoicesDialog(VerifyingDialog):
 
     @property
     def _sayable(self) -> str:
-        return "yes or no" if len(self._choices) == 1 else "no: none of these"
+        return YES_OR_NO if len(self._choices) == 1 else NUMBER_OR_NONE
 
     def _content(self) -> Content:
         return Content.assemble(

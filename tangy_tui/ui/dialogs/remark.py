@@ -12,11 +12,19 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
+from tangy_tui.app.spoken_answers import answer_by_yes_or_no
 from tangy_tui.learning.remarks import answers_to
 from tangy_tui.learning.teaching_events import Remark, RemarkAnswer
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.text.questions import TOO_EARLY
-from tangy_tui.text.remarks import NUMBER_OR_ESC, answer_words, later_words, remark_words
+from tangy_tui.text.questions import SAID_TOO_EARLY, TOO_EARLY
+from tangy_tui.text.remarks import (
+    NUMBER_OR_ESC,
+    SAY_A_NUMBER,
+    answer_words,
+    later_words,
+    remark_words,
+    sayable_words,
+)
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
@@ -52,6 +60,7 @@ class RemarkDialog(Dialog[RemarkAnswer]):
         answers: Sequence[tuple[RemarkAnswer, str]],
         later: str,
         *,
+        aloud: str = "",
         clock: Clock | None = None,
     ) -> None:
         """Create the dialog.
@@ -60,12 +69,14 @@ class RemarkDialog(Dialog[RemarkAnswer]):
             sentence: the remark.
             answers: the possible answers with their words; 1 gives the first.
             later: the action of esc, in words.
+            aloud: the words before the spoken answers, "" if answers cannot be spoken.
             clock: returns seconds, on the scale of `time.monotonic` (default: the app's clock).
         """
         super().__init__("later")
         self._sentence = clean(sentence)
         self._answers = {str(n): (a, clean(words)) for n, (a, words) in enumerate(answers, 1)}
         self._later = later
+        self._say = clean(aloud)
         self._clock = clock
         self._keys = FreshKeys()
         self._told = ""
@@ -98,6 +109,35 @@ class RemarkDialog(Dialog[RemarkAnswer]):
     def action_nothing(self) -> None:
         """Do nothing: `on_key` handles the keys, to check each of them."""
 
+    @property
+    def painted(self) -> bool:
+        """Whether it is visible, so that it can be answered."""
+        return self._keys.seen
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """The answers in words, which can be spoken too."""
+        return tuple(words for _, words in self._answers.values())
+
+    def hear(self, *, yes: bool, alternative: int | None = None) -> str:
+        """Handle a spoken answer; return the problem with it, "" if there is none."""
+        if not self.painted:
+            return SAID_TOO_EARLY
+        kinds = tuple(answer for answer, _ in self._answers.values())
+        if alternative is not None:
+            answer = kinds[alternative - 1] if alternative <= len(kinds) else None
+        else:
+            answer = answer_by_yes_or_no(kinds, yes=yes)
+        if answer is None:
+            return SAY_A_NUMBER
+        self.answer(answer)
+        return ""
+
+    def tell(self, sentence: str, colour: str = "") -> None:
+        """Show a sentence about speech input; it has the colour of a warning."""
+        if self.is_attached:
+            self._tell(clean(sentence))
+
     def _tell(self, sentence: str) -> None:
         if sentence != self._told:
             self._told = sentence
@@ -112,14 +152,17 @@ class RemarkDialog(Dialog[RemarkAnswer]):
             fits = GAP + cells <= left
             parts += [" " * GAP if fits else "\n", (key, "$primary bold"), f" {words}"]
             left = (left - GAP if fits else self.app.size.width - PADDING) - cells
+        if self._say:
+            kinds = tuple(answer for answer, _ in self._answers.values())
+            parts += ["\n", (f"{self._say} {sayable_words(kinds)}.", "$ink-dim")]
         if self._told:
             parts += ["\n", (self._told, "$warning")]
         return Content.assemble(*parts)
 
 
-def remark_dialog(remark: Remark, teaching: TeachingSession) -> RemarkDialog:
-    """Create the dialog for a remark of a session."""
+def remark_dialog(remark: Remark, teaching: TeachingSession, aloud: str = "") -> RemarkDialog:
+    """Create the dialog for a remark of a session; `aloud` as in `RemarkDialog`."""
     activity, game = teaching.activity, teaching.demonstration.id
     answers = zip(answers_to(remark), answer_words(remark, activity), strict=True)
     sentence = remark_words(remark, activity, teaching.name, game)
-    return RemarkDialog(sentence, list(answers), later_words(remark))
+    return RemarkDialog(sentence, list(answers), later_words(remark), aloud=aloud)

@@ -146,7 +146,11 @@ class SetUpScreen(TangyScreen[bool]):
             seats = self.query_one("#seats", Vertical)
             seats.remove_children()
             if here:
-                seats.mount(panel(RoomView(workspace.room, here, id=None), text.SEATS))
+                seats.mount(
+                    panel(
+                        RoomView(workspace.room, here, cards=self.setup.calls, id=None), text.SEATS
+                    )
+                )
 
     # ------------------------------------------------------------------------------- the lines
 

@@ -349,24 +349,20 @@ class TeachScreen(TangyScreen[bool]):
                     speaker_of(self.app).hush()
                 case Begun():
                     self._listener.refresh()
-            self._picture.tell(event, asked=not self._quiet)
+            self._picture.tell(event, asked=self._scripted is None)
         if undone:
             self._picture.undone(undone)
         bar.ready()
         self._picture.state()
         remark = self.teaching.remark
-        if remark is not None and remark in events and not self._quiet:
+        if remark is not None and remark in events and self._scripted is None:
             self.run_worker(self._remark(remark), name="remark")
         else:
             self._listener.open(True)
 
-    @property
-    def _quiet(self) -> bool:
-        return self._scripted is not None or self._listener.by_voice
-
     async def _remark(self, remark: Remark) -> None:
-        """Ask about a remark in place; a remark on a spoken step is answered by voice."""
-        answer = await self.alone(remark_dialog(remark, self.teaching))
+        """Ask about a remark in place."""
+        answer = await self.alone(remark_dialog(remark, self.teaching, self._listener.aloud))
         if answer == "later":
             self._picture.remark(remark)  # the dialog has shown it; from now on the log does
         self._apply(Settle(answer))

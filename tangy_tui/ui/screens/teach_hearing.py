@@ -96,7 +96,19 @@ class TeachHearing:
     @property
     def listens(self) -> bool:
         """Whether a command can be applied to the session now."""
-        return self._open and self._screen.is_active
+        return self._open and (self._screen.is_active or self._under_a_page)
+
+    @property
+    def _under_a_page(self) -> bool:
+        """Whether only pages to read, which can be opened by voice, cover the screen."""
+        from tangy_tui.ui.screens.help import HelpScreen
+        from tangy_tui.ui.screens.phrases import PhrasesScreen
+
+        stack = self._screen.app.screen_stack
+        if self._screen not in stack:
+            return False
+        above = stack[stack.index(self._screen) + 1 :]
+        return all(isinstance(page, HelpScreen | PhrasesScreen) for page in above)
 
     @property
     def spoken(self) -> Phrasebook:
@@ -117,7 +129,14 @@ class TeachHearing:
             self.hearing.understand()
 
     def hear(self, said: Say) -> None:
-        """Apply a spoken command; words that steer the application count as if typed."""
+        """Apply a spoken command; words that steer the application count as if typed.
+
+        A command closes the page that covers the screen: the phrases that it lists can be said.
+        """
+        if said.commands == () and not self._screen.is_active:
+            return  # people talk while the teacher reads
+        while not self._screen.is_active:
+            self._screen.app.pop_screen()
         if said.commands is None:
             self._screen.post_message(
                 CommandBar.Given(self._screen.query_one(CommandBar), said.text)

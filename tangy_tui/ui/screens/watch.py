@@ -178,7 +178,9 @@ class WatchScreen(TangyScreen[None]):
         room = room_of(view, self._log.folder)
         seated = room.placed([Person(one, self._called(one)) for one in people])
         label = str if self._activity is None else self._activity.deck.label
-        left.mount(panel(RoomView(room, seated, label=label)), before="#called")
+        cards = self._activity is None or bool(self._activity.deck.columns)
+        view_of_room = RoomView(room, seated, label=label, cards=cards)
+        left.mount(panel(view_of_room), before="#called")
         left.mount(panel(StaffPanel()))
         if self._activity is not None and self._activity.deck.columns:
             left.mount(panel(CallBoard(self._activity.deck)))

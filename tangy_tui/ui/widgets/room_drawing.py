@@ -81,8 +81,8 @@ class RoomDrawing:
         for y, text in enumerate(spoken, plan.speech_row):
             self._lines[y].centre(plan.width // 2, text, "text")
 
-    def table(self, read: str | None) -> None:
-        """Draw the tables with a card for each person; the robot reads that of `read`."""
+    def tables(self) -> None:
+        """Draw the tables."""
         plan = self._plan
         row = plan.table_row
         for left, right in self._grid.tables:
@@ -93,6 +93,11 @@ class RoomDrawing:
                 self._lines[row + 2].put(left, "╰" + "─" * inner + "╯", "table")
             else:
                 self._lines[row].put(left, "╘" + "═" * inner + "╛", "table")
+
+    def cards(self, read: str | None) -> None:
+        """Draw a card on the table before each person; the robot reads that of `read`."""
+        plan = self._plan
+        row = plan.table_row
         for person, centre in zip(self._people, self._grid.centres, strict=False):
             ink = "robot" if person.id == read else "table"
             self._lines[row + plan.table // 2].put(centre - 1, "[▦]", ink)
@@ -174,6 +179,7 @@ def draw_room(
     speech: str,
     label: Callable[[int], str],
     robot: int | None,
+    cards: bool = True,
 ) -> list[PlanLine]:
     """Draw a scene without its robot.
 
@@ -185,11 +191,14 @@ def draw_room(
         speech: the robot's speech.
         label: returns the label of a number.
         robot: the column of the robot, if it stands still; the card it reads lies beside it.
+        cards: whether people have cards.
     """
     drawing = RoomDrawing(plan, grid, people)
     drawing.called([clean(label(number)) for number in scene.called])
     drawing.speech(speech)
-    drawing.table(scene.card.person if scene.card is not None else None)
+    drawing.tables()
+    if cards:
+        drawing.cards(scene.card.person if scene.card is not None else None)
     if scene.card is not None and robot is not None:
         drawing.card(scene.card, robot)
     drawing.everybody(scene)

@@ -70,6 +70,7 @@ class RoomView(InkedWidget):
         *,
         robot: str = "Tangy",
         label: Callable[[int], str] = str,
+        cards: bool = True,
         clock: Clock | None = None,
         id: str | None = "room",
         classes: str | None = None,
@@ -81,6 +82,7 @@ class RoomView(InkedWidget):
             people: the people in the order of their seats.
             robot: the name on the robot.
             label: returns the label of a number (`activity.deck.label`).
+            cards: whether people have cards.
             clock: returns seconds (default: the app's clock).
             id: the widget's id.
             classes: the widget's classes.
@@ -94,6 +96,7 @@ class RoomView(InkedWidget):
         self._ids = tuple(person.id for person in people)
         self._robot = clean(robot)[:SPRITE_WIDTH]
         self._label = label
+        self._cards = cards
         self._clock_given = clock
         self._scene = EMPTY
         self.speech = ""
@@ -329,6 +332,7 @@ class RoomView(InkedWidget):
             speech=self.speech,
             label=self._label,
             robot=self._sprite_at[0] if self._going is None and not self._heading else None,
+            cards=self._cards,
         )
         width = self.size.width
         changed: list[Region] = []

@@ -1,0 +1,38 @@
+"""What staff read of each person in a game declared by facts."""
+
+from __future__ import annotations
+
+from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import FRONT
+from tangy_tui.app.staff_view import StaffWatch
+from tangy_tui.text.staff_view import person_words
+from tests.support.declared import declared
+
+PEOPLE = ("ann", "ben")
+
+
+class Game:
+    """A world with a game, as far as staff see it."""
+
+    def __init__(self) -> None:
+        self.game = DeclaredGame(declared("trivia").declaration, PEOPLE)
+
+
+def lines(world: object) -> list[str]:
+    watch = StaffWatch()
+    watch.begin(0.0)
+    scene = Scene(FRONT, (), dict.fromkeys(PEOPLE, ""), (), None)
+    return [person_words(one) for one in watch.look(scene, PEOPLE, 5.0, world).people]
+
+
+def test_scores_and_the_turn_stand_beside_the_names_where_nobody_is_visited() -> None:
+    world = Game()
+    assert lines(world) == ["has the turn, score 0", "score 0"]
+    world.game.execute("ask question", "ann")
+    world.game.execute("confirm answer", "ann")
+    assert lines(world) == ["score 1", "has the turn, score 0"]
+
+
+def test_a_person_of_a_game_with_visits_has_none_yet() -> None:
+    assert lines(object()) == ["no visit yet", "no visit yet"]
