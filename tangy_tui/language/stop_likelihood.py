@@ -2,7 +2,7 @@
 
 The rules of `stop_sentence` know the verbs of stopping and what their objects mean; this knows the
 many ways without such a verb ("that'll do now", "don't you come any closer") from those that
-`stop_phrases` has. The model is fitted by `stop_training` and comes with Tangy.
+`stop_phrases` has. The model comes with Tangy; `tests/bench/stop_training.py` fits it.
 """
 
 from __future__ import annotations

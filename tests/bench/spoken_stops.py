@@ -32,13 +32,13 @@ from tangy_tui.language.intent_training import train
 from tangy_tui.language.stop_likelihood import use_model
 from tangy_tui.language.stop_phrases import other_stop_texts, stop_sets, stop_texts
 from tangy_tui.language.stop_sentence import stops as is_stop
-from tangy_tui.language.stop_training import stop_examples
 from tangy_tui.learning.verification import StopCommand
 from tangy_tui.speech.decoder import make_decoder
 from tangy_tui.speech.evidence import USUAL
 from tangy_tui.speech.understanding import understand, wanted
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 from tests.bench.speech import BOOK
+from tests.bench.stop_training import stop_examples
 
 HERE = Path(__file__).parent
 QUOTED = {"fresh": "stop_fresh.toml", "unseen": "stop_unseen.toml"}

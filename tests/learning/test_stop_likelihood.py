@@ -10,7 +10,7 @@ import pytest
 from tangy_tui.language.stop_likelihood import MODEL, stop_likelihood
 from tangy_tui.language.stop_phrases import stop_sets, stop_texts
 from tangy_tui.language.stop_sentence import stops
-from tangy_tui.language.stop_training import digest_of, stop_examples
+from tests.bench.stop_training import digest_of, stop_examples
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Learning which sentences stop the robot, with scikit-learn.
 
-`python -m tangy_tui.language.stop_training` learns them anew, and puts the model beside this
-module: run it after `stopping.toml`, `stop_sentences.toml` or an activity's phrases have changed.
+Run by hand: `python -m tests.bench.stop_training` learns them anew, and puts the model where Tangy
+reads it. Do so after `stopping.toml`, `stop_sentences.toml` or an activity's phrases have changed.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from tangy_profiles.activity import load_activity, shipped_activities
+from tangy_tui import language
 from tangy_tui.language.answers import NO, YES
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.examples import Example, examples_of
@@ -52,7 +53,7 @@ def main() -> None:
     examples = stop_examples()
     model = json.loads(train(examples).to_json())
     told = json.dumps({"made_of": digest_of(examples), **model}, separators=(",", ":"))
-    Path(__file__).with_name(MODEL).write_text(told, encoding="utf-8")
+    Path(language.__file__).with_name(MODEL).write_text(told, encoding="utf-8")
 
 
 def _plain(words: Iterable[str]) -> Words:
