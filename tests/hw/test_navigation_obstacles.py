@@ -11,6 +11,7 @@ from tangy_hw.device_protocols import STILL, Pose
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import seat_feet, table_legs, with_feet
 from tests.bench.people_drives import MAP, ROOM, drives
+from tests.bench.people_simulation import Drive, Person
 from tests.hw.navigated import CHAIR, ROW, DrivenRobot, at_seat
 
 
@@ -110,6 +111,13 @@ class TestPeople:
     def test_before_somebody_who_stepped_in_it_drives_slowly(self) -> None:
         (drive,) = drives("steps in", 1, seed=11)
         assert drive.near and np.median(drive.near) <= 0.15
+
+    @pytest.mark.slow
+    def test_while_it_creeps_up_to_a_goal_beside_somebody_it_says_for_whom(self) -> None:
+        goal, person = Pose(5.0, 2.0, 0.0), Person(5.66, 2.0, 1.0)
+        drive = Drive(Pose(4.8, 2.0, 0.0), goal, [person], np.random.default_rng(3)).run()
+        assert drive.arrived and not drive.touches
+        assert drive.silent < 1.0
 
     @pytest.mark.slow
     def test_without_anybody_nothing_slows_it_down(self) -> None:

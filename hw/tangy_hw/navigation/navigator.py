@@ -337,7 +337,7 @@ class Navigator:
             self._stop_following()
             return STILL
         self.yields_to = self._around.held(wanted)
-        stands = pursuit.state == "waiting" or self.yields_to != ""
+        stands = pursuit.state == "waiting" or (self.yields_to != "" and twist == STILL)
         if stands or comes_too_near(ahead, obstacles, pose, goal, self._radius, self._keep):
             self._waited += dt
         else:

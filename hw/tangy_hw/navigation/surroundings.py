@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
+from tangy_hw.device_protocols import Pose, Scan, Twist
 from tangy_hw.navigation.clearance import REACH
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
@@ -23,6 +23,7 @@ BlockingPerson = Literal["", "walking", "standing"]
 SURE = 0.3  # metres of pose spread up to which points become obstacles
 WALKS = 0.25  # m/s above which a track counts as walking
 WALKERS = 0.5  # metres around a walking person within which points belong to them
+CREEPS = Twist(0.02, 0.05)  # m/s and rad/s: people do not see a robot move that is slower than both
 AHEAD = (0.0, 0.7, 1.4, 2.1)  # seconds ahead for which paths avoid walkers
 
 
@@ -96,18 +97,23 @@ class Surroundings:
         return limit_near_people(twist, NearbyPeople(self._tracks, self._ends), self._limits)
 
     def held(self, twist: Twist) -> BlockingPerson:
-        """Return the kind of person who blocks a command; "" if it is not blocked."""
-        if self.limited(twist) != STILL or twist == STILL:
+        """Return the kind of person for whom it stands or creeps instead; "" if it does not."""
+        limited = self.limited(twist)
+        if limited == twist or not _creeps(limited):
             return ""
         walkers = self._walkers
         standing = [one for one in self._tracks if one not in walkers]
         ends = self._ends[~_near(self._ends, walkers)]
         without = limit_near_people(twist, NearbyPeople(standing, ends), self._limits)
-        return "standing" if without == STILL else "walking"
+        return "standing" if _creeps(without) else "walking"
 
     @property
     def _walkers(self) -> list[Track]:
         return [one for one in self._tracks if one.speed > WALKS]
+
+
+def _creeps(twist: Twist) -> bool:
+    return abs(twist.forward) < CREEPS.forward and abs(twist.turn) < CREEPS.turn
 
 
 def _near(points: Floats, tracks: Sequence[Track]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
